@@ -25,7 +25,7 @@ from suchus.motion import Swim
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil, scaled
-from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
+from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
 
 ROBOT = ROBOTS["caiman"]
 REYNOLDS = 7000.0
@@ -81,7 +81,7 @@ class Case:
 
     def setting(self) -> SwimSetting:
         """Return grid, water, time, and what moves the body."""
-        free, cycles = (FREE, FREE_CYCLES) if self.kind == "free" else (HELD, HELD_CYCLES)
+        free, cycles = (FREE, FREE_CYCLES) if self.kind == "free" else (TETHERED, HELD_CYCLES)
         return SwimSetting(axes=3, cells=self.cells, viscosity=VISCOSITY, cycles=cycles, free=free)
 
 

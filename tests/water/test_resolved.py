@@ -9,11 +9,11 @@ from suchus.motion import Swim
 from suchus.progress import silent
 from suchus.water import ExactWave, Outline
 from suchus.water.immersed import immersed
-from suchus.water.resolved import HELD, ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
+from suchus.water.resolved import ON_THE_SPOT, TETHERED, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
 
 MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
 COARSE = SwimSetting(cells=32, viscosity=1e-3, cycles=1)
-TETHERED = replace(COARSE, free=HELD)
+COARSE_TETHERED = replace(COARSE, free=TETHERED)
 
 
 def mirrored(motion: Swim) -> Swim:
@@ -38,7 +38,7 @@ def test_a_motion_grows_from_a_straight_body_at_rest(robot):
 
 
 def test_a_body_that_does_not_move_feels_nothing(robot):
-    record = resolved_swim(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), TETHERED)
+    record = resolved_swim(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), COARSE_TETHERED)
     assert float(abs(record.thrust).max()) < 1e-9
     assert float(abs(record.joint_torque).max()) < 1e-9
 
@@ -67,7 +67,9 @@ class _Flat:
 
 def test_a_reversed_wave_gives_a_reversed_thrust(robot):
     to_tail, to_head = (
-        float(resolved_swim(robot, ExactWave(name="flat", wave=_Flat(robot.length, sign)), TETHERED).thrust.mean())
+        float(
+            resolved_swim(robot, ExactWave(name="flat", wave=_Flat(robot.length, sign)), COARSE_TETHERED).thrust.mean()
+        )
         for sign in (-1, 1)
     )
     assert to_tail > 0 > to_head
@@ -99,7 +101,7 @@ def test_impossible_swims_are_refused(robot):
     with pytest.raises(InvalidDesign, match="cells"):
         SwimSetting(cells=8, viscosity=1e-3, cycles=1)
     with pytest.raises(InvalidDesign, match="boundary layer"):
-        resolved_swim(suchus.ROBOTS["caiman"], MOTION, replace(TETHERED, viscosity=1e-6))
+        resolved_swim(suchus.ROBOTS["caiman"], MOTION, replace(COARSE_TETHERED, viscosity=1e-6))
 
 
 @pytest.mark.parametrize(
@@ -123,7 +125,7 @@ def test_a_setting_of_the_other_kind_is_refused(given, said):
 def test_a_free_body_is_given_no_motion_of_its_head(robot):
     with pytest.raises(InvalidDesign, match=r"turn of the head are 0\+0j m and 0.1\+0j rad, and the body is free"):
         check_resolved_swim(robot, MOTION, COARSE, turn=0.1 + 0j)
-    check_resolved_swim(robot, MOTION, TETHERED, turn=0.1 + 0j)
+    check_resolved_swim(robot, MOTION, COARSE_TETHERED, turn=0.1 + 0j)
 
 
 def test_a_slice_kept_from_moving_on_stays_and_sways(robot):

@@ -9,12 +9,12 @@ from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil
-from suchus.water.resolved import HELD, SwimSetting, resolved_swim, towed_drag
+from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
 from suchus.water.undulation import STILL
 
 ROBOT = ROBOTS["caiman"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
-SETTING = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, free=HELD)
+SETTING = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, free=TETHERED)
 
 
 def held(motion, **given):

@@ -8,7 +8,7 @@ from suchus.errors import UnreadableFile
 from suchus.motion import Swim
 from suchus.progress import silent
 from suchus.record.seal import sealed
-from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim
+from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
 from suchus.water.samples import Samples
 
 MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
@@ -27,7 +27,7 @@ def _killed_at(share):
     return progress
 
 
-@pytest.mark.parametrize("free", [FREE, HELD])
+@pytest.mark.parametrize("free", [FREE, TETHERED])
 def test_a_killed_swim_goes_on_and_ends_with_the_same_numbers(robot, tmp_path, free):
     file, later, setting = tmp_path / "swim.npz", [], replace(SETTING, free=free)
 

@@ -12,7 +12,7 @@ import pytest
 
 from suchus.robots import ROBOTS
 from suchus.water import Swum, fit, printed_wave
-from suchus.water.resolved import HELD, SwimSetting, resolved_swim
+from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim
 
 pytestmark = pytest.mark.validate
 
@@ -27,7 +27,7 @@ def grids():
     fitted, viscosity = fit(robot, printed_wave(robot)), robot.length**2 / REYNOLDS
     rows = {}
     for cells in CELLS:
-        setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=HELD)
+        setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=TETHERED)
         held = resolved_swim(robot, fitted.swim, setting, turn=fitted.head)
         free = resolved_swim(robot, fitted.swim, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
         swum = Swum.of(free, 1.0)

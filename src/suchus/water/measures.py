@@ -22,7 +22,7 @@ class Quarters(NamedTuple):
 
     @classmethod
     def each(cls, held: xr.Dataset) -> "list[Quarters]":
-        """Read every cycle but the first from a record of a held slice; the last one comes last."""
+        """Read every cycle but the first from a record of a tethered slice; the last one comes last."""
         cycles = [held.isel(settled=i) for i in range(held.sizes["settled"])]
         return [cls(*(one[f"quarter_{name}"].values.tolist() for name in cls._fields)) for one in cycles]
 

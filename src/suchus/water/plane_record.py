@@ -1,7 +1,7 @@
-"""What is sampled and recorded of a slice through the robot: held by its snout, as in Fig. 17, or free.
+"""What is sampled and recorded of a slice through the robot: tethered by its snout, as in Fig. 17, or free.
 
-Of a held slice also what the water does along the skin: pressures on the two sides of the tail, and moments about the
-joints.
+Of a tethered slice also what the water does along the skin: pressures on the two sides of the tail, and moments about
+the joints.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ TRACK = 40
 """Samples of the track in a cycle [-]."""
 
 
-class HeldSlice:
+class TetheredSlice:
     """Forces, loads along the skin and fields of a slice whose motion is given."""
 
     def __init__(self, swim: ResolvedSwim) -> None:

@@ -1,4 +1,4 @@
-"""Swims by CFD: the robot in the flow solver, in the plane or in space, free, on the spot, held, or towed."""
+"""Swims by CFD: the robot in the flow solver, in the plane or in space, free, on the spot, tethered, or towed."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,14 +13,14 @@ from suchus.design import Robot
 from suchus.errors import OutsideLimits
 from suchus.progress import Progress
 from suchus.water.outline import Outline
-from suchus.water.plane_record import FreeSlice, HeldSlice
+from suchus.water.plane_record import FreeSlice, TetheredSlice
 from suchus.water.samples import Samples, run_on
-from suchus.water.setting import DENSITY, FREE, HELD, ON_THE_SPOT, SwimSetting
-from suchus.water.space_record import FreeInSpace, HeldInSpace
+from suchus.water.setting import DENSITY, FREE, ON_THE_SPOT, TETHERED, SwimSetting
+from suchus.water.space_record import FreeInSpace, TetheredInSpace
 from suchus.water.swim_setup import ResolvedSwim, box_grid, box_sides, straight_body
 from suchus.water.undulation import Motion
 
-__all__ = ["FREE", "HELD", "ON_THE_SPOT", "SwimSetting", "check_resolved_swim", "resolved_swim", "towed_drag"]
+__all__ = ["FREE", "ON_THE_SPOT", "TETHERED", "SwimSetting", "check_resolved_swim", "resolved_swim", "towed_drag"]
 
 SPEEDS = 1e-4, 10.0
 """Least and greatest speed of a tow [m/s]."""
@@ -42,11 +42,11 @@ class SwimObserver(Protocol):
 
 _OBSERVERS: dict[tuple[int, bool], Callable[[ResolvedSwim], SwimObserver]] = {
     (2, False): FreeSlice,
-    (2, True): HeldSlice,
+    (2, True): TetheredSlice,
     (3, False): FreeInSpace,
-    (3, True): HeldInSpace,
+    (3, True): TetheredInSpace,
 }
-"""Who samples and records a swim, by its axes and whether the body is held."""
+"""Who samples and records a swim, by its axes and whether the body is tethered."""
 
 
 def resolved_swim(
@@ -68,20 +68,20 @@ def resolved_swim(
         robot: who swims.
         motion: how: with its joints, or as a wave that its midline follows exactly.
         setting: grid, water, time, and what moves the body.
-        sway: harmonic of the displacement of a held body's snout to the right [m]; ``slender.recoil`` has those with
-            which it exchanges no lateral momentum with the water.
-        turn: harmonic of the direction of a held body's head [rad]; an exact wave brings its own.
+        sway: harmonic of the displacement of a tethered body's snout to the right [m]; ``slender.recoil`` has those
+            with which it exchanges no lateral momentum with the water.
+        turn: harmonic of the direction of a tethered body's head [rad]; an exact wave brings its own.
         checkpoint: file that the state is kept in at every quarter of a cycle; if it exists, the swim goes on from
             there. None keeps nothing.
         progress: told the share that is done; None shows a progress bar.
 
     Returns:
         Per metre of depth in the plane. *Free, in the plane*: ``speed`` and ``power`` per cycle, snout, heading, tail
-        and swing over the last two, fields at ``frames`` of the last. *Held, in the plane*: forces, moments and
+        and swing over the last two, fields at ``frames`` of the last. *Tethered, in the plane*: forces, moments and
         pressures along the tail over the last cycle, fields at its quarters; ``quarter_*`` hold what was at the
         quarters of every cycle but the first, which sets the water in motion. *Free, in space*: per cycle ``speed`` and
         ``thrust`` forward and ``power`` on the water; ``joint_torque`` over the last cycle, that of the water on what
-        lies behind each place of ``Outline.places``; wake and vortices at the end. *Held, in space*: over the last
+        lies behind each place of ``Outline.places``; wake and vortices at the end. *Tethered, in space*: over the last
         cycle ``thrust`` forward, ``aside`` to the right, ``power`` on the water, their means per cycle, ``sway`` [m]
         and ``turn`` [rad] of the head, cosine and sine.
 
@@ -94,7 +94,7 @@ def resolved_swim(
     """
     check_resolved_swim(robot, motion, setting, sway=sway, turn=turn)
     swim = ResolvedSwim(robot=robot, motion=motion, setting=setting, sway=sway, turn=turn)
-    sim, observer = flow.Simulation(swim.setup), _OBSERVERS[setting.axes, setting.held](swim)
+    sim, observer = flow.Simulation(swim.setup), _OBSERVERS[setting.axes, setting.tethered](swim)
     samples = run_on(
         sim, swim.end, swim.period / 4, observer.sample, about=swim.key, checkpoint=checkpoint, progress=progress
     )
@@ -133,7 +133,7 @@ def towed_drag(robot: Robot, speed: float, setting: SwimSetting, *, lengths: flo
 
     sim = flow.Simulation(
         flow.Setup(
-            grid=box_grid(outline, replace(setting, free=HELD), 0.0), viscosity=setting.viscosity, density=DENSITY,
+            grid=box_grid(outline, replace(setting, free=TETHERED), 0.0), viscosity=setting.viscosity, density=DENSITY,
             bodies=(straight_body(outline, setting),), stream=stream, sides=box_sides(setting),
             tolerance=setting.largest_divergence(),
         )

@@ -1,4 +1,4 @@
-"""How a swim is resolved by the flow solver: in the plane or in space, held or free, how finely, how long."""
+"""How a swim is resolved by the flow solver: in the plane or in space, tethered or free, how finely, how long."""
 
 from dataclasses import dataclass, replace
 
@@ -13,9 +13,9 @@ DENSITY = WATER_DENSITY
 """Of the water [kg/m3]."""
 GROWS = 0.5
 """Part of the first cycle in which the motion grows from nothing [cycle]."""
-FREE, ON_THE_SPOT, HELD = (True, True, True), (False, True, True), (False, False, False)
+FREE, ON_THE_SPOT, TETHERED = (True, True, True), (False, True, True), (False, False, False)
 """A body that nothing holds; one that is kept from moving on; one whose motion is given."""
-HELD_BOX, FREE_BOX = (2.75, 1.5), (3.5, 2.0)
+TETHERED_BOX, FREE_BOX = (2.75, 1.5), (3.5, 2.0)
 """Length and width of the box of a slice, where a setting gives none [body length]."""
 AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
 """In space: water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
@@ -48,12 +48,12 @@ class SwimSetting:
     """Number of cycles that are simulated; the last is measured [-]."""
     free: tuple[bool, bool, bool] = FREE
     """Whether the water moves the body along its course, to the side, and in yaw; what is not free keeps its place. All
-    False is a held body, whose head may be given a motion."""
+    False is a tethered body, whose head may be given a motion."""
     frames: int = 0
     """Instants of the last cycle at which the fields of a free body are kept, for films [-]."""
     box: tuple[float, float] | None = None
-    """In the plane: length and width of the box [body length]; None gives a held body 2.75 by 1.5, a free one 3.5 by
-    2."""
+    """In the plane: length and width of the box [body length]; None gives a tethered body 2.75 by 1.5, a free one
+    3.5 by 2."""
     blunt: float = 0.0
     """In the plane: least half-width; where the body is thinner it is thickened, its ends made round [cell]. With 1.75
     cells the force has the least noise; with 0 the body stays as it is."""
@@ -93,7 +93,7 @@ class SwimSetting:
                 )
 
     @property
-    def held(self) -> bool:
+    def tethered(self) -> bool:
         """Whether the body's whole motion is given."""
         return not any(self.free)
 
@@ -120,7 +120,7 @@ class SwimSetting:
         """
         if self.in_space:
             return self._grid_in_space(length, swing, height)
-        long, wide = self.box or (HELD_BOX if self.held else FREE_BOX)
+        long, wide = self.box or (TETHERED_BOX if self.tethered else FREE_BOX)
         ahead = (long - 0.5) / 3.0
         return flow.Grid.covering(
             (-ahead * length, (long - ahead) * length),

@@ -64,7 +64,7 @@ class FreeInSpace:
         return data.merge(self._film.record(samples))
 
 
-class HeldInSpace:
+class TetheredInSpace:
     """Forces on a body whose motion is given; the flow's own record is enough."""
 
     def __init__(self, swim: ResolvedSwim) -> None:

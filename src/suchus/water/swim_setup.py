@@ -40,9 +40,9 @@ class ResolvedSwim:
     setting: SwimSetting
     """Grid, water, time, and what moves the body."""
     sway: complex = 0j
-    """Harmonic of the displacement of a held body's snout to the right [m]."""
+    """Harmonic of the displacement of a tethered body's snout to the right [m]."""
     turn: complex = 0j
-    """Harmonic of the direction of a held body's head [rad]."""
+    """Harmonic of the direction of a tethered body's head [rad]."""
 
     @cached_property
     def outline(self) -> Outline:
@@ -70,14 +70,14 @@ class ResolvedSwim:
     @cached_property
     def head(self) -> tuple[complex, complex]:
         """Harmonics of the snout's sway [m] and of the head's direction [rad]: those given, or those to be expected."""
-        if self.setting.held:
+        if self.setting.tethered:
             return self.sway, self.turn
         return recoil(self.outline, self.motion, 0.0, Water())
 
     @cached_property
     def setup(self) -> flow.Setup:
         """What is simulated: the body, snout at the origin, in its box of water."""
-        length, free = self.robot.length, not self.setting.held
+        length, free = self.robot.length, not self.setting.tethered
         shape = body_shape(
             self.outline, self.motion, self.setting, sway=self.sway, turn=self.turn, grow=GROWS / self.motion.frequency
         )
@@ -99,10 +99,10 @@ class ResolvedSwim:
                 reach out of the box, or is too thin for the grid; the machine has not the memory; a free body's head is
                 given a motion.
         """
-        if not self.setting.held and (self.sway or self.turn):
+        if not self.setting.tethered and (self.sway or self.turn):
             raise InvalidDesign(
                 f"sway and turn of the head are {self.sway:.3g} m and {self.turn:.3g} rad, and the body is free: it "
-                "finds them itself. Leave them out, or hold the body with free=HELD."
+                "finds them itself. Leave them out, or tether the body with free=TETHERED."
             )
         if isinstance(self.motion, Swim):
             check_swim(self.robot, self.motion)

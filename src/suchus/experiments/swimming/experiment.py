@@ -35,7 +35,7 @@ from suchus.water import (
     readings_table,
     swim,
 )
-from suchus.water.resolved import FREE, HELD, SwimSetting, resolved_swim, towed_drag
+from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
 from suchus.water.samples import forget_kept, kept_in
 
 
@@ -185,7 +185,7 @@ class PlaneSwims(Experiment):
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
     def _held(self, name: str, fitted: Fit, progress: Progress) -> xr.Dataset:
-        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(HELD, self.cells, self.cycles)
+        kept, setting = kept_in(self.keep, f"held {name}"), self._setting(TETHERED, self.cells, self.cycles)
         return resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
     def _free(self, name: str, motion: Motion, cells: int, cycles: int, progress: Progress) -> xr.Dataset:
@@ -229,7 +229,7 @@ class PlaneSwims(Experiment):
     def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
         tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
-        setting, thrust = self._setting(HELD, self.readings_cells, self.cycles, self.readings_reynolds), []
+        setting, thrust = self._setting(TETHERED, self.readings_cells, self.cycles, self.readings_reynolds), []
         for i, letter in enumerate(self.readings):
             fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
             if fitted is None:
@@ -247,7 +247,7 @@ class PlaneSwims(Experiment):
     def _drag(self, speed: float, progress: Progress) -> float:
         progress("towing", 0.0)
         least = 0.02 * self.robot.length
-        setting = self._setting(HELD, self.coarse_cells, 1)
+        setting = self._setting(TETHERED, self.coarse_cells, 1)
         return towed_drag(self.robot, max(abs(speed), least), setting, lengths=self.tow)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
