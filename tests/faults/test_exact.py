@@ -29,9 +29,10 @@ class Turn:
     heard: tuple[list, ...] = ([],)
     feels = False
 
-    def start(self, robots, gaits, seeds, ticks, period):
-        column, rest = servo_names().index(self.joint), np.tile(LYING, (len(robots), 1))
-        outer = self
+    @staticmethod
+    def start(runs, period):
+        outer, count = runs.controls[0], len(runs.robots)
+        column, rest = servo_names().index(outer.joint), np.tile(LYING, (count, 1))
 
         class Machine:
             def rest(self):
@@ -42,7 +43,7 @@ class Turn:
                 targets[:, column] += outer.angles[min(tick, len(outer.angles) - 1)]
                 if sensed is not None:
                     outer.heard[0].append(sensed.servo_position.copy())
-                return Command(targets, np.zeros((len(robots), 4)))
+                return Command(targets, np.zeros((count, 4)))
 
         return Machine()
 

@@ -108,16 +108,17 @@ class Played:
     rows: tuple[tuple[float, ...], ...]
     feels = False
 
-    def start(self, robots, gaits, seeds, ticks, period):
-        rows = np.array(self.rows)
+    @staticmethod
+    def start(runs, period):
+        rows, count = np.array(runs.controls[0].rows), len(runs.robots)
 
         class Machine:
             def rest(self):
-                return np.tile(rows[0], (len(robots), 1))
+                return np.tile(rows[0], (count, 1))
 
             def command(self, tick, sensed):
                 row = rows[min(tick + 1, len(rows) - 1)]
-                return Command(np.tile(row, (len(robots), 1)), np.zeros((len(robots), 4)))
+                return Command(np.tile(row, (count, 1)), np.zeros((count, 4)))
 
         return Machine()
 

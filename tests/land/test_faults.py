@@ -2,7 +2,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from tests.start_batch import start_batch
 
 from suchus.control import Command, OpenLoop
 from suchus.design import crocodile, servo_names
@@ -151,8 +150,9 @@ class Listening:
 
     feels = True
 
-    def start(self, robots, gaits, seeds, ticks, period):
-        table, heard = start_batch(OpenLoop(), robots, gaits, seeds, ticks, period), self.heard[0]
+    @staticmethod
+    def start(runs, period):
+        table, heard = OpenLoop.start(runs, period), runs.controls[0].heard[0]
 
         class Machine:
             def rest(self):
