@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from suchus.motion.angle_table import check_table, table_targets
+from suchus.motion import check_limits, cycle_targets
 
 from suchus.design import layout
 from suchus.errors import InvalidDesign, UnsuitedRobot
@@ -19,9 +19,9 @@ ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]
 
 def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
     gait = played(ROBOT, 2.6)
-    check_table(ROBOT, gait)
+    check_limits(ROBOT, gait)
     place, clock = layout(ROBOT), np.arange(52) / 52
-    angles = table_targets(ROBOT, gait, clock)[:, list(place.axial_yaw)] * np.array(place.axial_left)
+    angles = cycle_targets(ROBOT, gait, clock)[:, list(place.axial_yaw)] * np.array(place.axial_left)
     first = np.fft.rfft(angles, axis=0)[1]
     names = [place.servos[i] for i in place.axial_yaw]
     order = [
@@ -36,7 +36,7 @@ def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
 
 
 def test_its_limbs_lie_back_along_the_body():
-    place, servos = layout(ROBOT), table_targets(ROBOT, played(ROBOT, 2.6), np.zeros(1))[0]
+    place, servos = layout(ROBOT), cycle_targets(ROBOT, played(ROBOT, 2.6), np.zeros(1))[0]
     angles = np.zeros(len(place.hinges))
     for i, name in enumerate(place.servos):
         angles[list(place.hinges).index(name)] = servos[i]
