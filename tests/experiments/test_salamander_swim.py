@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from suchus.motion import check_limits, cycle_targets
 
 from suchus.design import layout
 from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.salamander_swim.animal_swim import FREQUENCIES, STRIDE, envelope, played
 from suchus.kinematics.tree import landmarks
+from suchus.motion import check_limits, cycle_targets
 from suchus.robots import ROBOTS
 
 ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]

@@ -84,7 +84,7 @@ ARTICLE_BODY = ("legs", "shells", "article_spine", "cable_tail")
 
 
 def crocodile_like(robot: Robot) -> bool:
-    """Tell whether a robot has the measures of a crocodile-like body: legs, spine, tail and shells."""
+    """Return whether a robot has the measures of a crocodile-like body: legs, spine, tail and shells."""
     return not lacking(robot, ("legs", "shells", "spine", "tail"))
 
 

@@ -70,7 +70,7 @@ def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> F
 
 @lru_cache(maxsize=256)
 def _closed(robot: Robot) -> bool:
-    """Tell whether a robot has the chain of the closed form, and its pieces lie where that has them."""
+    """Return whether a robot has the chain of the closed form, and its pieces lie where that has them."""
     if lacking(robot, ("legs", "shells", "article_spine", "tail")):
         return False
     angles = 0.1 * np.arange(1.0, 1.0 + len(joint_names(robot)))
