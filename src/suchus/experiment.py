@@ -9,8 +9,8 @@ from typing import Any, ClassVar, Self
 
 import xarray as xr
 
-from suchus.design import Robot, check_needs
-from suchus.design.scale import coarse_step, scaled_fields
+from suchus.design import Robot, check_needs, layout
+from suchus.design.scale import coarse_step, control_period, scaled_fields
 from suchus.gaits import own_gait
 from suchus.motion import Gait, suits
 from suchus.progress import Progress, silent, staged
@@ -164,8 +164,8 @@ class Experiment(ABC):
     def on(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
-        Where the robot can follow the gaits, nothing else changes. If not, they become its own gait, and lengths,
-        times, forces and masses change with its size.
+        Where the robot has the same servos and about the same size and can follow the gaits, nothing else changes. If
+        not, they become its own gait, and lengths, times, forces and masses change with its size.
 
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
@@ -175,9 +175,10 @@ class Experiment(ABC):
         if "robot" not in names:
             return self
         values = {name: getattr(self, name) for name in names}
-        if all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
-            return replace(self, robot=robot)  # type: ignore[type-var]
         here: Robot = values["robot"]
+        alike = layout(robot).servos == layout(here).servos and control_period(robot) == control_period(here)
+        if alike and all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
+            return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
         sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
         if "timestep" in values:  # it divides the control period

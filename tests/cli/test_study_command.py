@@ -39,7 +39,7 @@ def test_a_study_says_where_its_results_are_and_what_failed(tmp_path, capsys):
     assert main(["study", "grip.toml", "--csv"]) == 0
     assert (tmp_path / "out" / "studies" / "grip" / "results.csv").is_file()
     header = (tmp_path / "out" / "studies" / "grip" / "csv" / "sample.csv").read_text().splitlines()[0].split(",")
-    assert header[:3] == ["sample", "ground.friction_scale", "gait.height [limb reach]"]
+    assert header[:3] == ["sample", "ground.friction_scale", "gait.height [reach of its limb]"]
     assert (tmp_path / "out" / "studies" / "grip" / "results.nc").stat().st_mtime_ns >= before
 
 

@@ -77,7 +77,7 @@ def test_figure_and_film_show_both():
     red, blue = ((ink[..., k] - ink[..., 2 - k] > 40).sum() for k in (0, 2))
     assert min(red, blue) > 1000
     told = []
-    data = vortices.film_vortices(record, told.append)
+    data = vortices.film_vortices(record, lambda _, share: told.append(share))
     assert told == pytest.approx([1 / 3, 2 / 3, 1.0])
     with Image.open(BytesIO(data)) as film:
         assert film.n_frames == 3

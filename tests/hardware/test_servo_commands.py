@@ -59,7 +59,7 @@ def test_a_rate_that_does_not_divide_the_cycle_still_closes_it(robot, crawl_gait
 
 def test_the_cable_follows_the_articles_equation_18(robot, crawl_gait):
     told = commands(robot, crawl_gait, STRAIGHT)
-    tail, bend = robot.tail, crawl_gait.tail_bend
+    tail, bend = robot.tail, crawl_gait.number("tail_bend")
     widest = tail.joints * tail.cord_spacing * np.sin(bend / (2 * tail.joints)) / tail.pulley
     assert abs(told.angles[:, servo_names().index("tail_cable")]).max() == pytest.approx(widest, rel=1e-3)
 
@@ -229,7 +229,7 @@ def test_the_trajectory_has_the_fields_of_the_ros_message_and_the_joints_of_the_
     np.testing.assert_allclose(places[:, :18], told.angles[:, :18], atol=1e-9)
     np.testing.assert_allclose(speeds[:, :18], told.speeds[:, :18], atol=1e-9)
     bend = places[:, 18:].sum(axis=1)
-    np.testing.assert_allclose(bend.max(), crawl_gait.tail_bend, rtol=1e-3)
+    np.testing.assert_allclose(bend.max(), crawl_gait.number("tail_bend"), rtol=1e-3)
     np.testing.assert_allclose(servo_angle(robot.tail, bend), told.angles[:, 18], atol=1e-8)
     np.testing.assert_allclose(places[:, 18:], places[:, 18:19].repeat(robot.tail.joints, axis=1), atol=1e-12)
     slope = (bend[2:] - bend[:-2]) / (told.time[2:] - told.time[:-2])

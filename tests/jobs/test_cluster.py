@@ -220,7 +220,7 @@ name = "s"
 [[vary]]
 field = "gait.stroke"
 low = 0.0
-high = 0.1
+high = 0.6
 """
 
 

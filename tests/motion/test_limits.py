@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.metres import with_metres
 
-from suchus.design import layout
+from suchus.design import crocodile, layout
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
@@ -34,7 +34,8 @@ WALKS = [("caiman", "belly_crawl"), ("strider", "tripod"), ("salamandra", "salam
 
 
 def test_a_joint_out_of_range_is_named_with_angle_and_range(robot, crawl_gait):
-    stiff = replace(robot, spine=replace(robot.spine, yaw_range=(-0.1, 0.1)))
+    tables = robot.tables
+    stiff = crocodile(replace(tables, spine=replace(tables.spine, yaw_range=(-0.1, 0.1))))
     with pytest.raises(OutsideLimits, match=r"asks spine_yaw_1 of robot 'caiman' for -?0\.\d+ rad; -0\.100 to 0\.100"):
         check_limits(stiff, crawl_gait)
     assert not suits(stiff, crawl_gait)

@@ -11,7 +11,7 @@ from tests.metres import with_metres
 
 from suchus.control import Coordinated, OpenLoop, Runs, Walking
 from suchus.control.limbs import LAWS
-from suchus.design import layout, servo_names
+from suchus.design import crocodile, layout, servo_names
 from suchus.design.scale import control_period
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, own_gait
@@ -405,7 +405,8 @@ def test_a_steered_leg_points_to_a_foot_out_of_reach_and_an_unsteered_one_is_ref
 
 
 def test_a_batch_of_different_gaits_and_bodies_says_what_each_says_alone(robot, crawl_gait):
-    other = replace(robot, name="other", thorax=replace(robot.thorax, shoulder=0.9 * robot.thorax.shoulder))
+    thorax = replace(robot.tables.thorax, shoulder=0.9 * robot.tables.thorax.shoulder)
+    other = crocodile(replace(robot.tables, name="other", thorax=thorax))
     gaits = [crawl_gait, crawl_gait.strode(0.5), GAITS["high_walk"], crawl_gait.lagged(0.1), GAITS["semi_erect"]]
     robots = [robot, robot, robot, other, other]
     rng = np.random.default_rng(0)

@@ -192,7 +192,7 @@ def test_the_command_leaves_gaits_numbers_and_a_page(page, tmp_path, monkeypatch
     for name, arm in told["arms"].items():
         gait = blueprint.read(result / f"{name}.toml", Gait, GAITS)
         assert gait.name == f"small_{name}"
-        assert gait.stroke == arm["best"][name]["fields"]["gait.stroke"]["best"]
+        assert gait.number("stroke") == arm["best"][name]["fields"]["gait.stroke"]["best"]
         assert set(arm["best"][name]["limits"]) == {"clearance"}
         record = simulate([Run(robot=read_optimisation(page).run.robot, gait=gait)], duration=1.3)
         fine = arm["best"][name]["checks"]["2 ms"]["aim_displacement"]

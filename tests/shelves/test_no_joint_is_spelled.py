@@ -15,11 +15,11 @@ from suchus.design import layout
 from suchus.robots import ROBOTS
 
 SOURCES = Path(__file__).parents[2] / "src" / "suchus"
-HOME = ("design", "robots", "gaits")
+HOME = ("design", "robots", "gaits", "faults")  # a fault's examples name a joint of the caiman
 COUNTS = {12, 14, 16, 17, 18, 19}
 """Of joints and servos of the article's robot, and places among them."""
 NOT_JOINTS = {
-    "tail_pitch": "a field of the article's kind of gait, and a group of servos in measures and legends",
+    "tail_pitch": "a number of a gait, and a group of servos in measures and legends",
     "tail_cable": "a group of servos in measures and legends",
     "LH_pitch": "the joint that joint_loops asks about unless another is named",
 }
@@ -28,9 +28,11 @@ WHERE = {
         "experiments/feedback/findings.py",
         "experiments/death_roll/experiment.py",
         "experiments/feedback/experiment.py",
-        "experiments/joint_faults/experiment.py",
+        "experiments/displacement/experiment.py",
         "experiments/death_roll/figure.py",
         "experiments/joint_loops/figure.py",
+        "control/tail.py",
+        "motion/forms.py",
         "motion/gait.py",
         "optimise/ready.py",
         "study/claims.py",

@@ -85,7 +85,7 @@ def test_an_arm_wins_over_what_varies_and_every_point_has_each(robot, crawl_gait
     )
     plan = Plan(asked)
     assert len(plan) == 8
-    bends = [(p.arm.name, plan.run(i).gait.trunk_bend) for i, p in enumerate(plan)]
+    bends = [(p.arm.name, plan.run(i).gait.number("trunk_bend")) for i, p in enumerate(plan)]
     assert {b for name, b in bends if name == "straight"} == {0.0}
     assert sorted(b for name, b in bends if name == "free") == [0.5, 0.5, 1.0, 1.0]
 

@@ -106,7 +106,7 @@ name = "displacement"
 [[vary]]
 field = "gait.stroke"
 low = 0.0
-high = 0.08
+high = 0.5
 """
 
 

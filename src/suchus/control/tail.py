@@ -75,7 +75,7 @@ class TailController:
         bends = np.abs(trunk) > _LEAST
         # bend and direction together are the trunk's whole wave, swing times order parameter
         wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
-        follows = tail * gaits.axis_phase(shared.limb_phase, clock)
+        follows = np.zeros_like(tail) if bends.all() else tail * gaits.axis_phase(shared.limb_phase, clock)
         follows[bends] = tail[bends] / trunk[bends] * wave[bends]
         return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 

@@ -17,7 +17,7 @@ def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with the servos of its limbs changed."""
 
     def in_limbs(design: Any) -> Any:
-        parts = {name: getattr(design, name) for name in _LIMBS if hasattr(design, name)}
+        parts = {field.name: getattr(design, field.name) for field in fields(design) if field.name in _LIMBS}
         return replace(design, **{name: _changed(part, change) for name, part in parts.items()})
 
     return remade(robot, in_limbs)

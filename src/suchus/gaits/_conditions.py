@@ -2,7 +2,7 @@
 
 from suchus.design import Robot, layout
 from suchus.gaits.limbs_tail_lifted import LIFTED
-from suchus.motion import Gait
+from suchus.motion import Gait, divided
 
 CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")
 """With spine and tail; with limbs only, the tail lying still; with limbs only, the tail in the air; with the trunk and
@@ -20,7 +20,7 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
         gait: with all of the axis.
         control: with limbs only.
     """
-    place = layout(robot)
+    place, gait = layout(robot), divided(robot, gait)
     behind = {*place.tail_yaw, *place.tail_pitch, *place.cables}
     ahead = set(place.axial_yaw) - behind
     lifts = place.tail_pitch and gait.has("steering")

@@ -6,6 +6,7 @@ from suchus.motion.gait import NUMBERS, Bend, Curve, FootPath, Gait, Held, Sweep
 from suchus.motion.limits import (
     as_table,
     check_limits,
+    divided,
     excess,
     longest_strokes,
     servo_parts,
@@ -62,6 +63,7 @@ __all__ = [
     "check_roll",
     "check_swim",
     "cycle_targets",
+    "divided",
     "draft_gait",
     "excess",
     "form_of",

@@ -453,7 +453,7 @@ def _of_limbs(kind: type[FootPath] | type[Sweep], name: str, unit: str, what: st
 
 
 def _yaw_of(gait: Gait, part: Part) -> list[Bend]:
-    return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part in (part, "axis")]
+    return [bend for bend in gait.axis if bend.turn == "yaw" and bend.part == part]
 
 
 def _bend_of(part: Part, what: str) -> Number:
@@ -466,7 +466,7 @@ def _bend_of(part: Part, what: str) -> Number:
         now = read(gait)
 
         def changed(bend: Bend) -> Bend:
-            if bend.turn != "yaw" or bend.part not in (part, "axis") or now == value:
+            if bend.turn != "yaw" or bend.part != part or now == value:
                 return bend
             if len(bend.amplitude) == 1 and bend.amplitude[0] == now:
                 return replace(bend, amplitude=(value,))
@@ -494,7 +494,7 @@ def _with_lag(gait: Gait, more: float, *parts: Part) -> Gait:
 
 
 def _axis_lag(gait: Gait) -> float:
-    return _first_lag(gait, "trunk", "axis") if _yaw_of(gait, "trunk") else _first_lag(gait, "neck", "tail")
+    return _first_lag(gait, "trunk", "axis") if _has_yaw(gait, "trunk", "axis") else _first_lag(gait, "neck", "tail")
 
 
 def _with_axis_lag(gait: Gait, value: float) -> Gait:
@@ -557,6 +557,7 @@ NUMBERS: Mapping[str, Number] = MappingProxyType(
         "crank": _of_limbs(Sweep, "stance", "rad", "the angle that a crank turns through in stance"),
         "trunk_bend": _bend_of("trunk", "the amplitude of the trunk's lateral bend"),
         "tail_bend": _bend_of("tail", "the amplitude of the tail's lateral bend"),
+        "axis_bend": _bend_of("axis", "the amplitude of the lateral bend of the whole axis"),
         "axis_lag": Number(
             "cycle", "the phase lag of the trunk's lateral bend behind the limbs", _has_yaw, _axis_lag, _with_axis_lag
         ),

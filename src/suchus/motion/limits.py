@@ -6,8 +6,8 @@ import numpy as np
 
 from suchus.design import Robot, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
-from suchus.motion.gait import Curve, Gait, ServoPart
-from suchus.motion.movement import Movement, cycle_targets, movement
+from suchus.motion.gait import Bend, Curve, Gait, Part, ServoPart
+from suchus.motion.movement import Movement, at_knot, cycle_targets, movement, yaw_hinges
 
 SAMPLES = 128
 """Looks over a cycle [-]."""
@@ -162,6 +162,30 @@ def servo_parts(robot: Robot) -> dict[str, ServoPart]:
         else:
             parts[name] = "trunk" if i in trunk else "neck"
     return parts
+
+
+def divided(robot: Robot, gait: Gait) -> Gait:
+    """Return a gait whose bends of the whole axis are given part by part, a knot for each hinge, so that one may go."""
+    hinges, axis = yaw_hinges(robot), []
+    parts: tuple[Part, ...] = ("neck", "trunk", "tail")
+    for bend in gait.axis:
+        if bend.part != "axis" or bend.turn != "yaw":
+            axis.append(bend)
+            continue
+        count = len(hinges.servos)
+        for part in parts:
+            among = hinges.within(part)
+            share = len(among) / count
+            if among:
+                axis.append(
+                    Bend(
+                        part=part,
+                        amplitude=tuple(share * at_knot(bend.amplitude, k, count) for k in among),
+                        lag=tuple(at_knot(bend.lag, k, count) for k in among),
+                        offset=share * bend.offset,
+                    )
+                )
+    return replace(gait, axis=tuple(axis))
 
 
 def servo_range(robot: Robot, name: str) -> tuple[float, float]:

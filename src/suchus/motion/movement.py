@@ -120,7 +120,7 @@ class Waves:
         self.moves = bool(self.swing.any()) or self._steady
 
     def bends(
-        self, z: Complex[np.ndarray, "*batch"], size: Float[np.ndarray, "*batch"] | float | None = None
+        self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
     ) -> Float[np.ndarray, "*batch hinge"]:
         """Return the bend of the whole part, as each hinge takes its share of it [rad]."""
         z = np.asarray(z)[..., None]
@@ -151,14 +151,14 @@ class Waves:
 
 def _swing(bend: Bend, place: int, count: int) -> complex:
     """Return the complex amplitude of a part's bend as its hinge number ``place`` sees it [rad]."""
-    amplitude, lag = (_at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
+    amplitude, lag = (at_knot(row, place, count) for row in (bend.amplitude, bend.lag))
     half = round(2.0 * lag)  # half cycles change the sign alone, and exactly
     rest = 2 * np.pi * (lag - half / 2.0)
     signed = amplitude if half % 2 else -amplitude
     return complex(signed) if rest == 0.0 else complex(signed * np.cos(rest), -signed * np.sin(rest))
 
 
-def _at_knot(row: tuple[float, ...], place: int, count: int) -> float:
+def at_knot(row: tuple[float, ...], place: int, count: int) -> float:
     """Return the value of knots, evenly spread over ``count`` hinges, at one of them."""
     if len(row) in (1, count):
         return row[place] if len(row) == count else row[0]
@@ -335,7 +335,9 @@ class Movement:
             for servo in self.place.cables:
                 among = [k for k, mine in enumerate(hinges.servos) if mine == servo]
                 most = self.place.cable(servo).bend_limit
-                whole = np.clip(hinges.signs[among[0]] * self.yaw.whole(among, bends), -most, most)
+                whole = hinges.signs[among[0]] * self.yaw.whole(among, bends)
+                if steer is not None:
+                    whole = np.clip(whole, -most, most)
                 targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), whole)
         if self.pitch.moves:
             bends = self.pitch.bends(axis, size)
@@ -443,7 +445,7 @@ def intended(robot: Robot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> Int
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
-    clock = np.maximum(np.asarray(time, dtype=float) - START, 0.0) / gait.period
+    clock = np.asarray(np.maximum(np.asarray(time, dtype=float) - START, 0.0) / gait.period)
     return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock))
 
 

@@ -90,6 +90,10 @@ GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
             label="trunk bend", unit="deg", low=0.0, high=120.0, step=1.0, scale=_DEGREE,
             hint="Amplitude of the sideways bend of the whole trunk.",
         ),
+        "axis_bend": Knob(
+            label="axis bend", unit="deg", low=0.0, high=720.0, step=5.0, scale=_DEGREE,
+            hint="Amplitude of the sideways bend of the whole axis, all its joints together.",
+        ),
         "axis_lag": Knob(
             label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
             hint="Phase lag of the trunk's bend behind the limbs; with half a cycle a crawl goes backwards.",

@@ -25,7 +25,7 @@ def gait_file(robot: Robot, settings: Settings) -> SavedFile:
         robot: the robot that walks.
         settings: sliders and switches.
     """
-    gait = settings.walked
+    gait = settings.walked(robot)
     if gait.name in GAITS and GAITS[gait.name] != gait:
         gait = replace(gait, name=f"{gait.name}_tuned")
     head = (f"Saved from a live walk of {robot.name}: suchus view {robot.name} {gait.name}.toml",)

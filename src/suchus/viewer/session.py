@@ -16,7 +16,7 @@ from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.land import Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import LIMBS_BACK, START, Gait, Swim, check_limits
+from suchus.motion import LIMBS_BACK, START, Gait, Swim, check_limits, divided
 from suchus.robots import beside_article
 from suchus.viewer.history import History
 from suchus.viewer.knobs import (
@@ -81,13 +81,12 @@ class Settings:
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
 
-    @property
-    def walked(self) -> Gait:
-        """The gait with the switches of spine and tail."""
+    def walked(self, robot: Robot) -> Gait:
+        """Return the gait of a robot with the switches of spine and tail."""
         if self.spine and self.tail:
             return self.gait
         still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
-        return self.gait.straightened(*still) if still else self.gait
+        return divided(robot, self.gait).straightened(*still)
 
     @property
     def lake(self) -> Lake | None:
@@ -284,7 +283,7 @@ class Session:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
-            robot=self.robot, gait=s.walked, ground=s.ground, lake=s.lake, control=s.control,
+            robot=self.robot, gait=s.walked(self.robot), ground=s.ground, lake=s.lake, control=s.control,
             faults=s.broken,
         )  # fmt: skip
         self._live = Live(run, timestep=self._timestep)
@@ -298,7 +297,7 @@ class Session:
     def _change(self, settings: Settings) -> str:
         """Walk on by other settings, or keep the old ones and say why."""
         try:
-            self._live.walk(settings.walked, settings.control)
+            self._live.walk(settings.walked(self.robot), settings.control)
         except SuchusError as error:
             return str(error)
         self.settings = settings

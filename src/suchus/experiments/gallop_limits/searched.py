@@ -4,7 +4,10 @@ from dataclasses import dataclass, replace
 
 from suchus.design.checks import Checks
 from suchus.gaits.belly_crawl import LIMBS
-from suchus.motion import Bend, Gait, GaitInMetres
+from suchus.motion import Bend, Gait, GaitInMetres, as_table
+from suchus.robots import ROBOTS
+
+_SAMPLES = 32  # of a cycle, with which the gaits were searched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,7 +25,7 @@ class Searched:
 
 
 def galloping(gait: GaitInMetres, *, mean: float, amplitude: float, down: float) -> Gait:
-    """Return a gait whose trunk bends up and down besides.
+    """Return a gait whose trunk bends up and down besides, the other joints as smooth curves as in the search.
 
     Args:
         gait: in metres of the article's robot.
@@ -30,9 +33,8 @@ def galloping(gait: GaitInMetres, *, mean: float, amplitude: float, down: float)
         amplitude: of that bend [rad].
         down: when in the cycle the trunk is bent down most [cycle].
     """
-    feet = gait.gait(LIMBS)
     lag = down + 0.5 - (0.75 - gait.duty_factor / 2)  # the phase of the axis counts from before mid-stance
     vertical = Bend(part="trunk", turn="pitch", amplitude=(amplitude,), lag=(lag,), offset=mean)
     # in a bound the pulls of left and right cancel in the article's law, and the trunk follows the gait's own phases
-    coupling = () if amplitude else feet.coupling
-    return replace(feet, axis=(*feet.axis, vertical), coupling=coupling)
+    curves = as_table(ROBOTS["caiman"], gait.gait(LIMBS), _SAMPLES)
+    return replace(curves, axis=(vertical,), coupling=() if amplitude else curves.coupling)
