@@ -67,8 +67,8 @@ class Sensitivity(Experiment):
             raise InvalidDesign(f"sensitivity.samples is {self.samples}; a power of two is needed, such as {near}.")
 
     def quick(self) -> "Sensitivity":
-        """Two samples, one cycle, a coarser time step."""
-        return replace(self, samples=2, cycles=1, timestep=0.01)
+        """Four samples, of which one cannot walk, one cycle, a coarser time step."""
+        return replace(self, samples=4, cycles=1, timestep=0.01)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Run every sample in every condition, and judge each by the rules of the verdicts."""
