@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 
 import xarray as xr
 
-from suchus.design import Robot, check_needs, layout
+from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, control_period, scaled_fields
 from suchus.gaits import own_gait
 from suchus.motion import Gait, suits
@@ -164,7 +164,7 @@ class Experiment(ABC):
     def on(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
-        Where the robot has the same servos and about the same size and can follow the gaits, nothing else changes. If
+        Where the robot walks in the same gait at about the same size, and can follow the gaits, nothing else changes. If
         not, they become its own gait, and lengths, times, forces and masses change with its size.
 
         Raises:
@@ -176,8 +176,9 @@ class Experiment(ABC):
             return self
         values = {name: getattr(self, name) for name in names}
         here: Robot = values["robot"]
-        alike = layout(robot).servos == layout(here).servos and control_period(robot) == control_period(here)
-        if alike and all(suits(robot, gait) for value in values.values() for gait in _gaits(value)):
+        gaits = [gait for value in values.values() for gait in _gaits(value)]
+        alike = not gaits or (control_period(robot) == control_period(here) and own_gait(robot) == own_gait(here))
+        if alike and all(suits(robot, gait) for gait in gaits):
             return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
         sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)

@@ -52,6 +52,7 @@ COLUMNS = {
     "design/pieces.py": "a row of the table of pieces",
     "record/provenance.py": "letters of a digest",
     "jobs/made_by.py": "letters of a digest",
+    "sources.py": "letters of a digest",
     "study/claims_table.py": "letters of a digest",
 }
 """Files with such a number in brackets, and what it means there."""
