@@ -164,8 +164,8 @@ class Experiment(ABC):
     def on(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
-        Where the robot walks in the same gait at about the same size, and can follow the gaits, nothing else changes. If
-        not, they become its own gait, and lengths, times, forces and masses change with its size.
+        Where the robot walks in the same gait at about the same size, and can follow the gaits, nothing else changes.
+        If not, they become its own gait, and lengths, times, forces and masses change with its size.
 
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
