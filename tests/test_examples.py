@@ -9,14 +9,16 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
-LONG = ("05", "06", "07", "08", "10", "11", "14", "15", "16", "17", "18")
-"""Flows, searches and studies of 4 s and more of processor time."""
+LONG = ("05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18")
+"""Flows, searches, studies and replays of 4 s and more of processor time."""
 
 
 @pytest.mark.parametrize(
     "example",
     [
-        pytest.param(e, id=e.stem, marks=[pytest.mark.slow("a whole flow, search or study")] * (e.name[:2] in LONG))
+        pytest.param(
+            e, id=e.stem, marks=[pytest.mark.slow("a whole flow, search, study or replay")] * (e.name[:2] in LONG)
+        )
         for e in EXAMPLES
     ],
 )

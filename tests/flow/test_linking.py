@@ -56,7 +56,6 @@ def told(script, cache):
     ).stdout.split()  # fmt: skip
 
 
-@pytest.mark.slow("kernels are compiled anew, and run a second and a third time")
 def forget(cache, kernel):
     """Take a kernel out of a cache folder."""
     files = [f for f in Path(cache).rglob("*.nb*") if f".{kernel}-" in f".{f.name}"]
@@ -65,6 +64,7 @@ def forget(cache, kernel):
         file.unlink()
 
 
+@pytest.mark.slow("kernels are compiled anew, and run a second and a third time")
 def test_the_same_bytes_cold_warm_partly_warm_and_on_two_threads(tmp_path):
     cold, warm = told(FEW, tmp_path), told(FEW, tmp_path)
     forget(tmp_path, "project.residual")

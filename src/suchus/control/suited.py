@@ -9,7 +9,7 @@ def crocodiles(robots: Sequence[Robot], what: str) -> list[Robot]:
     """Return the robots of a batch as the article's kind.
 
     Args:
-        robots: in either form.
+        robots: any robots.
         what: needs it, as the beginning of a sentence.
 
     Raises:

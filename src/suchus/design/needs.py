@@ -97,7 +97,7 @@ def check_needs(robot: Robot, needs: Sequence[str], what: str) -> Robot:
     """Return a robot that has what is needed; refuse one that lacks something.
 
     Args:
-        robot: in either form.
+        robot: any robot.
         needs: names of ``NEEDS``.
         what: needs it, as the beginning of a sentence.
 

@@ -214,7 +214,7 @@ class Task:
         actions is as many control periods.
 
         Args:
-            robot: in either form.
+            robot: any robot.
             gait: another gait; its own if None and it cannot follow that of now.
 
         Raises:
