@@ -15,7 +15,7 @@ from suchus.report import check_place, save_outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Done:
+class Performed:
     """An experiment that was run and saved."""
 
     outcome: Outcome
@@ -26,7 +26,7 @@ class Done:
     """Duration of running and drawing [s]."""
 
 
-def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Done:
+def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Performed:
     """Run an experiment, draw its figures and save all of it in ``out / name``.
 
     Args:
@@ -48,7 +48,7 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
             figures = experiment.draw(outcome)
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, out / name, command=command)
-    return Done(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+    return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
 
 
 def _plain_sums() -> AbstractContextManager[object]:

@@ -12,7 +12,7 @@ from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from suchus import experiment as contract
-from suchus.cli.perform import Done
+from suchus.cli.perform import Performed
 from suchus.progress import Progress
 from suchus.report import quantity
 
@@ -79,7 +79,7 @@ def working() -> Iterator[Bars]:
         yield Bars(progress)
 
 
-def show_outcome(question: contract.Experiment, done: Done) -> None:
+def show_outcome(question: contract.Experiment, done: Performed) -> None:
     """Print the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
