@@ -141,27 +141,27 @@ def test_when_it_walks_it_walks_the_gait():
 
 
 def test_it_lets_air_out_while_it_lands_as_fast_as_the_pump_goes():
-    machine = begun(replace(WAY, breathe_out=0.5, pump=0.5))
+    machine = begun(replace(WAY, air_released=0.5, pump=0.5))
     _, swam = feel(machine, [0.0] * 100)
     _, soon = feel(machine, [0.7] * 60, BEGIN + 100)
     _, lands = feel(machine, [0.7] * 100, BEGIN + 160)
     assert machine.landing[0]
     _, landed = feel(machine, [0.9] * 200, BEGIN + 260)
     assert not machine.landing[0]
-    assert swam.breath[0].tolist() == [1.0, 1.0]
-    assert 0.5 < soon.breath[0, 0] < 1.0
-    assert soon.breath[0, 1] == soon.breath[0, 0]
-    assert lands.breath[0] == pytest.approx(0.5)
-    assert landed.breath[0] == pytest.approx(1.0)
+    assert swam.air_fraction[0].tolist() == [1.0, 1.0]
+    assert 0.5 < soon.air_fraction[0, 0] < 1.0
+    assert soon.air_fraction[0, 1] == soon.air_fraction[0, 0]
+    assert lands.air_fraction[0] == pytest.approx(0.5)
+    assert landed.air_fraction[0] == pytest.approx(1.0)
 
 
 def test_it_takes_its_air_in_when_it_is_carried_off():
-    machine = begun(replace(WAY, breathe_out=0.5, pump=0.5))
+    machine = begun(replace(WAY, air_released=0.5, pump=0.5))
     _, lands = feel(machine, [0.5] * 300)
     walks, swims = feel(machine, [0.0] * 500, BEGIN + 300)
-    assert lands.breath[0] == pytest.approx(0.5)
+    assert lands.air_fraction[0] == pytest.approx(0.5)
     assert not walks[-1]
-    assert swims.breath[0] == pytest.approx(1.0)
+    assert swims.air_fraction[0] == pytest.approx(1.0)
 
 
 def test_it_wades_until_it_has_landed_and_then_walks_its_gait():
@@ -184,19 +184,19 @@ def test_it_wades_until_it_has_landed_and_then_walks_its_gait():
 
 
 def test_a_robot_that_begins_on_land_walks_its_gait_and_keeps_its_air():
-    way = replace(WAY, begins="walking", wade=GAITS["semi_erect"], breathe_out=1.0)
+    way = replace(WAY, begins="walking", wade=GAITS["semi_erect"], air_released=1.0)
     plain, wading = (begun(one, load=1.0) for one in (replace(WAY, begins="walking"), way))
     _, one = feel(plain, [1.0] * 100)
     _, two = feel(wading, [1.0] * 100)
     assert np.array_equal(one.targets, two.targets)
-    assert two.breath[0].tolist() == [1.0, 1.0]
+    assert two.air_fraction[0].tolist() == [1.0, 1.0]
 
 
-def test_breath_that_is_commanded_reaches_the_water():
-    way = replace(WAY, touch=0.0, memory=0.0, change=0.05, patience=0.0, breathe_out=1.0, pump=100.0)
+def test_an_air_fraction_that_is_commanded_reaches_the_water():
+    way = replace(WAY, touch=0.0, memory=0.0, change=0.05, patience=0.0, air_released=1.0, pump=100.0)
     runs = [Run(robot=ROBOT, gait=GAIT, lake=Lake(level=0.06), control=one) for one in (WAY, way)]
     record = simulate(runs, duration=START + 0.8)
-    assert record.breath.min("time").values == pytest.approx([1.0, 0.0])
+    assert record.air_fraction.min("time").values == pytest.approx([1.0, 0.0])
 
 
 def test_what_others_of_its_batch_do_changes_nothing():
@@ -222,11 +222,11 @@ def test_what_others_of_its_batch_do_changes_nothing():
     [
         (lambda: replace(WAY, aground=0.02), "aground must be the greatest"),
         (lambda: replace(WAY, afloat=0.9), "aground must be the greatest"),
-        (lambda: replace(WAY, breathe_out=2.0), "breathe_out is 2"),
+        (lambda: replace(WAY, air_released=2.0), "air_released is 2"),
         (lambda: replace(WAY, change=0.0), "change is 0 s"),
         (lambda: replace(WAY, swim=Swimming(swim=WAVE, depth=DepthHold(depth=1.0))), "leave out swim.depth"),
         (
-            lambda: start_batch(replace(WAY, breathe_out=0.5), [ROBOTS["caiman"]], [GAIT], [0], 10, PERIOD),
+            lambda: start_batch(replace(WAY, air_released=0.5), [ROBOTS["caiman"]], [GAIT], [0], 10, PERIOD),
             "no air that it could let out",
         ),
         (lambda: HeadingHold(gain=-1.0), "heading_hold.gain is -1"),

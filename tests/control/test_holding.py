@@ -8,7 +8,7 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 
 from suchus.control import DepthHold, HeadingHold, Swimming
-from suchus.control.holding import Depths, Headings, neutral_breath
+from suchus.control.holding import Depths, Headings, neutral_air_fraction
 from suchus.design import WATER_DENSITY
 from suchus.design.pieces import volumes
 from suchus.errors import InvalidDesign, OutsideLimits
@@ -28,10 +28,10 @@ def sensed(*, yaw=0.0, depth=0.0):
     return feels(ROBOT, orientation=about(UP, yaw), depth=depth)
 
 
-def test_neutral_breath_weighs_what_it_displaces():
-    spare = sum(volumes(ROBOT).values()) - (1.0 - neutral_breath(ROBOT)) * ROBOT.hull.air
+def test_neutral_air_fraction_weighs_what_it_displaces():
+    spare = sum(volumes(ROBOT).values()) - (1.0 - neutral_air_fraction(ROBOT)) * ROBOT.hull.air
     assert spare * WATER_DENSITY == pytest.approx(ROBOT.mass, rel=1e-9)
-    assert 0.0 < neutral_breath(ROBOT) < 1.0
+    assert 0.0 < neutral_air_fraction(ROBOT) < 1.0
 
 
 @pytest.mark.parametrize("turned", [0.2, -0.2])
@@ -78,24 +78,24 @@ def test_what_pushes_to_one_side_all_the_time_is_learnt():
 
 
 def depth_after(rule, seconds, leak=0.0):
-    """Return depth and breath over time of a body that weighs as the air says and meets quadratic drag."""
+    """Return depth and air fraction over time of a body that weighs as the air says and meets quadratic drag."""
     hold, z, w, found = Depths([rule], [ROBOT], PERIOD), 0.09, 0.0, []
-    neutral = neutral_breath(ROBOT)
+    neutral = neutral_air_fraction(ROBOT)
     for _ in range(round(seconds / PERIOD)):
-        breath = hold.breath(sensed(depth=z))[0]
-        down = -(breath - neutral) * ROBOT.hull.air * 1000 * 9.81 + leak
+        air_fraction = hold.air_fraction(sensed(depth=z))[0]
+        down = -(air_fraction - neutral) * ROBOT.hull.air * 1000 * 9.81 + leak
         w += PERIOD * (down - 30.0 * abs(w) * w) / 9.0
         z = max(z + PERIOD * w, 0.0)
-        found.append((z, breath))
+        found.append((z, air_fraction))
     return np.array(found).T
 
 
 def test_the_error_of_the_depth_settles_within_two_centimetres():
-    depth, breath = depth_after(DepthHold(depth=0.6), 40.0)
+    depth, air_fraction = depth_after(DepthHold(depth=0.6), 40.0)
     assert np.abs(depth[-500:] - 0.6).max() < 0.02
     assert depth.max() < 0.8
-    assert ((breath >= 0.0) & (breath <= 1.0)).all()
-    assert np.abs(np.diff(breath)).max() <= 0.25 * PERIOD + 1e-12
+    assert ((air_fraction >= 0.0) & (air_fraction <= 1.0)).all()
+    assert np.abs(np.diff(air_fraction)).max() <= 0.25 * PERIOD + 1e-12
     floats, _ = depth_after(DepthHold(depth=0.6, gain=0.0, rate_gain=0.0, integral_gain=0.0), 40.0)
     assert np.abs(floats[-500:] - 0.6).min() > 0.1
 
@@ -138,9 +138,9 @@ def test_a_swim_holds_heading_and_depth_in_the_water():
         (lambda: DepthHold(depth=1.0, near=-0.1), InvalidDesign, "depth_hold.near is -0.1 m"),
         (lambda: DepthHold(depth=1.0, pump=0.0), InvalidDesign, "depth_hold.pump is 0 1/s"),
         (lambda: HeadingHold(direction=9.0), InvalidDesign, "heading_hold.direction is 9 rad"),
-        (lambda: neutral_breath(ROBOTS["caiman"]), InvalidDesign, "give it a design.Hull with as much air"),
+        (lambda: neutral_air_fraction(ROBOTS["caiman"]), InvalidDesign, "give it a design.Hull with as much air"),
         (
-            lambda: neutral_breath(replace(ROBOT, hull=replace(ROBOT.hull, air=1e-5))),
+            lambda: neutral_air_fraction(replace(ROBOT, hull=replace(ROBOT.hull, air=1e-5))),
             InvalidDesign,
             "would have to let out",
         ),

@@ -11,7 +11,7 @@ from tests.start_batch import start_batch
 
 from suchus import rotation
 from suchus.control import DepthHold, PitchHold, Sensed, Swimming
-from suchus.control.holding import neutral_breath
+from suchus.control.holding import neutral_air_fraction
 from suchus.control.trim import Pitches
 from suchus.design.pieces import chambers
 from suchus.errors import InvalidDesign
@@ -47,12 +47,12 @@ def test_a_nose_that_is_down_gets_air_ahead_and_the_whole_stays(pitch, rate):
 
 
 @given(st.floats(0.0, 1.0), st.floats(-1.5, 1.5), st.floats(-5.0, 5.0))
-def test_no_chamber_is_more_than_full_or_less_than_empty(breath, pitch, rate):
+def test_no_chamber_is_more_than_full_or_less_than_empty(air_fraction, pitch, rate):
     machine = hold(PitchHold(memory=0.0, pump=100.0, integral_gain=5.0))
     for _ in range(3):
-        kept = machine.split(np.array([breath]), sensed(pitch=pitch, rate=rate))[0]
+        kept = machine.split(np.array([air_fraction]), sensed(pitch=pitch, rate=rate))[0]
         assert ((kept >= -1e-12) & (kept <= 1.0 + 1e-12)).all()
-        assert kept @ AIR == pytest.approx(breath * AIR.sum(), abs=1e-15)
+        assert kept @ AIR == pytest.approx(air_fraction * AIR.sum(), abs=1e-15)
 
 
 def test_air_moves_no_faster_than_the_pump():
@@ -64,7 +64,7 @@ def test_air_moves_no_faster_than_the_pump():
         before = kept
 
 
-def test_breath_that_is_left_to_the_lake_stays_so_and_another_run_is_not_touched():
+def test_an_air_fraction_that_is_left_to_the_lake_stays_so_and_another_run_is_not_touched():
     machine = Pitches([PitchHold(**FAST), None], [0.6, 0.6], [ROBOT, ROBOT], PERIOD)
     felt = sensed(pitch=0.1)
     both = {name: np.repeat(getattr(felt, name), 2, axis=0) for name in Sensed.__dataclass_fields__ if name != "time"}
@@ -85,7 +85,7 @@ def test_it_dives_nose_down_and_rises_nose_up_and_no_steeper_than_asked():
 def pitch_after(rule, seconds, moment=0.0):
     """Return the pitch over time of a hovering body that is pushed nose down, in quadratic drag."""
     machine, theta, q, found = hold(rule), 0.6, 0.0, []
-    neutral = neutral_breath(ROBOT)
+    neutral = neutral_air_fraction(ROBOT)
     for _ in range(round(seconds / PERIOD)):
         kept = machine.split(np.array([neutral]), sensed(pitch=theta, rate=q))[0]
         ahead = (kept[0] - neutral) * AIR[0] * 1000 * 9.81
@@ -123,8 +123,8 @@ def test_a_swim_at_depth_is_level_and_with_the_air_in_its_foam_nose_up():
     depth = (end.water_level - end.position.sel(xyz="z")).values
     assert np.abs(depth[0] - 0.5).max() < 0.05
     air = end.isel(run=0)
-    rear = (air.breath - air.breath_front * AIR[0] / AIR.sum()) * AIR.sum() / AIR[1]
-    assert float(np.abs(air.breath_front - rear).max()) > 0.01  # it does move air
+    rear = (air.air_fraction - air.air_fraction_front * AIR[0] / AIR.sum()) * AIR.sum() / AIR[1]
+    assert float(np.abs(air.air_fraction_front - rear).max()) > 0.01  # it does move air
 
 
 @pytest.mark.parametrize(

@@ -243,7 +243,7 @@ def test_servos_lose_torque_with_speed_in_water_too():
         ("Swim", {"goal": 3}, InvalidDesign, "a Goal or Landing or None is needed"),
         ("Shore", {"ground": Ground()}, InvalidDesign, "it needs a lake and ground that rises ahead"),
         ("Crawl", {"goal": envs.Landing()}, InvalidDesign, r"task\.lake is None and"),
-        ("Crawl", {"lake": Lake(level=0.1, breath=0.5)}, InvalidDesign, "has no air that it could let out"),
+        ("Crawl", {"lake": Lake(level=0.1, air_fraction=0.5)}, InvalidDesign, "has no air that it could let out"),
     ],
 )
 def test_what_cannot_swim_is_refused_in_a_sentence(task, changes, error, text):

@@ -37,7 +37,7 @@ def kept(**changes):
     found = xr.Dataset({name: (("case", "moment"), value) for name, value in values.items()}, {"moment": moment})
     cases = {
         "kind": ["ashore"] * 3, "walk": ["crawl"] * 3, "slope": [0.1, 0.1, 0.2], "grip": [0.6, 1.0, 1.0],
-        "breathed_out": [0.5] * 3, "switches": [1, 1, 2],
+        "air_released": [0.5] * 3, "switches": [1, 1, 2],
     }  # fmt: skip
     for name, value in cases.items():
         found[name] = ("case", np.array(value))
@@ -93,8 +93,8 @@ def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
     assert found["ashore_share_steepest"].value == 0.0
     assert found["ashore_share_least_grip"].value == 1.0
     assert found["ashore_share_most_grip"].value == 0.0
-    assert found["ashore_share_breathed_out_0"].value == 0.0
-    assert found["breathed_out_0"].value == 0.5
+    assert found["ashore_share_air_released_0"].value == 0.0
+    assert found["air_released_0"].value == 0.5
 
 
 def test_a_metre_costs_power_over_speed():
@@ -214,7 +214,7 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
         ({"slopes": (0.0,)}, "slopes is"),
         ({"friction_scales": ()}, "friction_scales is \\(\\)"),
         ({"seeds": 0}, "seeds is 0"),
-        ({"breathe_out": 1.5}, "breathe_out is 1.5"),
+        ({"air_released": 1.5}, "air_released is 1.5"),
         ({"approach": 1.5}, "approach is 1.5"),
         ({"duration": 0.1}, "duration is 0.1 s"),
     ],

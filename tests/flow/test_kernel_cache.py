@@ -52,13 +52,13 @@ def test_an_edit_of_a_kernel_that_others_call_is_another_folder(room):
 
 
 def test_the_forces_of_water_have_such_a_folder_too(tmp_path, monkeypatch):
-    (tmp_path / "table.py").write_text("BREATH = 6\n")
+    (tmp_path / "table.py").write_text("AIR_FRACTION = 6\n")
     monkeypatch.setattr(vectors, "_HERE", tmp_path)
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     before = vectors.folder()
     assert before.parent == tmp_path / "__pycache__"
     assert vectors.folder() == before
-    (tmp_path / "table.py").write_text("BREATH = 7\n")  # no kernel stands in this file
+    (tmp_path / "table.py").write_text("AIR_FRACTION = 7\n")  # no kernel stands in this file
     assert vectors.folder() != before
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from suchus.control import Swimming
-from suchus.control.holding import neutral_breath
+from suchus.control.holding import neutral_air_fraction
 from suchus.design import Chamber, Hull, layout
 from suchus.design.flotation import float_hull
 from suchus.design.pieces import SOLID, chambers, masses, pieces, volumes
@@ -49,23 +49,25 @@ def test_what_hovers_is_displaced_where_the_mass_is():
     table = unpacked(model.numeric_data)
     ids = table[:, 0].astype(int)
     at = data.xpos[ids] + np.einsum("nij,nj->ni", data.xmat[ids].reshape(-1, 3, 3), column(table, "at"))
-    kept = column(table, "volume")[:, 0] - (1.0 - neutral_breath(ROBOT)) * column(table, "air").sum(axis=1)
+    kept = column(table, "volume")[:, 0] - (1.0 - neutral_air_fraction(ROBOT)) * column(table, "air").sum(axis=1)
     assert kept.sum() * 1000.0 == pytest.approx(ROBOT.mass, rel=1e-9)
     assert (kept @ at / kept.sum())[0] == pytest.approx(data.subtree_com[1][0], abs=1e-9)
 
 
 def test_it_hovers_level_and_with_the_air_in_its_foam_it_did_not():
-    breath = neutral_breath(ROBOT)
-    level, steep = (hydrostatics(one, BACK, breath=breath, heels=3) for one in (ROBOT, IN_FOAM))
+    air_fraction = neutral_air_fraction(ROBOT)
+    level, steep = (hydrostatics(one, BACK, air_fraction=air_fraction, heels=3) for one in (ROBOT, IN_FOAM))
     assert abs(level.trim_submerged) < 1e-6
     assert np.degrees(steep.trim_submerged) > 30.0  # nose up
     assert level.metacentric_height > 0.004
 
 
 def test_air_that_moves_ahead_raises_the_nose():
-    breath, (front, rear) = neutral_breath(ROBOT), chambers(ROBOT)
+    air_fraction, (front, rear) = neutral_air_fraction(ROBOT), chambers(ROBOT)
     for moved in (2e-5, -2e-5):
-        found = hydrostatics(ROBOT, BACK, breath=(breath + moved / front, breath - moved / rear), heels=3)
+        found = hydrostatics(
+            ROBOT, BACK, air_fraction=(air_fraction + moved / front, air_fraction - moved / rear), heels=3
+        )
         assert found.volume * 1000.0 == pytest.approx(ROBOT.mass)
         assert np.sign(found.trim_submerged) == np.sign(moved)
         assert abs(found.trim_submerged) > 0.2

@@ -67,15 +67,15 @@ def test_a_record_tells_of_the_water_and_dry_runs_beside_say_that_there_is_none(
     assert "share_under" not in simulate(runs(None), duration=0.05)
 
 
-def test_level_and_breath_change_while_the_run_goes():
+def test_level_and_air_fraction_change_while_the_run_goes():
     robot = ROBOTS["floating_caiman"]
-    rising = Lake(level=((0.0, 0.0), (0.2, 0.1)), breath=((0.0, 1.0), (0.2, 0.5)))
+    rising = Lake(level=((0.0, 0.0), (0.2, 0.1)), air_fraction=((0.0, 1.0), (0.2, 0.5)))
     record = crawl(robot, "belly_crawl", duration=0.4, lake=rising)
     assert float(record.water_level.sel(time=0.1, method="nearest")) == pytest.approx(0.05, abs=0.006)
     assert float(record.water_level[-1]) == pytest.approx(0.1)
-    assert float(record.breath[-1]) == pytest.approx(0.5)
+    assert float(record.air_fraction[-1]) == pytest.approx(0.5)
     # let out at once, half the air weighs as much less as its water
-    still = [crawl(robot, "belly_crawl", duration=0.01, lake=Lake(level=9.0, breath=b)) for b in (1.0, 0.5)]
+    still = [crawl(robot, "belly_crawl", duration=0.01, lake=Lake(level=9.0, air_fraction=b)) for b in (1.0, 0.5)]
     less = float(still[0].water_force[0, 2] - still[1].water_force[0, 2])
     assert less > 0.0
 
@@ -85,7 +85,9 @@ def test_air_let_out_weighs_as_much_as_its_water():
     heavy = replace(bare, hull=replace(bare.hull, density=500.0))  # sinks whichever: all of it stays under water
     force = [
         float(
-            crawl(heavy, "belly_crawl", duration=0.01, lake=Lake(level=9.0, breath=b, added_mass=0.0)).water_force[0, 2]
+            crawl(
+                heavy, "belly_crawl", duration=0.01, lake=Lake(level=9.0, air_fraction=b, added_mass=0.0)
+            ).water_force[0, 2]
         )
         for b in (1.0, 0.5)
     ]
@@ -148,7 +150,7 @@ def test_it_swims_forward_and_backward_with_the_wave():
         (lambda: Lake(level=nan), r"lake.level is nan m; -1000 to 1000 m is allowed"),
         (lambda: Lake(level=2e3), r"lake.level is 2000 m"),
         (lambda: Lake(level=((1.0, 0.0), (0.5, 0.1))), "the times rising"),
-        (lambda: Lake(level=0.0, breath=1.5), r"lake.breath is 1.5; 0 to 1 is allowed"),
+        (lambda: Lake(level=0.0, air_fraction=1.5), r"lake.air_fraction is 1.5; 0 to 1 is allowed"),
         (lambda: Lake(level=0.0, current=(inf, 0.0)), r"current\[0\] is inf m/s; -5 to 5 m/s is allowed"),
         (lambda: Lake(level=0.0, wave=Wave(height=0.5, length=1.0)), "steeper than 0.142, where waves break"),
         (lambda: Wave(height=0.1, length=0.0), "length is 0 m"),
@@ -158,7 +160,7 @@ def test_it_swims_forward_and_backward_with_the_wave():
         (lambda: Water(cross_drag=-1.0), "water.cross_drag is -1"),
         (lambda: Run(robot="caiman", gait="belly_crawl", lake=Lake(level=0.0), afloat=VACUUM), "not in both"),
         (
-            lambda: crawl("caiman", "belly_crawl", duration=0.1, lake=Lake(level=0.0, breath=0.5)),
+            lambda: crawl("caiman", "belly_crawl", duration=0.1, lake=Lake(level=0.0, air_fraction=0.5)),
             "no air that it could",
         ),
         (lambda: Swimming(swim=WAVE, turn=9.0), "swimming.turn is 9 rad"),
@@ -179,7 +181,7 @@ def test_a_robot_that_sinks_is_told_by_how_much_and_one_that_floats_is_not():
     assert f"{lacking / 0.96:.2f} l more foam" in str(refused.value)
     check_floats(floating, Lake(level=1.0))
     with pytest.raises(InvalidDesign, match="keep more of its air"):
-        check_floats(floating, Lake(level=1.0, breath=0.0))
+        check_floats(floating, Lake(level=1.0, air_fraction=0.0))
     check_floats(caiman, Lake(level=1.0, water=Water(density=2000.0)))
 
 

@@ -83,10 +83,10 @@ def test_the_lever_begins_with_the_metacentric_height(floating):
 
 
 def test_air_let_out_takes_buoyancy(floating):
-    less = hydrostatics(FLOATING, POSTURE, breath=0.6, heels=3)
+    less = hydrostatics(FLOATING, POSTURE, air_fraction=0.6, heels=3)
     assert floating.volume - less.volume == pytest.approx(0.4 * FLOATING.hull.air)
     assert less.draft > floating.draft
-    assert not hydrostatics(FLOATING, POSTURE, breath=0.0, heels=3).floats
+    assert not hydrostatics(FLOATING, POSTURE, air_fraction=0.0, heels=3).floats
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_where_the_lever_vanishes(floating, lever, expected):
     ("given", "message"),
     [
         ({"density": 0.0}, "density is 0 kg/m3"),
-        ({"breath": 2.0}, "breath is 2; 0 to 1"),
+        ({"air_fraction": 2.0}, "air_fraction is 2; 0 to 1"),
         ({"servos": np.zeros(3)}, "3 servo angles are given and robot 'caiman' has 19"),
     ],
 )

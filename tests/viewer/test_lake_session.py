@@ -1,4 +1,4 @@
-"""A live swim without a browser: it floats, its water and its breath can be turned, and it can walk again."""
+"""A live swim without a browser: it floats, its water and its air fraction can be turned, and it can walk again."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def test_it_floats_at_the_surface_and_says_how_much_of_it_is_under():
 
 
 def test_it_follows_the_level_and_sinks_without_its_air():
-    kept, let_out = afloat(0.8), afloat(0.8, breath=0.0)
+    kept, let_out = afloat(0.8), afloat(0.8, air_fraction=0.0)
     lower = afloat(0.8, level=550.0)
     assert height(let_out) < height(kept) - 0.01
     assert height(lower) < height(kept) - 0.02
@@ -60,10 +60,10 @@ def test_it_walks_where_it_is_told_to_and_swims_again():
     assert session.look().level == 0.6
 
 
-def test_a_robot_without_air_keeps_its_breath_and_is_told_why():
+def test_a_robot_without_air_keeps_its_air_and_is_told_why():
     session = Session(ROBOTS["caiman"], CRAWL, swim=WAVE)
-    assert "no air that it could let out" in session.put("breath", 50.0)
-    assert session.settings.breath == 1.0
+    assert "no air that it could let out" in session.put("air_fraction", 50.0)
+    assert session.settings.air_fraction == 1.0
 
 
 def test_on_dry_land_there_is_no_water():

@@ -52,7 +52,7 @@ class Amphibious:
     """How long a change of posture takes [s]."""
     patience: float = 1.0
     """Least time between the end of a change and the next [s]."""
-    breathe_out: float = 0.0
+    air_released: float = 0.0
     """Share of the air of the hull that it lets out while it lands [-]."""
     pump: float = 0.25
     """Rate at which the share of the air changes [1/s]."""
@@ -72,7 +72,7 @@ class Amphibious:
             check.number("memory", 0.0, 60.0, "s")
             check.number("change", 0.05, 60.0, "s")
             check.number("patience", 0.0, 600.0, "s")
-            check.number("breathe_out", 0.0, 1.0, "")
+            check.number("air_released", 0.0, 1.0, "")
             check.number("pump", 1e-3, 100.0, "1/s")
             check.that(
                 self.begins in ("swimming", "walking"),
@@ -95,7 +95,7 @@ class Amphibious:
         Raises:
             OutsideLimits: a robot cannot follow its swim, or a gait has measured curves.
             UnsuitedRobot: a robot does not swim by trunk and cable.
-            InvalidDesign: a robot that is to breathe out has no air.
+            InvalidDesign: a robot that is to let air out has no air.
         """
         controls, robots, gaits = runs.controls, runs.robots, runs.gaits
         wades = tuple(control.wade or gait for control, gait in zip(controls, gaits, strict=True))
@@ -103,9 +103,9 @@ class Amphibious:
             gait.needs_steering("a walk that begins and ends in water")
         for control, robot in zip(controls, robots, strict=True):
             hull = robot.hull
-            if control.breathe_out > 0.0 and (hull is None or hull.air == 0.0):
+            if control.air_released > 0.0 and (hull is None or hull.air == 0.0):
                 raise InvalidDesign(
-                    f"amphibious.breathe_out is {control.breathe_out:g}, and robot {robot.name!r} has no air that it "
+                    f"amphibious.air_released is {control.air_released:g}, and robot {robot.name!r} has no air that it "
                     "could let out: leave it at 0, or give the robot a design.Hull with air."
                 )
         swims = Swimming.start(runs._replace(controls=tuple(control.swim for control in controls)), period)
@@ -127,7 +127,7 @@ class Amphibian:
         self._period, self._swims = period, swims
         self._touch, self._afloat, self._aground, self._change, self._patience, self._out, self._pump = (
             np.array([getattr(control, name) for control in controls])
-            for name in ("touch", "afloat", "aground", "change", "patience", "breathe_out", "pump")
+            for name in ("touch", "afloat", "aground", "change", "patience", "air_released", "pump")
         )
         self._kept = np.array([keep(control.memory, period) for control in controls])
         self._weight = np.array([robot.mass * GRAVITY for robot in robots])
@@ -144,7 +144,7 @@ class Amphibian:
         self._since = np.where(self.walking, np.inf, 0.0)  # the last change [s]
         self._cycles = np.zeros(n)  # walked so far [cycle]
         self._grown = np.zeros(n)  # walked without a break [cycle]
-        self._breath = np.ones(n)
+        self._air_fraction = np.ones(n)
         self._cycle, self._wade_cycle = (np.array([gait.period for gait in each]) for each in (gaits, wades))
         self._phases, self._wade_phases = (np.array([gait.limb_phases for gait in each]) for each in (gaits, wades))
         self._heading = Heading([one.heading for one in controls], robots, gaits, period)
@@ -172,7 +172,7 @@ class Amphibian:
         phase = self._phase
         if time >= START - _SLACK:
             self._advance()
-        return Command(targets, phase, np.column_stack([self._breath, self._breath]))
+        return Command(targets, phase, np.column_stack([self._air_fraction, self._air_fraction]))
 
     @property
     def _phase(self) -> np.ndarray:
@@ -212,7 +212,7 @@ class Amphibian:
         self._landed = np.where(walks | ~self.walking, landed, 1.0 - self.landing)  # it stands up to wade
         asked = 1.0 - self._out * self.landing
         most = self._pump * self._period
-        self._breath = self._breath + np.clip(asked - self._breath, -most, most)
+        self._air_fraction = self._air_fraction + np.clip(asked - self._air_fraction, -most, most)
 
     def _mixed(self, swum: np.ndarray) -> np.ndarray:
         """Return the posture between that of the swim and that of the walk, shape (run, servo) [rad]."""

@@ -17,7 +17,7 @@ class Command(NamedTuple):
     """Servo angles [rad]."""
     phase: Float[np.ndarray, "run limb"]
     """Phase of each limb, not wrapped [cycle]."""
-    breath: Float[np.ndarray, "run 2"] | None = None
+    air_fraction: Float[np.ndarray, "run 2"] | None = None
     """Share of the air that is kept in the front and in the rear chambers of each robot's hull, 0 to 1, NaN to leave it
     to the lake [-]; None for all."""
 

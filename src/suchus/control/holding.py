@@ -75,7 +75,7 @@ class DepthHold:
             check.number("pump", 1e-3, 100.0, "1/s")
 
 
-def neutral_breath(robot: Robot) -> float:
+def neutral_air_fraction(robot: Robot) -> float:
     """Return the share of its hull's air with which a robot under fresh water neither sinks nor rises [-].
 
     Raises:
@@ -118,14 +118,14 @@ class Depths:
             name: np.array([getattr(rule, name) for rule in given]) for name in DepthHold.__dataclass_fields__
         }
         self._neutral = np.array(
-            [1.0 if rule is None else neutral_breath(robot) for rule, robot in zip(rules, robots, strict=True)]
+            [1.0 if rule is None else neutral_air_fraction(robot) for rule, robot in zip(rules, robots, strict=True)]
         )
         self._period, self._kept = period, keep(0.2, period)
         self._last: np.ndarray | None = None
         self._sinking, self._offset = np.zeros(len(given)), np.zeros(len(given))
-        self._breath = np.ones(len(given))
+        self._air_fraction = np.ones(len(given))
 
-    def breath(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
+    def air_fraction(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
         """Return the share of the air that each robot keeps, NaN where none is asked for [-]."""
         if sensed.depth is None or not self._on.any():
             return None
@@ -139,5 +139,5 @@ class Depths:
         within = (asked >= 0.0) & (asked <= 1.0) & (np.abs(error) <= rule["near"])  # where the air can answer
         self._offset = np.where(within, offset, self._offset)
         most = rule["pump"] * self._period
-        self._breath = self._breath + np.clip(np.clip(asked, 0.0, 1.0) - self._breath, -most, most)
-        return np.where(self._on, self._breath, np.nan)
+        self._air_fraction = self._air_fraction + np.clip(np.clip(asked, 0.0, 1.0) - self._air_fraction, -most, most)
+        return np.where(self._on, self._air_fraction, np.nan)

@@ -123,14 +123,14 @@ class SwimmingController:
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Look up one tick, and add what is felt."""
-        targets, breath = self._targets[self._row, tick], None
+        targets, air_fraction = self._targets[self._row, tick], None
         if sensed is not None and self._feels:
             tail, trunk = self._headings.bend(sensed)
             for robot, runs in self._robots:
                 targets[runs] = bent(targets[runs], robot, tail[runs], trunk[runs])
-            kept = self._depths.breath(sensed)
-            breath = None if kept is None else self._pitches.split(kept, sensed)
-        return Command(targets, self._frequency * (tick * self._period), breath)
+            kept = self._depths.air_fraction(sensed)
+            air_fraction = None if kept is None else self._pitches.split(kept, sensed)
+        return Command(targets, self._frequency * (tick * self._period), air_fraction)
 
 
 def bent(targets: np.ndarray, robot: Robot, tail: np.ndarray, trunk: np.ndarray) -> np.ndarray:

@@ -90,11 +90,11 @@ class Pitches:
         self._felt: np.ndarray | None = None
         self._offset, self._moved = np.zeros(len(rules)), np.zeros(len(rules))
 
-    def split(self, breath: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
+    def split(self, air_fraction: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
         """Return the share of the air that is kept in front and rear chambers [-].
 
         Args:
-            breath: share of the whole air that is kept, NaN where it is not commanded [-].
+            air_fraction: share of the whole air that is kept, NaN where it is not commanded [-].
             sensed: what the robots feel.
         """
         rule, (front, rear) = self._rule, self._share.T
@@ -106,14 +106,14 @@ class Pitches:
         asked = offset + rule["gain"] * theta + rule["rate_gain"] * rate
         most = rule["pump"] * self._period
         wanted = self._moved + np.clip(asked - self._moved, -most, most)
-        kept = finite(breath)
+        kept = finite(air_fraction)
         back = np.maximum(-kept * front, -(1.0 - kept) * rear)  # no chamber beyond empty or full
         ahead = np.minimum((1.0 - kept) * front, kept * rear)
         self._moved = np.where(self._on, np.clip(wanted, back, ahead), 0.0)
         within = (asked >= back) & (asked <= ahead)  # what stays adds up only where the chambers can answer
         self._offset = np.where(within, offset, self._offset)
         share = np.where(self._share > 0.0, self._share, 1.0)
-        return np.asarray(breath[:, None] + self._moved[:, None] * _TO_AND_FRO / share)
+        return np.asarray(air_fraction[:, None] + self._moved[:, None] * _TO_AND_FRO / share)
 
     def _asked(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
         """Return the asked pitches, nose down positive [rad]."""

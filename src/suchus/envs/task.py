@@ -188,7 +188,7 @@ class Task:
     pushes: Pushes | None = None
     """The push of each episode; None: no push."""
     lake: Lake | None = None
-    """Water in which the robot swims or wades, its level and breath numbers; None on dry land."""
+    """Water in which the robot swims or wades, its level and air fraction numbers; None on dry land."""
     swim: Swim | None = None
     """Swimming motion of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
     goal: AnyGoal | None = None
@@ -298,12 +298,12 @@ def check_water(robot: Robot, lake: Lake) -> None:
     """Refuse water that changes while an episode lasts, or that a robot lacks the air for.
 
     Raises:
-        InvalidDesign: level or breath are courses, or breath is let out that there is not.
+        InvalidDesign: level or air fraction are courses, or air is let out that there is not.
     """
     if lake.changes():
         raise InvalidDesign(
-            "task.lake has a level or a breath that changes with time; in a task both stay, since its episodes begin "
-            "at different times: give each as one number."
+            "task.lake has a level or an air fraction that changes with time; in a task both stay, since its episodes "
+            "begin at different times: give each as one number."
         )
     check_lake(robot, lake)
 

@@ -2,8 +2,8 @@
 
 from suchus.hydro.table import (
     ADDED,
+    AIR_FRACTION,
     BALL,
-    BREATH,
     COLUMNS,
     CROSS_DRAG,
     CURRENT,
@@ -27,8 +27,8 @@ from suchus.hydro.table import (
 
 __all__ = [
     "ADDED",
+    "AIR_FRACTION",
     "BALL",
-    "BREATH",
     "COLUMNS",
     "CROSS_DRAG",
     "CURRENT",

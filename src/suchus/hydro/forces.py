@@ -81,7 +81,12 @@ def _arcsine(x: float) -> float:
 
 @compiled
 def hydrostatic(
-    table: np.ndarray, xpos: np.ndarray, xmat: np.ndarray, up: np.ndarray, level: float, breath: tuple[float, float]
+    table: np.ndarray,
+    xpos: np.ndarray,
+    xmat: np.ndarray,
+    up: np.ndarray,
+    level: float,
+    air_fraction: tuple[float, float],
 ) -> np.ndarray:
     """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
 
@@ -93,7 +98,7 @@ def hydrostatic(
         xmat: their orientations, shape (body, 9).
         up: unit vector against gravity, shape (3,).
         level: of the surface above the origin [m].
-        breath: shares of the air that are kept, in the front and in the rear chambers [-].
+        air_fraction: shares of the air that are kept, in the front and in the rear chambers [-].
     """
     found, ahead = np.zeros(5), three(up, 0)
     for row in table:
@@ -105,7 +110,7 @@ def hydrostatic(
         depth = (level - dot(ahead, at)) / extent
         share, moment = immersed(row[1], depth)
         arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
-        volume = row[17] - (1.0 - breath[0]) * row[18] - (1.0 - breath[1]) * row[19]
+        volume = row[17] - (1.0 - air_fraction[0]) * row[18] - (1.0 - air_fraction[1]) * row[19]
         found[0] += volume * share
         for i in range(3):
             found[1 + i] += volume * (share * at[i] + moment * arm[i] / extent)
@@ -193,7 +198,7 @@ def rub(rows: np.ndarray, water: WaterProperties) -> None:
 @part
 def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
     """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
-    per_speed, (front, rear) = water.length / water.viscosity, water.breath
+    per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
     for n in range(LANES):
         share, moment = immersed(table[at.KIND, n], rows[at.DEPTH, n])
         emptied = (1.0 - front) * table[at.AIR, n] + (1.0 - rear) * table[at.AIR + 1, n]

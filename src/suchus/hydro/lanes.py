@@ -78,7 +78,7 @@ class WaterProperties(NamedTuple):
     """Height of the surface above the world's origin, against gravity, without waves [m]."""
     density: float
     """[kg/m3]."""
-    breath: tuple[float, float]
+    air_fraction: tuple[float, float]
     """Shares of the hull's air that are kept, in the front and in the rear chambers [-]."""
     viscosity: float
     """Kinematic viscosity [m2/s]."""

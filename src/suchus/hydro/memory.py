@@ -9,7 +9,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from suchus.hydro.lanes import WaterProperties
-from suchus.hydro.table import ADDED, BREATH, CROSS_DRAG, DENSITY, LEVEL, NUMBERS, SHEDDING, THICKENING, VISCOSITY
+from suchus.hydro.table import ADDED, AIR_FRACTION, CROSS_DRAG, DENSITY, LEVEL, NUMBERS, SHEDDING, THICKENING, VISCOSITY
 from suchus.hydro.vectors import dot, part, three, times
 
 FIELDS = (
@@ -137,6 +137,6 @@ def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> W
     gravity = sqrt(dot(down, down))
     up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
     return WaterProperties(
-        user[LEVEL], user[DENSITY], (user[BREATH], user[BREATH + 1]), user[VISCOSITY], user[CROSS_DRAG],
+        user[LEVEL], user[DENSITY], (user[AIR_FRACTION], user[AIR_FRACTION + 1]), user[VISCOSITY], user[CROSS_DRAG],
         user[THICKENING], user[ADDED], user[SHEDDING], up, gravity, length,
     )  # fmt: skip

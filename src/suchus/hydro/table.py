@@ -54,7 +54,7 @@ LEVEL = 0
 """Place, among a run's numbers, of the level of the surface above the world's origin, against gravity [m]."""
 DENSITY = 1
 """Place of the density [kg/m3]."""
-BREATH = 2
+AIR_FRACTION = 2
 """Place of the shares of the hull's air that are kept, in the front and in the rear chambers (2) [-]."""
 CURRENT = 4
 """Place of the velocity of the current in the world (3) [m/s]."""

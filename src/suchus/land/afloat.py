@@ -63,7 +63,7 @@ def surfaced(
         qpos: the posture on the ground.
         timestep: of the physics [s].
     """
-    level, breath = lake.at(0.0)
+    level, air_fraction = lake.at(0.0)
     table = np.array(pieces(robot))
     volume, weight = capacity(robot, lake)
     if volume <= weight:
@@ -79,7 +79,7 @@ def surfaced(
     bodies = unpacked(model.numeric_data)
 
     def lacking(height: float) -> float:
-        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, (breath, breath))[0]) - weight
+        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, (air_fraction, air_fraction))[0]) - weight
 
     reach = float(robot.length)
     height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface

@@ -144,8 +144,10 @@ class FloatTank:
 
     def statics(self) -> Float[np.ndarray, "5"]:
         """Return what ``hydro.forces.hydrostatic`` says of the body as it lies."""
-        level, breath = self._lake.at(self.data.time)
-        return np.asarray(hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP, level, (breath, breath)))
+        level, air_fraction = self._lake.at(self.data.time)
+        return np.asarray(
+            hydrostatic(self._table, self.data.xpos, self.data.xmat, _UP, level, (air_fraction, air_fraction))
+        )
 
     def energy(self) -> float:
         """Return kinetic energy of body and added mass, and potential energy of body and water [J]."""

@@ -66,7 +66,7 @@ class Wave:
 class Lake:
     """Water with a level surface. Where the ground slopes, the surface is level and the slope is the shore.
 
-    Level and breath may be courses over time, as ``((0.0, 0.1), (5.0, 0.3))``.
+    Level and air fraction may be courses over time, as ``((0.0, 0.1), (5.0, 0.3))``.
     """
 
     level: Course
@@ -77,7 +77,7 @@ class Lake:
     """Velocity of the water, forward and to the left [m/s]."""
     wave: Wave | None = None
     """Waves on the surface; None where it is flat."""
-    breath: Course = 1.0
+    air_fraction: Course = 1.0
     """Share of the air of the robot's hull that is kept, 0 to 1, alike in all its chambers [-]."""
     heel: float = 0.0
     """Roll with which a robot that floats is put on the water, right side down positive [rad]."""
@@ -92,20 +92,20 @@ class Lake:
             check.number("heel", -pi, pi, "rad")
             check.number("added_mass", 0.0, 10.0, "")
             check.number("shedding", 0.0, 10.0, "")
-            for name, low, high, unit in (("level", -DEEPEST, DEEPEST, "m"), ("breath", 0.0, 1.0, "")):
+            for name, low, high, unit in (("level", -DEEPEST, DEEPEST, "m"), ("air_fraction", 0.0, 1.0, "")):
                 check.that(*_course(name, getattr(self, name), low, high, unit))
 
     def at(self, time: float) -> tuple[float, float]:
-        """Return level [m] and breath [-] at a time [s]."""
-        return _now(self.level, time), _now(self.breath, time)
+        """Return level [m] and air fraction [-] at a time [s]."""
+        return _now(self.level, time), _now(self.air_fraction, time)
 
     def shore(self, uphill: float) -> float:
         """Return where the level at time 0 meets ground that rises by ``uphill`` [rad], ahead along the ground [m]."""
         return self.at(0.0)[0] / sin(uphill)
 
     def changes(self) -> bool:
-        """Return whether level or breath change while the run goes."""
-        return not isinstance(self.level, (int, float)) or not isinstance(self.breath, (int, float))
+        """Return whether level or air fraction change while the run goes."""
+        return not isinstance(self.level, (int, float)) or not isinstance(self.air_fraction, (int, float))
 
     def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
         """Return the row of numbers that the physics reads, see ``hydro``.
@@ -115,7 +115,7 @@ class Lake:
             time: [s].
         """
         row = np.zeros(hydro.NUMBERS)
-        row[hydro.LEVEL], row[hydro.BREATH : hydro.BREATH + 2] = self.at(time)
+        row[hydro.LEVEL], row[hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2] = self.at(time)
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding
@@ -135,16 +135,16 @@ def lake_text(lake: Lake | None) -> str:
 
 
 def check_lake(robot: Robot, lake: Lake) -> None:
-    """Refuse a breath that a robot's hull has no air for.
+    """Refuse an air fraction that a robot's hull has no air for.
 
     Raises:
-        InvalidDesign: breath is let out, and the robot has no hull with air.
+        InvalidDesign: air is let out, and the robot has no hull with air.
     """
     hull = robot.hull
-    if (hull is None or hull.air == 0.0) and lake.breath != 1.0:
+    if (hull is None or hull.air == 0.0) and lake.air_fraction != 1.0:
         raise InvalidDesign(
-            f"lake.breath is {str(lake.breath)[:60]}, and robot {robot.name!r} has no air that it could let out: leave "
-            "breath at 1, or give the robot a design.Hull with air."
+            f"lake.air_fraction is {str(lake.air_fraction)[:60]}, and robot {robot.name!r} has no air that it could "
+            "let out: leave air_fraction at 1, or give the robot a design.Hull with air."
         )
 
 
@@ -178,7 +178,7 @@ def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return ahead, np.cross(up, ahead)
 
 
-_BREATH = slice(hydro.BREATH, hydro.BREATH + 2)
+_AIR_FRACTION = slice(hydro.AIR_FRACTION, hydro.AIR_FRACTION + 2)
 
 
 class Waters:
@@ -204,19 +204,19 @@ class Waters:
     def __bool__(self) -> bool:
         return bool(self._lakes)
 
-    def flood(self, time: float, breath: Float[np.ndarray, "run chamber"] | None = None) -> None:
-        """Let level and breath of the lakes be what they are at a time, where they change or are commanded.
+    def flood(self, time: float, air_fraction: Float[np.ndarray, "run chamber"] | None = None) -> None:
+        """Let level and air fraction of the lakes be what they are at a time, where they change or are commanded.
 
         Args:
             time: [s].
-            breath: what controllers command of front and rear chambers, NaN where they leave it to the lake [-]; None
-                for all.
+            air_fraction: what controllers command of front and rear chambers, NaN where they leave it to the lake [-];
+                None for all.
         """
         for sim, lake in self._changing.items():
-            self.rows[sim, hydro.LEVEL], self.rows[sim, _BREATH] = lake.at(time)
-        if breath is not None and self._lakes:
-            commanded = np.isfinite(breath).all(axis=1)
-            self.rows[commanded, _BREATH] = breath[commanded]
+            self.rows[sim, hydro.LEVEL], self.rows[sim, _AIR_FRACTION] = lake.at(time)
+        if air_fraction is not None and self._lakes:
+            commanded = np.isfinite(air_fraction).all(axis=1)
+            self.rows[commanded, _AIR_FRACTION] = air_fraction[commanded]
 
     def fill(self, sim: int, lake: Lake, time: float) -> None:
         """Let the water of a run be another one from now on; what the water did last stays to be read.

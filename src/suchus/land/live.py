@@ -29,7 +29,7 @@ class Live:
 
     Raises:
         InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated`` or a
-            ``Swimming`` that holds nothing, or breath that the robot has no air for.
+            ``Swimming`` that holds nothing, or an air fraction below 1 that the robot has no air for.
         OutsideLimits: a gait or swim that the robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
@@ -136,7 +136,7 @@ class Live:
         self._loop.batch.tilt(0, ground)
 
     def fill(self, lake: Lake) -> None:
-        """Let the water be another one from now on: its level, its waves, the robot's breath.
+        """Let the water be another one from now on: its level, its waves, the robot's air fraction.
 
         Raises:
             InvalidDesign: the run is on dry land, or the robot has no air that it could let out.

@@ -123,7 +123,7 @@ class Loop:
     def disturb(self) -> None:
         """Disturb anew what the controller commanded last: with noise, and with what is broken by now."""
         targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
-        self.command = Command(targets, self._wanted.phase, self._wanted.breath)
+        self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
 
     def advance(self, *, felt: bool = True) -> None:
         """Let one control period pass in which the servos do as they are commanded.
@@ -131,10 +131,10 @@ class Loop:
         Args:
             felt: whether contact forces will be read after it, see ``SimulationBatch.advance``.
         """
-        targets, _, breath = self.command
+        targets, _, air_fraction = self.command
         shared = self._deduplication
-        shared.part(self.tick, targets if breath is None else np.column_stack([targets, breath]))
-        self.batch.waters.flood(self.time, breath)
+        shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
+        self.batch.waters.flood(self.time, air_fraction)
         if shared.others.size:
             self.batch.advance(targets, self._steps, self.time, shared.first, felt=felt)
             self.batch.copy(shared.others, shared.whom)

@@ -160,12 +160,12 @@ class Recorder:
         ups = np.array([up(run.ground) for run in self._runs])
         air = np.array([chambers(run.robot) for run in self._runs])
         air[air.sum(axis=1) == 0.0] = 1.0  # nothing to share out
-        air_kept = water[..., hydro.BREATH : hydro.BREATH + 2]
+        air_kept = water[..., hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2]
         weight = GRAVITY * np.array([run.robot.mass for run in self._runs])
         return {
             "water_level": water[..., hydro.LEVEL],
-            "breath": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
-            "breath_front": air_kept[..., 0],
+            "air_fraction": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
+            "air_fraction_front": air_kept[..., 0],
             "share_under": water[..., hydro.UNDER] / total[:, None],
             "water_force": worked[..., :3],
             "water_power": worked[..., 3],

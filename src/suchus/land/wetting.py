@@ -18,7 +18,7 @@ from llvmlite import binding
 from numba import cfunc, types
 
 from suchus.errors import OtherMuJoCo
-from suchus.hydro import BALL, BREATH, DENSITY, LEVEL, UNDER, column
+from suchus.hydro import AIR_FRACTION, BALL, DENSITY, LEVEL, UNDER, column
 from suchus.hydro.kernel import wet
 from suchus.hydro.memory import DATA_FIELDS, FIELDS
 from suchus.hydro.table import WIDTH
@@ -116,7 +116,7 @@ def _check_that_it_acts() -> None:
     column(table, "half")[:], column(table, "volume")[:] = 0.1, 0.004
     model = with_pieces(spec, table, 1.0, acting=True)
     data = mujoco.MjData(model)
-    data.userdata[[LEVEL, DENSITY, BREATH, BREATH + 1]] = 5.0, 1000.0, 1.0, 1.0
+    data.userdata[[LEVEL, DENSITY, AIR_FRACTION, AIR_FRACTION + 1]] = 5.0, 1000.0, 1.0, 1.0
     mujoco.mj_forward(model, data)
     if data.userdata[UNDER] != 0.004:
         why = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"

@@ -18,7 +18,7 @@ from suchus.hydro.forces import hydrostatic
 from suchus.model.build import TIMESTEP, joint_addresses
 from suchus.model.wet import wet_model
 
-Breath = tuple[float, float]
+AirFractions = tuple[float, float]
 """Shares of the air that are kept in the front and in the rear chambers [-]."""
 _STEEPEST = radians(80)
 _SMALL = radians(0.5)
@@ -69,7 +69,7 @@ class Hydrostatics:
 class _Rigid:
     """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
 
-    def __init__(self, robot: Robot, servos: np.ndarray, density: float, breath: Breath) -> None:
+    def __init__(self, robot: Robot, servos: np.ndarray, density: float, air_fraction: AirFractions) -> None:
         table = np.array(pieces(robot))
         model = wet_model(robot, TIMESTEP, None, len(table))
         self.data = data = mujoco.MjData(model)
@@ -78,8 +78,8 @@ class _Rigid:
         mujoco.mj_fwdPosition(model, data)
         self.table = unpacked(model.numeric_data)
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
-        air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(breath)))
-        self.volume, self.breath, self.density = float(column(table, "volume").sum()) - air, breath, density
+        air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(air_fraction)))
+        self.volume, self.air_fraction, self.density = float(column(table, "volume").sum()) - air, air_fraction, density
         self.reach = 2.0 * float(robot.length)
         self.sunk = self.volume <= self.mass / density
 
@@ -92,7 +92,7 @@ class _Rigid:
         return up, found[1:4] / found[0] - self.centre, level
 
     def _statics(self, up: np.ndarray, level: float) -> np.ndarray:
-        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.breath))
+        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.air_fraction))
 
     def trim_submerged(self) -> float:
         """Return the pitch at which the centre of buoyancy is above that of mass, wholly under water [rad]."""
@@ -140,7 +140,7 @@ def hydrostatics(
     servos: Float[np.ndarray, " servo"] | None = None,
     *,
     density: float = WATER_DENSITY,
-    breath: float | Breath = 1.0,
+    air_fraction: float | AirFractions = 1.0,
     heels: int = 37,
 ) -> Hydrostatics:
     """Return how a robot floats, rigid in a posture with its cables straight.
@@ -149,14 +149,14 @@ def hydrostatics(
         robot: the design.
         servos: angles of its servos; zeros if None.
         density: of the water [kg/m3].
-        breath: share of the hull's air that is kept, or those of its front and rear chambers [-].
+        air_fraction: share of the hull's air that is kept, or those of its front and rear chambers [-].
         heels: angles of heel from 0 to 180 degrees at which the lever is computed [-].
 
     Raises:
-        InvalidDesign: a density or breath that cannot be, or another number of servo angles.
+        InvalidDesign: a density or air fraction that cannot be, or another number of servo angles.
     """
     require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
-    kept = _both(breath)
+    kept = _both(air_fraction)
     require("hydrostatics", "heels", heels, 3, 1000, "")
     angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
     if len(angles) != len(servo_names(robot)):
@@ -189,14 +189,14 @@ def hydrostatics(
     )
 
 
-def _both(breath: float | Breath) -> Breath:
+def _both(air_fraction: float | AirFractions) -> AirFractions:
     """Return the shares of the air in front and rear chambers."""
-    if isinstance(breath, tuple):
-        for name, share in zip(("front", "rear"), breath, strict=True):
-            require("hydrostatics", f"breath ({name})", share, 0.0, 1.0, "")
-        return breath
-    require("hydrostatics", "breath", breath, 0.0, 1.0, "")
-    return float(breath), float(breath)
+    if isinstance(air_fraction, tuple):
+        for name, share in zip(("front", "rear"), air_fraction, strict=True):
+            require("hydrostatics", f"air_fraction ({name})", share, 0.0, 1.0, "")
+        return air_fraction
+    require("hydrostatics", "air_fraction", air_fraction, 0.0, 1.0, "")
+    return float(air_fraction), float(air_fraction)
 
 
 def _lowest(body: _Rigid, up: np.ndarray) -> float:

@@ -36,8 +36,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 
 WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "water_level": (("time",), "m", "of the surface above the world's origin, against gravity"),
-    "breath": (("time",), "1", "share of the hull's air that is kept"),
-    "breath_front": (("time",), "1", "share of the air of the hull's front chambers that is kept"),
+    "air_fraction": (("time",), "1", "share of the hull's air that is kept"),
+    "air_fraction_front": (("time",), "1", "share of the air of the hull's front chambers that is kept"),
     "share_under": (("time",), "1", "volume under water over the whole volume, foam included"),
     "water_force": (("time", "xyz"), "N", "of the water on the robot, in the world"),
     "water_power": (("time",), "W", "of the water on the robot"),

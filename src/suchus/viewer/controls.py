@@ -66,7 +66,7 @@ class Controls:
         if session.settings.swim is not None:
             with gui.add_folder("Water"):
                 self._add_switch("swims", "swims", "Off: it walks, on the ground or against the water.")
-                for name in ("level", "breath"):
+                for name in ("level", "air_fraction"):
                     self._add_slider(name, knobs[name])
 
     @property

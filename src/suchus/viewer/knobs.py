@@ -146,8 +146,8 @@ LEVEL = Knob(
     label="water level", unit="mm", low=0.0, high=1000.0, step=5.0, scale=1e-3,
     hint="Above the ground where the walk begins; the surface stays level where the ground slopes.",
 )  # fmt: skip
-BREATH = Knob(
-    label="breath", unit="%", low=0.0, high=100.0, step=1.0, scale=1e-2,
+AIR_FRACTION = Knob(
+    label="air fraction", unit="%", low=0.0, high=100.0, step=1.0, scale=1e-2,
     hint="Share of the hull's air that is kept; less of it sinks.",
 )  # fmt: skip
 

@@ -20,7 +20,7 @@ from suchus.motion import LIMBS_BACK, START, Gait, Swim, check_limits, divided
 from suchus.robots import beside_article
 from suchus.viewer.history import History
 from suchus.viewer.knobs import (
-    BREATH,
+    AIR_FRACTION,
     DIRECTION,
     LEVEL,
     PUSH_DURATION,
@@ -76,7 +76,7 @@ class Settings:
     """Whether it swims or walks, where there is water."""
     level: float = 0.6
     """Level of the water above the ground where the walk begins [m]."""
-    breath: float = 1.0
+    air_fraction: float = 1.0
     """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
@@ -91,7 +91,7 @@ class Settings:
     @property
     def lake(self) -> Lake | None:
         """The water; None on dry land."""
-        return None if self.swim is None else Lake(level=self.level, breath=self.breath)
+        return None if self.swim is None else Lake(level=self.level, air_fraction=self.air_fraction)
 
     @property
     def control(self) -> Coordinated | Swimming:
@@ -111,7 +111,7 @@ class Settings:
 
 _PLAIN: dict[str, Knob] = {
     "uphill": SLOPE, "sideways": SIDE_SLOPE, "push_duration": PUSH_DURATION, "direction": DIRECTION, "speed": SPEED,
-    "level": LEVEL, "breath": BREATH,
+    "level": LEVEL, "air_fraction": AIR_FRACTION,
 }  # fmt: skip
 
 
@@ -218,7 +218,7 @@ class Session:
                 self._begin()
             elif name in ("uphill", "sideways"):
                 self._live.tilt(self.settings.ground)
-            elif name in ("level", "breath") and self.settings.lake is not None:
+            elif name in ("level", "air_fraction") and self.settings.lake is not None:
                 return self._fill(before) or notice
             return notice
 

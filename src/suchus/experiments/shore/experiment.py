@@ -80,10 +80,10 @@ class Shore(Experiment):
     """Runs of each slope with each friction scale [-]."""
     noise: float = 0.01
     """Standard deviation of the noise on every commanded angle [rad]."""
-    breathe_out: float = 1.0
+    air_released: float = 1.0
     """Share of the air of the hull that it lets out while it lands [-]."""
-    breaths: tuple[float, ...] = (0.0, 0.5)
-    """Other values of ``breathe_out``, simulated on the steepest slope [-]."""
+    other_air_released: tuple[float, ...] = (0.0, 0.5)
+    """Other values of ``air_released``, simulated on the steepest slope [-]."""
     frequency: float = 1.0
     """Frequency of the swimming wave [Hz]."""
     clearance: float = 0.15
@@ -107,10 +107,10 @@ class Shore(Experiment):
             check.rising("friction_scales", 0.01, 10.0, "")
             check.whole("seeds", 1, 1000)
             check.number("noise", 0.0, 1.0, "rad")
-            check.number("breathe_out", 0.0, 1.0, "")
+            check.number("air_released", 0.0, 1.0, "")
             check.number("approach", -1.2, 1.2, "rad")
-            if self.breaths:
-                check.rising("breaths", 0.0, 1.0, "")
+            if self.other_air_released:
+                check.rising("other_air_released", 0.0, 1.0, "")
             check.number("frequency", 0.05, 10.0, "Hz")
             check.number("clearance", 0.01, 10.0, "m")
             check.number("inland", 0.0, 100.0, "m")
@@ -122,11 +122,13 @@ class Shore(Experiment):
 
     def quick(self) -> "Shore":
         """Return one slope with one friction scale, no other gaits, the first seconds."""
-        smaller = replace(self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), breaths=())
+        smaller = replace(
+            self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), other_air_released=()
+        )
         return replace(smaller, duration=2.0, cycles=1)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Simulate all runs as one batch: to the shore, with other gaits and other breaths, and into the water."""
+        """Simulate all runs as one batch: to the shore, with other gaits, with less air let out, and into the water."""
         check_floats(self.robot, Lake(level=_DEEP))
         cases = self._cases()
         runs = [run for _, _, run in cases]
@@ -143,7 +145,7 @@ class Shore(Experiment):
             ("walk", [run.gait.name for run in runs], "1"),
             ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
             ("grip", [run.ground.friction_scale for run in runs], "1"),
-            ("breathed_out", [out for _, out, _ in cases], "1"),
+            ("air_released", [out for _, out, _ in cases], "1"),
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
         shown = self._shown(kept)
@@ -151,13 +153,13 @@ class Shore(Experiment):
         whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=findings.water_line(runs[shown]),
-            breathe_out=self.breathe_out, depth=self.depth, approach=self.approach,
+            air_released=self.air_released, depth=self.depth, approach=self.approach,
         )  # fmt: skip
         return Simulated(record=whole, replays=self._replays(whole))
 
     def _cases(self) -> list[tuple[str, float, Run]]:
         """Return of each case its kind, the share of the air that is let out, and its run."""
-        out = self.breathe_out
+        out = self.air_released
         cases: list[tuple[str, float, Run]] = []
         for slope in self.slopes:
             for scale in self.friction_scales:
@@ -169,8 +171,8 @@ class Shore(Experiment):
         ]
         steep = self.slopes[-1]
         cases += [
-            ("breath", b, self._run(self.gait, steep, scale, b, 0))
-            for b in self.breaths
+            ("air", b, self._run(self.gait, steep, scale, b, 0))
+            for b in self.other_air_released
             for scale in self.friction_scales
         ]
         ends = dict.fromkeys((self.friction_scales[0], self.friction_scales[-1]))
@@ -191,7 +193,7 @@ class Shore(Experiment):
             swim=Swimming(swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=course)),
             begins="swimming" if uphill > 0 else "walking",
             wade=self.wade if gait == self.gait else None,
-            breathe_out=out,
+            air_released=out,
             heading=HeadingRule(direction=course),
         )
         return Run(
@@ -233,15 +235,15 @@ class Shore(Experiment):
         return {"shore_replay.html": Replay(caption=caption, make=page)}
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return how many runs come ashore and when, by gait and by breath, the falls, and the work per metre."""
+        """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
         return findings.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how many runs came ashore, what this depends on, and the work per metre."""
         m = {name: Reading(value) for name, value in measures.items()}
-        breaths = [
-            f"{m[f'ashore_share_breathed_out_{i}']:.0%} with {m[f'breathed_out_{i}']:.0%} of its air let out"
-            for i in range(sum(name.startswith("breathed_out_") for name in m))
+        by_air = [
+            f"{m[f'ashore_share_air_released_{i}']:.0%} with {m[f'air_released_{i}']:.0%} of its air let out"
+            for i in range(sum(name.startswith("air_released_") for name in m))
         ]
         gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
         walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
@@ -262,7 +264,7 @@ class Shore(Experiment):
         return (
             f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
             f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
-            f"{m['ashore_share_steepest']:.0%}: {listed(breaths)}. With the greatest friction {by_friction} "
+            f"{m['ashore_share_steepest']:.0%}: {listed(by_air)}. With the greatest friction {by_friction} "
             f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
             f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
             f"on. The work per metre is {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
@@ -275,7 +277,7 @@ class Shore(Experiment):
 
 def _gait_names(measures: Mapping[str, float]) -> list[str]:
     """Return the names of the measures with the share of runs that come ashore by each gait."""
-    other = ("steepest", "least_grip", "most_grip", "breathed_out")
+    other = ("steepest", "least_grip", "most_grip", "air_released")
     names = [name for name in measures if name.startswith("ashore_share_")]
     return [name for name in names if not name.removeprefix("ashore_share_").startswith(other)]
 

@@ -129,7 +129,7 @@ def draw_decides(record: xr.Dataset) -> Figure:
     """Draw the time until ashore over slope and friction, and over air let out and friction on the steepest slope.
 
     Args:
-        record: paths of all cases, with ``kind``, ``slope``, ``grip`` (the friction scale) and ``breathed_out``.
+        record: paths of all cases, with ``kind``, ``slope``, ``grip`` (the friction scale) and ``air_released``.
     """
     reached = record.ahead.values >= record.attrs["beyond"]
     time = np.where(reached.any(axis=1), record.moment.values[reached.argmax(axis=1)], np.nan)
@@ -141,12 +141,12 @@ def draw_decides(record: xr.Dataset) -> Figure:
         figure, axes = panels(1, 2, width=12.0, height=4.4)
         for ax, mine, rows, label in (
             (axes[0, 0], main, slopes, "slope [deg]"),
-            (axes[0, 1], steep | (kind == "breath"), 100 * record.breathed_out.values, "air let out while landing [%]"),
+            (axes[0, 1], steep | (kind == "air"), 100 * record.air_released.values, "air let out while landing [%]"),
         ):
             image = _map(ax, time[mine], record.grip.values[mine], rows[mine], most)
             ax.set(xlabel="friction scale [-]", ylabel=label)
         axes[0, 1].set_title(f"on a slope of {slopes[main].max():.0f} degrees")
-        axes[0, 0].set_title(f"{record.attrs['breathe_out']:.0%} of the air let out")
+        axes[0, 0].set_title(f"{record.attrs['air_released']:.0%} of the air let out")
         figure.colorbar(image, ax=axes[0, 1], label="time until ashore [s]")
     return captioned(
         figure,

@@ -144,10 +144,10 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
         "ashore_share_least_grip": Measure(_share(times, main & np.isclose(grip, grip[main].min())), "-"),
         "ashore_share_most_grip": Measure(_share(times, main & np.isclose(grip, grip[main].max())), "-"),
     }
-    for i, out in enumerate(np.unique(record.breathed_out.values[(kind == "breath") | steep])):
-        mine = ((kind == "breath") | steep) & (record.breathed_out.values == out)
-        found[f"breathed_out_{i}"] = Measure(float(out), "-")
-        found[f"ashore_share_breathed_out_{i}"] = Measure(_share(times, mine), "-")
+    for i, out in enumerate(np.unique(record.air_released.values[(kind == "air") | steep])):
+        mine = ((kind == "air") | steep) & (record.air_released.values == out)
+        found[f"air_released_{i}"] = Measure(float(out), "-")
+        found[f"ashore_share_air_released_{i}"] = Measure(_share(times, mine), "-")
     middle = float(record.grip.values[kind == "gait"].mean()) if (kind == "gait").any() else 0.0
     for name in np.unique(record.walk.values[(kind == "gait") | main]):
         mine = (kind == "gait") & (record.walk.values == name)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
-from suchus.control.holding import neutral_breath
+from suchus.control.holding import neutral_air_fraction
 from suchus.design import Robot, crocodile_like, with_values
 from suchus.design.pieces import chambers, volumes
 from suchus.experiment import Measure
@@ -75,7 +75,7 @@ def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
         "deep_depth": ((record.water_level - record.position.sel(xyz="z")).values, "m"),
         "deep_along": (record.centre_of_mass.sel(xyz="x").values, "m"),
         "deep_power": (record.servo_power.values, "W"),
-        "deep_breath": (record.breath.values, "1"),
+        "deep_air_fraction": (record.air_fraction.values, "1"),
     }
     air = np.array([chambers(run.robot) for run in runs])
     statics = {
@@ -93,7 +93,7 @@ def _hovering(run: Run) -> float:
     assert isinstance(run.control, Swimming)
     assert crocodile_like(run.robot)
     posture = run.control.targets(run.robot, np.zeros(1))[0]
-    return -hydrostatics(run.robot, posture, breath=neutral_breath(run.robot), heels=3).trim_submerged
+    return -hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> dict[str, Measure]:
