@@ -1,35 +1,48 @@
 from dataclasses import replace
 from math import pi, radians
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.control import Rolling
-from suchus.design import crocodile
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus import blueprint
+from suchus.control import OpenLoop
+from suchus.design import Robot, crocodile, layout
+from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import roll_angle, roll_rate
-from suchus.motion import Roll, check_roll, roll_targets
+from suchus.motion import Held, intended, roll
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
-TRUNK = Roll(
-    frequency=2.0,
-    trunk_lateral=radians(50),
-    trunk_vertical=radians(50),
-    tail_lateral=0.0,
-    tail_vertical=0.0,
-    lag=0.25,
-    tail_lag=0.0,
-)
+BOTH = (radians(50), radians(50))
+SIX = blueprint.read(Path(__file__).parent / "six.toml", Robot, ROBOTS)
 
 
-def afloat(rolls, medium=VACUUM, timestep=0.002, duration=1.0):
-    gait = replace(GAITS["limbs_only"], period=0.5)
-    runs = [Run(robot=CAIMAN, gait=gait, control=Rolling(roll), afloat=medium) for roll in rolls]
+def eel():
+    """A row of equal segments without limbs, every other joint of which bends up and down."""
+    swimmer = ROBOTS["swimmer"]
+    axis = [
+        replace(
+            segment,
+            hinges=tuple(replace(h, name=h.name.replace("yaw", "pitch"), turn="pitch") for h in segment.hinges)
+            if i % 2
+            else segment.hinges,
+        )
+        for i, segment in enumerate(swimmer.axis)
+    ]
+    return replace(swimmer, name="eel", axis=tuple(axis))
+
+
+def run_of(robot=CAIMAN, medium=VACUUM, period=0.5, **changes):
+    gait = roll(robot, period=period, **({"trunk": BOTH} | changes))
+    return Run(robot=robot, gait=gait, control=OpenLoop(begin=0.0, ramp=period), afloat=medium)
+
+
+def afloat(*changes, medium=VACUUM, timestep=0.002, duration=1.0, robot=CAIMAN):
+    runs = [run_of(robot, medium, **change) for change in changes or ({},)]
     return simulate(runs, duration=duration, timestep=timestep)
 
 
@@ -40,7 +53,7 @@ def rate(record, run=0):
 
 @pytest.fixture(scope="module")
 def in_vacuum():
-    return afloat([TRUNK, replace(TRUNK, lag=-0.25), replace(TRUNK, trunk_vertical=0.0)])
+    return afloat({}, {"lag": -0.25}, {"trunk": (BOTH[0], 0.0)})
 
 
 def test_the_body_turns_while_its_angular_momentum_stays_zero(in_vacuum):
@@ -61,10 +74,8 @@ def test_one_bend_alone_turns_nothing(in_vacuum):
 
 
 def test_two_slow_bends_at_the_same_time_hardly_turn_it():
-    slow = replace(
-        TRUNK, frequency=1.0
-    )  # faster, the passive end of the tail lags sideways more than it does up and down
-    record = afloat([slow, replace(slow, lag=0.0)], duration=2.0)
+    # faster, the passive end of the tail lags sideways more than it does up and down
+    record = afloat({"period": 1.0}, {"period": 1.0, "lag": 0.0}, duration=2.0)
     assert abs(float(roll_rate(record.isel(run=1), 1.0))) < 0.1 * float(roll_rate(record.isel(run=0), 1.0))
 
 
@@ -74,28 +85,27 @@ def test_the_centre_of_mass_stays_where_it_is(in_vacuum):
 
 
 def test_a_smaller_time_step_leaves_far_less_angular_momentum(in_vacuum):
-    fine = afloat([TRUNK], timestep=0.001)
+    fine = afloat(timestep=0.001)
     coarse = float(abs(in_vacuum.isel(run=0).angular_momentum).max())
     assert float(abs(fine.angular_momentum).max()) < coarse / 4
     assert rate(fine) == pytest.approx(rate(in_vacuum), rel=1e-3)
 
 
 def test_water_takes_angular_momentum_and_leaves_a_roll():
-    record = afloat([TRUNK], WATER)
+    record = afloat(medium=WATER)
     assert float(abs(record.angular_momentum).max()) > 1e-3
     assert rate(record) > pi
 
 
 def test_a_thinner_fluid_changes_less(in_vacuum):
     vacuum = rate(in_vacuum)
-    thin, thick = (abs(rate(afloat([TRUNK], Afloat(density=rho, viscosity=0.0))) - vacuum) for rho in (10.0, 1000.0))
+    thin, thick = (abs(rate(afloat(medium=Afloat(density=rho, viscosity=0.0))) - vacuum) for rho in (10.0, 1000.0))
     assert 0.0 < thin < 0.1 * thick
 
 
 def test_robots_of_several_designs_float_in_one_batch():
     heavy = crocodile(replace(CAIMAN.tables, head=replace(CAIMAN.tables.head, mass=0.25)))
-    gait = replace(GAITS["limbs_only"], period=0.5)
-    runs = [Run(robot=r, gait=gait, control=Rolling(TRUNK), afloat=VACUUM) for r in (CAIMAN, heavy)]
+    runs = [run_of(robot) for robot in (CAIMAN, heavy)]
     both = simulate(runs, duration=0.6, timestep=0.002)
     alone = simulate(runs[1:], duration=0.6, timestep=0.002)
     assert float(abs(both.angular_momentum).max()) < 1e-4
@@ -136,25 +146,56 @@ def test_a_pelvis_on_a_cone_that_comes_back_has_not_rolled():
     assert float(roll_rate(record_of(cone))) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_targets_start_straight_and_repeat_after_the_first_cycle():
-    time = np.linspace(0.0, 2.0, 201)
-    targets = roll_targets(CAIMAN, replace(TRUNK, tail_lateral=0.5, tail_vertical=0.3), time)
-    assert np.all(targets[0, 12:] == 0.0)
+@pytest.mark.parametrize("robot", [CAIMAN, SIX, eel()], ids=lambda robot: robot.name)
+def test_targets_start_straight_repeat_after_the_first_cycle_and_are_two_perpendicular_waves(robot):
+    run = run_of(robot, trunk=(0.3, 0.4), tail=(0.5, 0.2), tail_lag=0.5)
+    time, place = np.linspace(0.0, 2.0, 201), layout(robot)
+    targets = intended(robot, run.gait, time, begin=0.0, ramp=0.5).targets
+    assert np.abs(targets[0, place.limbs[-1].servos.stop if place.limbs else 0 :]).max() < 1e-12
     np.testing.assert_allclose(targets[time >= 0.5][:50], targets[time >= 1.0][:50], atol=1e-12)
-    assert targets[-1, [12, 14, 16]].sum() == pytest.approx(TRUNK.trunk_lateral)
+    t = time[time >= 0.5] / 0.5
+    late = targets[time >= 0.5]
+    np.testing.assert_allclose(late[:, place.trunk_yaw].sum(axis=1), 0.3 * np.cos(2 * pi * t), atol=1e-12)
+    np.testing.assert_allclose(late[:, place.trunk_pitch].sum(axis=1), 0.4 * np.sin(2 * pi * t), atol=1e-12)
+    np.testing.assert_allclose(late[:, place.tail_pitch].sum(axis=1), -0.2 * np.sin(2 * pi * t), atol=1e-12)
+    if place.tail_yaw:  # positive is to the right
+        np.testing.assert_allclose(late[:, place.tail_yaw].sum(axis=1), 0.5 * np.cos(2 * pi * t), atol=1e-12)
+
+
+@pytest.mark.parametrize(("robot", "turns"), [(SIX, 0.9), (eel(), 0.05)], ids=["six", "eel"])
+def test_another_body_rolls_without_angular_momentum_either_way(robot, turns):
+    record = afloat({"period": 1.0}, {"period": 1.0, "lag": -0.25}, robot=robot, timestep=0.001, duration=2.0)
+    rates = [float(roll_rate(record.isel(run=i), 1.0)) / (2 * pi) for i in (0, 1)]
+    assert rates[0] > 0.5 * turns
+    assert rates[1] == pytest.approx(-rates[0], rel=1e-3)
+    assert float(abs(record.angular_momentum).max()) < 1e-5
+
+
+@pytest.mark.parametrize("name", ["salamander", "strider", "swimmer"])
+def test_who_cannot_bend_up_and_down_is_refused_by_what_is_missing(name):
+    with pytest.raises(UnsuitedRobot, match=f"death roll needs a trunk that bends up and down; robot '{name}' lacks"):
+        roll(ROBOTS[name], period=2.0, trunk=(0.2, 0.2))
+    assert roll(ROBOTS["swimmer"], period=2.0, trunk=(0.2, 0.0)).limbs == ()
+
+
+def test_limbs_lie_back_as_far_as_they_can():
+    assert roll(CAIMAN, period=2.0).limbs == (Held(angles=(-pi / 2,)),) * 2
+    stiff = replace(CAIMAN.tables, hind_leg=replace(CAIMAN.tables.hind_leg, yaw_range=(-1.0, 1.0)))
+    assert roll(crocodile(stiff), period=2.0).limbs == (Held(angles=(-pi / 2,)), Held(angles=(-1.0,)))
+    assert roll(ROBOTS["salamandra"], period=2.0).limbs == (Held(angles=()),) * 2
 
 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"trunk_lateral": 3.0, "frequency": 0.1}, ["spine_yaw_1", "0.785"]),
-        ({"tail_lateral": 1.8}, ["tail", "1.571"]),
-        ({"tail_vertical": 0.8}, ["tail_pitch", "7.00 rad/s"]),
+        ({"trunk": (3.0, 0.0), "period": 10.0}, ["spine_yaw_1", "0.785"]),
+        ({"tail": (1.8, 0.0)}, ["tail", "1.571"]),
+        ({"tail": (0.0, 0.8)}, ["tail_pitch", "10.05 rad/s", "7.00 rad/s", "0.718 s"]),
     ],
 )
 def test_a_roll_that_the_robot_cannot_follow_is_refused(changes, said):
     with pytest.raises(OutsideLimits) as refused:
-        check_roll(CAIMAN, replace(TRUNK, **changes))
+        roll(CAIMAN, **({"trunk": BOTH, "period": 0.5} | changes))
     assert all(word in str(refused.value) for word in said)
 
 

@@ -19,7 +19,7 @@ HOME = ("design", "robots", "gaits", "faults")  # a fault's examples name a join
 COUNTS = {12, 14, 16, 17, 18, 19}
 """Of joints and servos of the article's robot, and places among them."""
 NOT_JOINTS = {
-    "tail_pitch": "a number of a gait, and a group of servos in measures and legends",
+    "tail_pitch": "a number of a gait, a need, and a group of servos in measures and legends",
     "tail_cable": "a group of servos in measures and legends",
     "LH_pitch": "the joint that joint_loops asks about unless another is named",
 }
@@ -39,7 +39,6 @@ WHERE = {
         "viewer/knobs.py",
     },
     "tail_cable": {
-        "experiments/death_roll/experiment.py",
         "experiments/death_roll/figure.py",
         "experiments/joint_loops/figure.py",
     },

@@ -12,7 +12,6 @@ from suchus.control.open_loop import OpenLoop
 from suchus.control.oscillators import Oscillators
 from suchus.control.pattern_generator import Generator, OscillatorStates, PatternGenerator, oscillate
 from suchus.control.pattern_load import LoadRule
-from suchus.control.rolling import Rolling
 from suchus.control.sensed import Sensed
 from suchus.control.shared import OWNERS, Shared
 from suchus.control.spine import SpineRule
@@ -55,7 +54,6 @@ __all__ = [
     "Oscillators",
     "PatternGenerator",
     "PitchHold",
-    "Rolling",
     "Runs",
     "Sensed",
     "Shared",

@@ -101,7 +101,7 @@ class Coordinator:
             _refuse_others(*setting)
         limbs = len(layout(robots[0]).limbs)
         self._period = period
-        self._table = OpenLoop.start(runs, period)
+        self._table = OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(robots)), period)
         self._gaits = Batch(robots, gaits)
         ahead = np.zeros((len(robots), limbs))
         self._noise: list[tuple[int, float, np.random.Generator]] = []

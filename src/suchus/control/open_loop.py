@@ -7,12 +7,23 @@ from jaxtyping import Float
 
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
-from suchus.motion import intended
+from suchus.design.checks import Checks
+from suchus.motion import START, intended
 
 
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
     """Commands that follow the gait's clock and nothing else."""
+
+    begin: float = START
+    """Time at which the gait begins; until then its first posture is held [s]."""
+    ramp: float = 0.0
+    """Duration from then on over which strokes and bends grow from zero, without a jolt at either end [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("open_loop", self) as check:
+            check.number("begin", 0.0, 86400.0, "s")
+            check.number("ramp", 0.0, 86400.0, "s")
 
     @property
     def feels(self) -> bool:
@@ -21,13 +32,22 @@ class OpenLoop:
 
     @staticmethod
     def start(runs: Runs, period: float) -> "GaitTable":
-        """Tabulate every gait; runs with the same robot and gait share their rows."""
-        pairs = list(zip(runs.robots, runs.gaits, strict=True))
-        unique = {pair: i for i, pair in enumerate(dict.fromkeys(pairs))}
+        """Tabulate every gait; runs with the same robot, gait and control share their rows.
+
+        Raises:
+            OutsideLimits: a gait of measured curves is to grow over a ramp.
+        """
+        keys = list(zip(runs.controls, runs.robots, runs.gaits, strict=True))
+        unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
+        for control, _, gait in unique:
+            if control.ramp > 0.0:
+                gait.needs_steering("a ramp over which strokes and bends grow")
         time = np.arange(runs.ticks) * period
-        tables = [intended(robot, gait, time) for robot, gait in unique]
+        tables = [
+            intended(robot, gait, time, begin=control.begin, ramp=control.ramp) for control, robot, gait in unique
+        ]
         phase, targets = np.stack([table.phase for table in tables]), np.stack([table.targets for table in tables])
-        return GaitTable(targets, phase, np.array([unique[pair] for pair in pairs]))
+        return GaitTable(targets, phase, np.array([unique[key] for key in keys]))
 
 
 class GaitTable:

@@ -30,6 +30,12 @@ def _trunk(robot: Robot) -> bool:
     return bool(layout(robot).trunk_yaw)
 
 
+def _tail_yaw(robot: Robot) -> bool:
+    place = layout(robot)
+    bent = [place.hinges.index(place.cable(servo).hinges[0]) for servo in place.cables]
+    return bool(place.tail_yaw) or any(hinge >= place.behind.start for hinge in bent)
+
+
 def _legs(robot: Robot) -> bool:
     return len(robot.girdles) == 2 and all(leg_of(girdle) is not None for girdle in robot.girdles)
 
@@ -54,6 +60,9 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
         "foot_paths": Need("limbs of several hinges, whose feet can be put at any height", _feet),
         "four_limbs": Need("four limbs", lambda robot: len(layout(robot).limbs) == 4),
         "trunk": Need("a trunk that bends sideways", _trunk),
+        "trunk_pitch": Need("a trunk that bends up and down", lambda robot: bool(layout(robot).trunk_pitch)),
+        "tail_yaw": Need("a tail that bends sideways", _tail_yaw),
+        "tail_pitch": Need("a tail that bends up and down", lambda robot: bool(layout(robot).tail_pitch)),
         "axis": Need(
             "an axis that bends sideways", lambda robot: bool(layout(robot).axial_yaw or layout(robot).cables)
         ),

@@ -74,7 +74,15 @@ def _leg(place: Layout, limb: LimbPlace, found: BodyFrames, foot: np.ndarray) ->
     return np.array([midline, *found.places[first : limb.tip + 1], foot])
 
 
-def _silhouette(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
+def silhouette_at(robot: Robot, record: xr.Dataset, time: float, axes: tuple[int, int]) -> Silhouette:
+    """Return the silhouette of a robot in the world at one time.
+
+    Args:
+        robot: whose record it is.
+        record: of one run.
+        time: [s].
+        axes: which two coordinates are drawn: (0, 1) from above, (0, 2) from the side.
+    """
     now = record.sel(time=time, method="nearest")
     at = (now[name].values.astype(float) for name in ("position", "orientation", "joint_angle"))
     return silhouette(robot, skin(robot).posed(*poses(robot, *at)), axes)
@@ -117,7 +125,7 @@ def draw_posture(
         foot = Circle(tuple(points[-1, rows]), radius, facecolor=edge if standing else "white", edgecolor=edge)
         foot.set_zorder(0.9 if far else 4)
         ax.add_patch(foot)
-    _flesh(ax, layout(robot), _silhouette(robot, record, time, (rows[0], rows[1])), view, strength)
+    _flesh(ax, layout(robot), silhouette_at(robot, record, time, (rows[0], rows[1])), view, strength)
     joints = bones.joints[:, rows]
     ax.plot(
         *joints.T,
@@ -174,7 +182,7 @@ def _flesh(ax: Axes, place: Layout, seen: Silhouette, view: View, strength: floa
         far = view == "side" and not near
         face, order = (far_leg, 0.8) if far else (body, 2.6) if near else (body, 1.0)
         # strokes of all pieces first, then their fillings: what is left is the outline of them all
-        whole = _united(pieces)
+        whole = united(pieces)
         ax.add_artist(PathPatch(whole, facecolor=edge, edgecolor=edge, linewidth=1.8, joinstyle="round", zorder=order))
         ax.add_artist(PathPatch(whole, facecolor=face, edgecolor=face, linewidth=0.2, zorder=order + 0.01))
         ax.update_datalim(whole.vertices)  # add_patch would look for the extremes of every edge, which takes long
@@ -185,12 +193,12 @@ def _flesh(ax: Axes, place: Layout, seen: Silhouette, view: View, strength: floa
     for eye in seen.eyes if view == "above" else seen.eyes[1:]:
         ax.add_patch(Polygon(eye, facecolor=edge, edgecolor="none", zorder=2.4))
     if strength == 1.0 and seen.scutes:
-        plates = _united(seen.scutes)
+        plates = united(seen.scutes)
         ax.add_artist(PathPatch(plates, facecolor=plate, edgecolor=edge, linewidth=0.35, zorder=2.2))
         ax.update_datalim(plates.vertices)
 
 
-def _united(pieces: Sequence[np.ndarray]) -> Path:
+def united(pieces: Sequence[np.ndarray]) -> Path:
     """Return polygons as one path: a single element of a vector file, a third of the size."""
     return Path.make_compound_path(*(Path(np.vstack([piece, piece[:1]]), closed=True) for piece in pieces))
 

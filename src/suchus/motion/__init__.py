@@ -1,11 +1,12 @@
 """From phase to posture: one gait for every body, what it asks of servos, and courses of postures."""
 
 from suchus.motion.draft import draft_gait
-from suchus.motion.forms import AxialWave, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches
+from suchus.motion.forms import AxialWave, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches, roll
 from suchus.motion.gait import NUMBERS, Bend, Curve, FootPath, Gait, Held, Sweep
 from suchus.motion.limits import (
     as_table,
     check_limits,
+    check_speeds,
     divided,
     excess,
     longest_strokes,
@@ -31,7 +32,6 @@ from suchus.motion.movement import (
 )
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
-from suchus.motion.roll import Roll, check_roll, roll_targets
 from suchus.motion.swim import LIMBS_BACK, Bends, Swim, bends, check_swim, limbs_back, swim_targets
 
 __all__ = [
@@ -53,14 +53,13 @@ __all__ = [
     "Movement",
     "Planned",
     "Posture",
-    "Roll",
     "Steer",
     "Sweep",
     "Swim",
     "as_table",
     "bends",
     "check_limits",
-    "check_roll",
+    "check_speeds",
     "check_swim",
     "cycle_targets",
     "divided",
@@ -78,7 +77,7 @@ __all__ = [
     "middle_stance",
     "movement",
     "plan",
-    "roll_targets",
+    "roll",
     "servo_parts",
     "servo_range",
     "shortest_period",

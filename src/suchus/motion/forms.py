@@ -1,7 +1,7 @@
-"""Other ways to write a gait down: in metres for the article's robot, and by places along the body.
+"""Other ways to write a gait down: in metres for the article's robot, by places along the body, and as a roll.
 
-Files hold them, and the shelf's crawls are written in the first; each becomes a ``Gait`` for a robot, and nothing that
-simulates, draws or measures knows them.
+Files hold the first two, and the shelf's crawls are written in the first; each becomes a ``Gait`` for a robot, and
+nothing that simulates, draws or measures knows them.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -12,10 +12,11 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from suchus.design import LEGS, Robot, layout
+from suchus.design import LEGS, Limb, Robot, check_needs, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Sweep
+from suchus.motion.limits import check_limits, check_speeds
 from suchus.motion.movement import Waves, yaw_hinges
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
@@ -433,3 +434,59 @@ def form_of(data: Mapping[str, Any]) -> type[GaitInMetres | GaitByPlaces] | None
         if ({field.name for field in fields(form)} - {field.name for field in fields(Gait)}) & set(data):
             return form
     return None
+
+
+def roll(
+    robot: Robot,
+    *,
+    period: float,
+    trunk: tuple[float, float] = (0.0, 0.0),
+    tail: tuple[float, float] = (0.0, 0.0),
+    lag: float = 0.25,
+    tail_lag: float = 0.0,
+) -> Gait:
+    """Return a death roll: a bend that goes around the body once in a cycle turns the body the other way.
+
+    Trunk and tail each bend by two perpendicular waves, a lateral and a vertical one; limbs are folded back. The trunk
+    bends to the left by ``trunk[0] cos 2 pi t`` and down by ``trunk[1] cos 2 pi (t - lag)``, with t in cycles.
+
+    Args:
+        robot: that rolls.
+        period: of a cycle [s].
+        trunk: amplitudes of the trunk's lateral and vertical bend, each of all its hinges together [rad].
+        tail: those of the tail [rad].
+        lag: of the vertical bends behind the lateral ones [cycle]; 0.25 and -0.25 roll oppositely.
+        tail_lag: of the tail behind the trunk [cycle]: 0 makes a C of the body, 0.5 an S.
+
+    Raises:
+        UnsuitedRobot: it has no hinges for a bend.
+        OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can.
+    """
+    bends = (
+        ("trunk", Bend(part="trunk", amplitude=trunk[:1])),
+        ("trunk_pitch", Bend(part="trunk", turn="pitch", amplitude=trunk[1:], lag=(lag,))),
+        ("tail_yaw", Bend(part="tail", amplitude=tail[:1], lag=(tail_lag,))),
+        ("tail_pitch", Bend(part="tail", turn="pitch", amplitude=tail[1:], lag=(tail_lag + lag,))),
+    )
+    check_needs(robot, [need for need, bend in bends if any(bend.amplitude)], "a death roll")
+    limbs = tuple(folded(girdle.limb) for girdle in robot.girdles)
+    gait = Gait(
+        name="death_roll",
+        period=period,
+        limb_phases=(0.0,) * (2 * len(limbs)),
+        limbs=limbs,
+        axis=tuple(bend for _, bend in bends),
+    )
+    check_limits(robot, gait)
+    check_speeds(robot, gait)
+    return gait
+
+
+def folded(limb: Limb) -> Held:
+    """Return a limb that lies back along the body, as far as its foremost yaw joint lets it; without one, straight."""
+    driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
+    number = next((i for i, hinge in enumerate(driven) if hinge.turn == "yaw"), None)
+    if number is None:
+        return Held(angles=())
+    low, high = driven[number].range or (-pi, pi)
+    return Held(angles=(*(0.0,) * number, min(max(-pi / 2, low), high)))

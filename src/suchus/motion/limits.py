@@ -76,6 +76,21 @@ def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
     return float(needed[slowest]), servos[slowest]
 
 
+def check_speeds(robot: Robot, gait: Gait) -> None:
+    """Refuse a gait in which a servo would have to turn faster than it can.
+
+    Raises:
+        OutsideLimits: a servo is too slow; the message names it and the shortest period.
+    """
+    shortest, servo = shortest_period(robot, gait)
+    if shortest > gait.period:
+        limit = robot.servo(servo).speed
+        raise OutsideLimits(
+            f"gait {gait.name!r} asks {servo} of robot {robot.name!r} for {limit * shortest / gait.period:.2f} rad/s; "
+            f"the servo turns at {limit:.2f} rad/s at most: make the period {shortest:.3g} s, or bend less."
+        )
+
+
 def longest_strokes(robot: Robot, gait: Gait) -> float:
     """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
     if not gait.has("strokes"):

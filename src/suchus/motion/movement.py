@@ -434,35 +434,46 @@ def movement(robot: Robot, gait: Gait) -> Movement:
     return Movement(robot, [gait])
 
 
-def intended(robot: Robot, gait: Gait, time: Float[np.ndarray, "*batch"]) -> Intended:
-    """Return phases and servo angles of a gait at some times; before the walk begins the phases stand still.
+def intended(
+    robot: Robot, gait: Gait, time: Float[np.ndarray, "*batch"], *, begin: float = START, ramp: float = 0.0
+) -> Intended:
+    """Return phases and servo angles of a gait at some times; before it begins the phases stand still.
 
     Args:
         robot: the design.
         gait: the gait.
         time: since the beginning of the run [s].
+        begin: time at which the gait begins [s].
+        ramp: duration from then on over which strokes and bends grow from zero, as 3 x^2 - 2 x^3 [s].
 
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
-    clock = np.asarray(np.maximum(np.asarray(time, dtype=float) - START, 0.0) / gait.period)
-    return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock))
+    since = np.asarray(np.maximum(np.asarray(time, dtype=float) - begin, 0.0))
+    grown = np.minimum(since / ramp, 1.0) if ramp > 0.0 else None
+    size = None if grown is None else np.asarray(grown**2 * (3.0 - 2.0 * grown))
+    clock = np.asarray(since / gait.period)
+    return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock, size))
 
 
-def cycle_targets(robot: Robot, gait: Gait, clock: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch servo"]:
+def cycle_targets(
+    robot: Robot, gait: Gait, clock: Float[np.ndarray, "*batch"], size: Float[np.ndarray, "*batch"] | None = None
+) -> Float[np.ndarray, "*batch servo"]:
     """Return the servo angles of a gait that has begun [rad].
 
     Args:
         robot: the design.
         gait: the gait.
         clock: since it began [cycle].
+        size: factor on strokes and bends [-]; None for 1.
 
     Raises:
         OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
     """
     here, clock = movement(robot, gait), np.asarray(clock, dtype=float)
     many = np.atleast_1d(clock)
-    found = here.targets(many[..., None] + np.array(gait.limb_phases), here.axis_of_clock(many))
+    steer = None if size is None else Steer(size=np.atleast_1d(size))
+    found = here.targets(many[..., None] + np.array(gait.limb_phases), here.axis_of_clock(many), steer)
     return found.reshape(*clock.shape, -1)
 
 

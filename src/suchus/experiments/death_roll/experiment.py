@@ -8,27 +8,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.control import Rolling
+from suchus.control import OpenLoop
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
-from suchus.experiments.death_roll.figure import draw_cost, draw_rates, draw_roll
-from suchus.gaits import GAITS
+from suchus.experiments.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import between, peak_torque, roll_rate, whole
-from suchus.motion import Roll
+from suchus.motion import Gait, roll
 from suchus.progress import portion
 from suchus.robots import ROBOTS
 from suchus.verdict import Reading, compared
 
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
-_GROUPS = ("spine_yaw", "spine_pitch", "tail_pitch", "tail_cable")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeathRoll(Experiment):
-    """The crocodile's roll, without ground and gravity, from rest; legs folded back.
+    """The crocodile's roll, without ground and gravity, from rest; limbs folded back.
 
     A bend that goes around the body once in a cycle turns the body the other way. In vacuum nothing acts from
     outside, so that the angular momentum must stay zero while the body turns; water adds MuJoCo's ellipsoid drag,
@@ -38,7 +36,7 @@ class DeathRoll(Experiment):
 
     title = "How fast does it roll about its long axis, and with what?"
     shows = "The roll that section I names; beyond the article"
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("trunk", "trunk_pitch", "tail_yaw", "tail_pitch")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that rolls."""
@@ -97,43 +95,34 @@ class DeathRoll(Experiment):
         record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
         return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
 
-    def _roll(self, **changes: float) -> Roll:
+    def _roll(self, *, frequency: float | None = None, **changes: Any) -> Gait:
         """Return the roll with the trunk alone, or with what is changed."""
-        plain = Roll(
-            frequency=self.frequency,
-            trunk_lateral=self.trunk,
-            trunk_vertical=self.trunk,
-            tail_lateral=0.0,
-            tail_vertical=0.0,
-            lag=0.25,
-            tail_lag=0.0,
-        )
-        return replace(plain, **changes)
+        return roll(self.robot, period=1.0 / (frequency or self.frequency), **({"trunk": (self.trunk,) * 2} | changes))
 
-    def _arms(self) -> dict[str, Roll]:
-        tail = {"tail_lateral": self.tail_lateral, "tail_vertical": self.tail_vertical}
+    def _arms(self) -> dict[str, Gait]:
+        tail = (self.tail_lateral, self.tail_vertical)
         return {
             "trunk": self._roll(),
-            "tail": self._roll(trunk_lateral=0.0, trunk_vertical=0.0, **tail),
-            "c_shape": self._roll(**tail),
-            "s_shape": self._roll(tail_lag=0.5, **tail),
-            "lateral_only": self._roll(trunk_vertical=0.0),
-            "vertical_only": self._roll(trunk_lateral=0.0),
+            "tail": self._roll(trunk=(0.0, 0.0), tail=tail),
+            "c_shape": self._roll(tail=tail),
+            "s_shape": self._roll(tail=tail, tail_lag=0.5),
+            "lateral_only": self._roll(trunk=(self.trunk, 0.0)),
+            "vertical_only": self._roll(trunk=(0.0, self.trunk)),
             "reversed": self._roll(lag=-0.25),
         }
 
     def _simulate(
-        self, rolls: Mapping[str, Roll], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
+        self, rolls: Mapping[str, Gait], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
     ) -> xr.Dataset:
         """Simulate rolls, all of them in one medium after the other."""
-        runs = [self._afloat(roll, arm, medium) for medium in media for arm, roll in rolls.items()]
+        runs = [self._afloat(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
         record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
         return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
 
-    def _afloat(self, roll: Roll, arm: str, medium: str) -> Run:
-        gait = replace(GAITS["limbs_only"], name="death_roll", period=1.0 / roll.frequency)
+    def _afloat(self, gait: Gait, arm: str, medium: str) -> Run:
         afloat: Afloat = VACUUM if medium == "vacuum" else WATER
-        return Run(robot=self.robot, gait=gait, control=Rolling(roll), afloat=afloat, label=arm)
+        grows = OpenLoop(begin=0.0, ramp=gait.period)
+        return Run(robot=self.robot, gait=gait, control=grows, afloat=afloat, label=arm)
 
     def _window(self, frequency: float) -> float:
         """Return where the measurement begins: whole cycles before the end, after the first cycle [s]."""
@@ -146,7 +135,7 @@ class DeathRoll(Experiment):
     def _curves(self, progress: Any) -> xr.Dataset:
         """Return the rate over phase, amplitude and frequency of the trunk's bends [Hz]."""
         phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
-        bends = {f"bend {b}": self._roll(trunk_lateral=b, trunk_vertical=b) for b in self.bends}
+        bends = {f"bend {b}": self._roll(trunk=(b, b)) for b in self.bends}
         speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
         lagging = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
         both = self._simulate(bends | speeds, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
@@ -205,10 +194,9 @@ class DeathRoll(Experiment):
                 if arm in ("trunk", "tail", "c_shape", "s_shape"):
                     measures[f"power_{arm}_{medium}"] = Measure(float(power[run]), "W")
                 if arm == "c_shape":
-                    for group in _GROUPS:
-                        servos = [s for s in record.servo.values if str(s).startswith(group)]
+                    for group, servos in servo_groups(self.robot).items():
                         for what, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
-                            greatest = float(values.isel(run=run).sel(servo=servos).max())
+                            greatest = float(values.isel(run=run).sel(servo=list(servos)).max())
                             measures[f"{what}_peak_{group}_{medium}"] = Measure(greatest, unit)
         free = record.medium == "vacuum"
         trunk, tail, both = (measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape"))
@@ -243,10 +231,9 @@ class DeathRoll(Experiment):
 
     def _load(self, measures: Mapping[str, float], what: str) -> float:
         """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
-        servos = {group: f"{group}_1" if group.startswith("spine") else group for group in _GROUPS}
         return max(
-            measures[f"{what}_peak_{group}_{medium}"] / float(getattr(self.robot.servo(servo), what))
-            for group, servo in servos.items()
+            measures[f"{what}_peak_{group}_{medium}"] / min(getattr(self.robot.servo(servo), what) for servo in servos)
+            for group, servos in servo_groups(self.robot).items()
             for medium in _MEDIA
         )
 

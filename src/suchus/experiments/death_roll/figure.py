@@ -1,17 +1,14 @@
 """The death roll: one roll from the side, what decides its rate, what it costs."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from matplotlib.patches import PathPatch, Polygon
 
 from suchus import rotation
-from suchus.design import LEGS, Robot
-from suchus.figures.posture import skeleton
+from suchus.design import Robot, layout
+from suchus.figures.posture import silhouette_at, skeleton, united
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics import peak_torque, roll_angle
 from suchus.paper.animals import ANIMAL
@@ -33,6 +30,19 @@ _BARS = {
 }
 _ANIMAL = ANIMAL["death_roll"].high
 _TURN = 2 * np.pi
+
+
+def servo_groups(robot: Robot) -> dict[str, tuple[str, ...]]:
+    """Return the servos that bend trunk and tail, in the groups of which loads are told."""
+    place = layout(robot)
+    groups = {
+        "spine_yaw": place.trunk_yaw,
+        "spine_pitch": place.trunk_pitch,
+        "tail_pitch": place.tail_pitch,
+        "tail_yaw": place.tail_yaw,
+        "tail_cable": place.cables,
+    }
+    return {name: tuple(place.servos[i] for i in servos) for name, servos in groups.items() if servos}
 
 
 def draw_roll(robot: Robot, record: xr.Dataset) -> Figure:
@@ -62,7 +72,7 @@ def draw_roll(robot: Robot, record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "The roll in vacuum, seen from the right: the bend goes around the body, the body turns the other way. Green "
-        "is the back, pale the belly; left legs are blue, right ones orange. The angular momentum stays within "
+        "is the back, pale the belly; left limbs are blue, right ones orange. The angular momentum stays within "
         f"{left:.1g} kg m²/s of zero.",
     )
 
@@ -170,8 +180,7 @@ def _c_points(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
-    groups = ("spine_yaw", "spine_pitch", "tail_pitch", "tail_cable")
-    names = ("trunk yaw", "trunk pitch", "tail pitch", "tail cable")
+    groups = servo_groups(robot)
     place = np.arange(len(groups))
     for i, medium in enumerate(_MEDIA):
         run = _one(record, "c_shape", medium)
@@ -179,18 +188,14 @@ def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
         speed = abs(run.servo_velocity.sel(time=slice(start, None))).max("time")
         for j, (values, field) in enumerate(((torque, "torque"), (speed, "speed"))):
             share = [
-                max(
-                    float(values.sel(servo=s)) / getattr(robot.servo(str(s)), field)
-                    for s in run.servo.values
-                    if str(s).startswith(group)
-                )
-                for group in groups
+                max(float(values.sel(servo=servo)) / getattr(robot.servo(servo), field) for servo in servos)
+                for servos in groups.values()
             ]
             colour = _BARS[field, medium]
             ax.bar(place + 0.2 * (2 * j + i - 1.5), share, 0.18, color=colour, label=f"{field}, {medium}")
     ax.axhline(1.0, color=COLOURS["alarm"], linewidth=1.4)
     ax.text(-0.45, 1.02, "limit", color=COLOURS["alarm"], va="bottom")
-    ax.set_xticks(place, names)
+    ax.set_xticks(place, [group.replace("spine", "trunk").replace("_", " ") for group in groups])
     ax.set_ylabel("part of the servo's limit")
     ax.set_ylim(0.0, 1.5)
     ax.legend(loc="upper right", ncols=2, fontsize=10)
@@ -198,34 +203,16 @@ def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
 
 def _body(ax: Axes, robot: Robot, run: xr.Dataset, time: float) -> None:
     """Draw the body from its side, right of the page being ahead; y of the world points into the page."""
-    bones = skeleton(robot, run, time)
+    bones, seen = skeleton(robot, run, time), silhouette_at(robot, run, time, (0, 2))
     now = run.sel(time=time, method="nearest")
-    facing = -rotation.matrix(now.orientation.values)[1, 2]  # of the pelvis's back, towards the viewer at -y
-    middle = bones.trunk.mean(axis=0)
-    legs = sorted(zip(LEGS, bones.legs, strict=True), key=lambda pair: -pair[1][:, 1].mean())
-    for name, points in legs:
-        near = points[:, 1].mean() < middle[1]
-        colour = COLOURS["LF"] if name.startswith("L") else COLOURS["RF"]
-        order = 4 if near else 0
-        ax.plot(points[:, 0], points[:, 2], color=colour, linewidth=3.4, solid_capstyle="round", zorder=order)
-        ax.add_patch(Circle((points[-1, 0], points[-1, 2]), robot.leg(name).foot_radius, color=colour, zorder=order))
-    snout, neck = bones.trunk[-1], bones.trunk[-2]
-    head = [snout + share * (neck - snout) for share in (0.0, 0.25, 0.55, 0.8)]
-    chain = np.vstack([head, bones.trunk[::-1][1:-1], bones.tail])[:, [0, 2]]
-    skull, trunk = 0.5 * robot.head.width, [0.5 * robot.thorax.width, *6 * [robot.spine.radius]]
-    tail = np.linspace(robot.tail.radius_root, robot.tail.radius_tip, len(bones.tail))
-    radii = np.array([0.45 * skull, 0.6 * skull, 0.95 * skull, 0.8 * skull, 0.85 * trunk[0], *trunk[1:], *tail])
-    colour = _BELLY + (_BACK - _BELLY) * np.clip(0.5 + 0.5 * facing, 0.0, 1.0)
-    _hull(ax, chain, radii, tuple(colour))
-
-
-def _hull(ax: Axes, points: np.ndarray, radii: np.ndarray, colour: Any) -> None:
-    keep = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-6])
-    points, radii = points[keep], radii[keep]
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    fine = np.linspace(0.0, along[-1], 80)
-    line, half = CubicSpline(along, points)(fine), PchipInterpolator(along, radii)(fine)
-    ahead = np.gradient(line, axis=0)
-    across = np.column_stack([-ahead[:, 1], ahead[:, 0]]) / np.linalg.norm(ahead, axis=1)[:, None]
-    outline = np.vstack([line + half[:, None] * across, (line - half[:, None] * across)[::-1]])
-    ax.add_patch(Polygon(outline, facecolor=colour, edgecolor=_EDGE, linewidth=1.1, joinstyle="round", zorder=2))
+    facing = -rotation.matrix(now.orientation.values)[1, 2]  # of the root's back, towards the viewer at -y
+    middle = bones.trunk[:, 1].mean()
+    for limb, points, pieces in zip(layout(robot).limbs, bones.legs, seen.legs, strict=True):
+        colour = COLOURS["LF"] if limb.side > 0 else COLOURS["RF"]
+        order = 4 if points[:, 1].mean() < middle else 0
+        ax.add_patch(PathPatch(united(pieces), facecolor=colour, edgecolor=colour, zorder=order))
+    hide = tuple(_BELLY + (_BACK - _BELLY) * np.clip(0.5 + 0.5 * facing, 0.0, 1.0))
+    for piece in (seen.jaw, seen.body):
+        if len(piece):
+            ax.add_patch(Polygon(piece, facecolor=hide, edgecolor=_EDGE, linewidth=1.1, joinstyle="round", zorder=2))
+    ax.autoscale_view()
