@@ -1,24 +1,36 @@
 """The contract of an experiment: a frozen question, its outcome, and verdicts on the article's claims."""
 
+import re
+import sys
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cache
+from math import isfinite
+from pathlib import Path
 from typing import Any, ClassVar, Self
 
 import xarray as xr
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
+from jinja2.ext import Extension
 
 from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, control_period, scaled_fields
+from suchus.errors import BrokenFile, InvalidDesign
 from suchus.gaits import own_gait
 from suchus.motion import Gait, suits
 from suchus.progress import Progress, silent, staged
-from suchus.verdict import Rule, Verdict, judge, rules_of
+from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
 
 __all__ = [
-    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch"
+    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch", "templates",
+    "write",
 ]  # fmt: skip
+EXPLANATION = "explanation.md"
+"""Template of what an experiment in a folder says decided its outcome."""
+_NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +95,8 @@ class Experiment(ABC):
     """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters.
 
     A run simulates, measures what was recorded, judges the article's claims by the rules of ``suchus.verdict``, and
-    says what decided. Subclasses fill in ``simulate``, ``measure``, ``explain`` and ``draw``.
+    says what decided. Subclasses fill in ``simulate``, ``measure`` and ``draw``, and say what decided in
+    ``explanation.md`` beside them, or in ``explain``.
     """
 
     __slots__ = ()
@@ -146,9 +159,31 @@ class Experiment(ABC):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, read from the record alone."""
 
-    @abstractmethod
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Return what decided the outcome, in a paragraph whose every statement follows from the measures."""
+        """Return what decided the outcome, in a paragraph whose every statement follows from the measures.
+
+        It is the template ``explanation.md`` beside the experiment, see ``templates``, in which ``m`` holds the
+        measures by name, and ``question`` is the experiment.
+
+        Raises:
+            InvalidDesign: there is no such file.
+            BrokenFile: it cannot be filled in: it names a measure that there is not, or cannot be read.
+        """
+        return self.told(measures)
+
+    def told(self, measures: Mapping[str, float], **further: Any) -> str:
+        """Return the template ``explanation.md``, filled in with measures and what else it names; see ``explain``."""
+        folder = Path(getattr(sys.modules[type(self).__module__], "__file__", None) or ".").parent
+        try:
+            text = templates(folder).get_template(EXPLANATION).render(m=measures, question=self, **further)
+        except TemplateNotFound as error:
+            raise InvalidDesign(
+                f"{self.name()} does not say what decided: there is neither a method explain nor {EXPLANATION} in the "
+                f"folder {folder.name}; write one of them."
+            ) from error
+        except TemplateError as error:
+            raise BrokenFile(f"{folder.name}/{EXPLANATION} cannot be filled in: {error}.") from error
+        return re.sub(r" ([,.;:)])", r"\1", " ".join(text.split()))
 
     @abstractmethod
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -236,6 +271,56 @@ def _called(value: Any) -> str:
     if isinstance(value, tuple):
         return ", ".join(_called(one) for one in value)[:80]
     return str(getattr(value, "name", value))[:80]
+
+
+class _NumberFormats(Extension):
+    """``{{ number:.3f }}`` in a template."""
+
+    def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:
+        """Return the template with formats as a filter."""
+        del name, filename
+        return _NUMBER.sub(r'{{ (\1) | write("\2") }}', source)
+
+
+@cache
+def templates(folder: Path) -> Environment:
+    """Return the Jinja templates of a folder, whose numbers are filled in by name.
+
+    ``{{ m.speed:.3f }}`` is written as Python's format does, or in another unit where the format begins with it, as
+    ``mm.1f`` (``suchus.verdict.Reading``); where the format is a variable, ``{{ m.speed | write(form) }}``. Beside
+    ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence, the filter
+    ``sentence`` for parts any of which may be missing, and the test ``is finite``. A name that is not there is an
+    error.
+    """
+    environment = Environment(
+        loader=FileSystemLoader(folder),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        extensions=[_NumberFormats],
+        autoescape=False,
+    )
+    environment.filters |= {"write": write, "sentence": sentence}
+    environment.tests["finite"] = isfinite
+    environment.globals |= {"compared": compared, "listed": listed, "separator": separator}
+    return environment
+
+
+def write(value: float, form: str) -> str:
+    """Return a number as written, zero without a minus."""
+    text = format(Reading(value), form)
+    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
+
+
+def separator(loop: Any) -> str:
+    """Return what stands before an item of a list in a sentence: nothing, a comma, or ``and`` before the last."""
+    return "" if loop.first else " and " if loop.last else ", "
+
+
+def sentence(parts: str) -> str:
+    """Return parts that stand one behind the other as a sentence; nothing of none."""
+    text = parts.strip(" \n,;")
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 @contextmanager

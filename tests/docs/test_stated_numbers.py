@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from pages.passages import names
-from pages.stated import filled, keep, kept, made, measured, pages, sources, text_of, wrapped, write
+from pages.stated import filled, keep, kept, made, measured, pages, sources, text_of, wrapped
+from suchus.experiment import write
 from suchus.experiments import EXPERIMENTS
 from suchus.optimise import READY
 from suchus.optimise.evaluate import evaluate

@@ -1,7 +1,9 @@
 """Measures of the swims below the surface, on hand-made records; and which robots swim there."""
 
+import json
 from dataclasses import replace
 from math import isnan
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,10 +53,13 @@ def test_a_dive_ends_where_it_stays_near_its_depth():
 
 
 def test_what_is_said_of_the_swims_has_the_sign_of_their_pitch():
+    explain = EXPERIMENTS["swim_free"].explain
+    kept = json.loads((Path(__file__).parents[1] / "docs" / "stated" / "swim_free.json").read_text())
+    afloat = {name: value for name, value in kept.items() if "deep" not in name}
     for pitch, words in ((0.1, "nose down by 6 degrees"), (-0.1, "nose up by 6 degrees"), (0.005, "level")):
         m = {name: one.value for name, one in submerged.measures(record(np.full(101, 0.6), pitch)).items()}
-        assert f"it swims {words} (level with all air in the foam)" in submerged.said(m)
-    assert submerged.said({}) == ""
+        assert f"it swims {words} (level with all air in the foam), at" in explain(afloat | m)
+    assert "Below the surface" not in explain(afloat)
     assert submerged.measures(xr.Dataset()) == {}
 
 

@@ -222,10 +222,10 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     assert m["speed_trunk_and_tail_as_taken"] == 0.03
     assert m["speed_tail_only_as_taken"] == -0.01
     assert (m["misfit_trunk_and_tail_as_taken"], m["misfit_tail_only_as_taken"]) == (0.4, 1.4)
-    told = findings.explain(m)
+    told = ASKED.explain(m)
     assert "40% off those commanded (tail alone: 140%), it swims 30.0 mm/s and the tail alone -10.0 mm/s" in told
     assert "0.1 m high" in told
-    assert "taken" not in findings.explain(made()).replace("taken together", "")
+    assert "taken" not in ASKED.explain(made()).replace("taken together", "")
     assert not any("taken" in name for name in made())
 
 
@@ -305,13 +305,13 @@ def test_motions_and_tails_are_compared_on_one_grid():
     assert m["cost_of_transport_as_printed"] > 0
     assert m["speed_limbs_folded"] == 0.015
     assert m["cost_of_transport_limbs_folded"] == pytest.approx(2.0 / (25.0 * 0.015))
-    told = findings.explain(m)
+    told = ASKED.explain(m)
     assert "40.0 mm/s in cycle 2 on 96 cells a length" in told
     assert "10 times as fast" in told
     assert "0.1 m high" in told
     assert "3.0 times as fast" in told
     assert "limbs folded straight back it swims 15.0 mm/s on the grid where it swims 20.0 mm/s" in told
-    assert "limbs" not in findings.explain({name: value for name, value in m.items() if "limbs" not in name})
+    assert "limbs" not in ASKED.explain({name: value for name, value in m.items() if "limbs" not in name})
 
 
 def test_the_figure_of_tails_and_motions_is_drawn_from_the_record_alone():

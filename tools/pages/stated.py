@@ -1,11 +1,11 @@
 """Passages of the pages that state what was measured: their words in ``docs/stated``, their numbers filled in by name.
 
 A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->`` of a page; its words are the Jinja template
-``docs/stated/NAME.md``, in which ``{{ swim_3d.speed:.3f }}`` is a measure of the experiment ``swim_3d``, written as
-Python's format does, or in another unit where the format begins with it, as ``mm.1f`` (``suchus.verdict.Reading``).
-What was measured is kept: of an experiment the measures of its full form, of a search its outcome, both in
-``tests/docs/stated``; ``claims`` are the shares that suchus ships. A test compares pages and measures; another, which
-``make validate`` runs, compares the measures with new runs.
+``docs/stated/NAME.md``, in which ``{{ swim_3d.speed:.3f }}`` is a measure of the experiment ``swim_3d``, written as in
+the explanations of the experiments themselves (``suchus.experiment.templates``). What was measured is kept: of an
+experiment the measures of its full form, of a search its outcome, both in ``tests/docs/stated``; ``claims`` are the
+shares that suchus ships. A test compares pages and measures; another, which ``make validate`` runs, compares the
+measures with new runs.
 
 Usage: python tools/pages/stated.py OUTCOME.json ...: keep what these outcomes measured, and write the pages anew.
 """
@@ -20,16 +20,16 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, meta
-from jinja2.ext import Extension
+from jinja2 import Environment, meta
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from pages import passages
+from suchus import experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import AUTHORS, CLAIMS, TITLE
-from suchus.verdict import SHARES, Reading, compared, listed
+from suchus.verdict import SHARES
 from suchus.verdict.shares import ROBUST
 
 ROOT = Path(__file__).parents[2]
@@ -39,22 +39,6 @@ KEPT = ROOT / "tests" / "docs" / "stated"
 CLAIM_SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
 VERDICTS = DOCS / "verdicts.json"
 WIDTH = 118
-_NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
-
-
-class _Numbers(Extension):
-    """``{{ number:.3f }}`` in a template."""
-
-    def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:
-        """Return the template with formats as a filter."""
-        del name, filename
-        return _NUMBER.sub(r'{{ (\1) | write("\2") }}', source)
-
-
-def write(value: float, form: str) -> str:
-    """Return a number as written, zero without a minus."""
-    text = format(Reading(value), form)
-    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
 
 
 def three_digits(value: float) -> str:
@@ -81,17 +65,10 @@ def greatest(measures: Mapping[str, float], start: str) -> float:
 @cache
 def templates() -> Environment:
     """Return where the words of the passages come from."""
-    environment = Environment(
-        loader=FileSystemLoader(WORDS),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        extensions=[_Numbers],
-        autoescape=False,
-    )
-    environment.filters |= {"write": write, "three_digits": three_digits}
+    environment = experiment.templates(WORDS)
+    environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "numbers": numbers,
-                            "greatest": greatest, "compared": compared, "listed": listed}  # fmt: skip
+                            "greatest": greatest}  # fmt: skip
     return environment
 
 

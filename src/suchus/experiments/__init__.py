@@ -1,7 +1,8 @@
 """The shelf of experiments: one folder or one file, one question.
 
 A folder holds ``experiment.py``, which declares ``experiment``, and beside it what belongs to the question alone: its
-``rules``, its ``figure``, tables that it needs. Importing the shelf imports none of them.
+``rules``, its ``figure``, the words of what decided in ``explanation.md``, tables that it needs. Importing the shelf
+imports none of them.
 """
 
 from operator import methodcaller

@@ -149,10 +149,6 @@ class BipedalReach(Experiment):
         """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
         return findings.measures(record)
 
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what it takes to stand up, what it costs to stand safely, and what the heights follow."""
-        return findings.explained(measures)
-
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         caption = "From the crawl up on hind legs and tail, and down again into the crawl."
         page = partial(replay, record, self.robot, labels=("standing up",), title="Standing up", caption=caption)

@@ -1,7 +1,5 @@
 """What the experiment ``bipedal_reach`` reads from its record: every number, and what decides."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
@@ -9,7 +7,6 @@ from suchus.experiment import Measure
 from suchus.metrics import held, peak_torque
 from suchus.motion.rising import LEAD
 from suchus.paper import CLAIMS
-from suchus.verdict import Reading, compared, listed
 
 _LIFTED = 0.37
 """Share of the stretched length beyond which the reach shows that the front has left the ground [-].
@@ -90,25 +87,6 @@ def _gains(record: xr.Dataset) -> dict[str, Measure]:
     found["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
     found["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")
     return found
-
-
-def explained(measures: Mapping[str, float]) -> str:
-    """Return what decides, in sentences that follow from the measures."""
-    m = {name: Reading(value) for name, value in measures.items()}
-    enough = compared(m["pitch_torque"], m["cantilever_torque"], less="too little for", more="enough for")
-    helped = [
-        f"{direction} {m[f'push_{direction}_off']:.1f} N without feedback, {m[f'push_{direction}_on']:.1f} N with it"
-        for direction in ("fore", "aft", "lateral")
-    ]
-    return (
-        f"The first pitch joint of the trunk must lift the level forebody as a cantilever, which takes "
-        f"{m['cantilever_torque']:.2f} N m; its servo gives {m['pitch_torque']:g} N m, {enough} it. That alone decides "
-        f"for {m['map_told_by_cantilever']:.0%} of the robots on the map of torque and mass whether they stand up. "
-        f"From lifting the front to standing the centre of mass is at least {m['margin_rising']:mm.0f} mm behind the "
-        f"feet. Hind leg, spine and head in one line are {m['stretched_length']:.3f} m; the stand reaches "
-        f"{m['reach_standing']:.3f} m, the crawl {m['reach_crawl']:.3f} m with the hips at {m['hip_height']:mm.0f} mm. "
-        f"The smallest pushes that topple it: {listed(helped)}."
-    )
 
 
 def least_lead(record: xr.Dataset) -> float:

@@ -31,7 +31,6 @@ from suchus.metrics import (
 from suchus.motion import START, FootPath, longest_strokes
 from suchus.paper import SNAPSHOT_TIMES
 from suchus.replay import replay
-from suchus.verdict import Reading, compared
 
 _EQUAL = "limbs_only_equal_displacement"
 _SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
@@ -172,37 +171,7 @@ class CrawlStability(TwoGroups):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the dragged tail, its swing and the trunk's swing each do to the height's fluctuation."""
-        m = {name: Reading(value) for name, value in measures.items()}
-
-        def turns(name: str) -> str:
-            return f"{compared(m[name], 0.0, less='lowers it', more='raises it')} by {abs(m[name]):.0%}"
-
-        parts = [
-            f"{what} {turns(name)}{more.format(turns(also) if also in m else '')}"
-            for what, name, more, also in _PARTS
-            if name in m
-        ]
-        lifted = (
-            "So the answer hangs on where the tail of the control group is: against a control group with its tail in "
-            f"the air spine and tail change the fluctuation by {m['com_height_pp_change_tail_lifted']:+.0%}, against "
-            f"one whose tail lies still by {m['com_height_pp_change']:+.0%}, and against the same legs with "
-            if "com_height_pp_change_tail_lifted" in m
-            else f"Spine and tail change it by {m['com_height_pp_change']:+.0%}, and against the same legs with "
-        )
-        usual = Reading(self._stroke())
-        form = "mm.0f" if self.robot.length > _LONG else "mm.1f"
-        equal = (
-            f"strokes of {m['stroke_equal_displacement']:{form}} instead of {usual:{form}} mm"
-            if usual > 0
-            else "their longest strokes"
-        )
-        split, digits = "; ".join(parts), 2 if form == "mm.0f" else 4
-        return (
-            f"The height of the centre of mass moves by {m['com_height_pp_coordinated']:mm.1f} mm with spine and tail "
-            f"and by {m['com_height_pp_limbs_only']:mm.1f} mm with limbs only. {split[:1].upper()}{split[1:]}"
-            f"{'. ' if parts else ''}{lifted}{equal}, which get {m[f'forward_{_EQUAL}']:.{digits}f} m, "
-            f"by {m['com_height_pp_change_equal_displacement']:+.0%}."
-        )
+        return self.told(measures, stroke=self._stroke())
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw height over time, the snapshots, the spread."""

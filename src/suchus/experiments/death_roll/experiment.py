@@ -18,7 +18,6 @@ from suchus.metrics import between, peak_torque, roll_rate, whole
 from suchus.motion import Gait, roll
 from suchus.progress import portion
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
@@ -215,19 +214,7 @@ class DeathRoll(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        speed, torque = self._load(measures, "speed"), self._load(measures, "torque")
-        nearer = compared(speed, torque, less="their torque is", more="their speed is", same="both are", within=0.01)
-        return (
-            f"In vacuum the body rolls {m['rate_lateral_only_vacuum']:.3f} times a second by the lateral bend of the "
-            f"trunk alone and {m['rate_vertical_only_vacuum']:.3f} times by its vertical bend alone; with both it "
-            f"rolls {m['rate_trunk_vacuum']:.2f} times a second if the vertical bend lags by a quarter of a cycle, and "
-            f"{m['rate_reversed_vacuum']:.2f} if it leads. With trunk and tail bent to the same side, as a C, it rolls "
-            f"{m['rate_c_shape_vacuum']:.2f} times a second, bent to opposite sides, as an S, "
-            f"{m['rate_s_shape_vacuum']:.2f}; in water {m['rate_c_shape_water']:.2f} and "
-            f"{m['rate_s_shape_water']:.2f}. As a C the servos reach {speed:.0%} of their greatest speed and "
-            f"{torque:.0%} of their torque: {nearer} nearer to the limit."
-        )
+        return self.told(measures, **{what: self._load(measures, what) for what in ("speed", "torque")})
 
     def _load(self, measures: Mapping[str, float], what: str) -> float:
         """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""

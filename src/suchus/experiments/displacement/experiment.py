@@ -24,7 +24,6 @@ from suchus.metrics import displacement as displacement_of
 from suchus.motion import START, FootPath, suits
 from suchus.paper import CLAIMS, CYCLES
 from suchus.replay import replay
-from suchus.verdict import Reading
 
 _GROUPS = CONDITIONS[:2]
 _LONG = 0.5  # [m]; of a body whose displacement is told to a centimetre
@@ -183,42 +182,6 @@ class Displacement(TwoGroups):
             measures["forward_over_tail_pitch_low"] = Measure(float(pitched.min()), "m")
             measures["forward_over_tail_pitch_high"] = Measure(float(pitched.max()), "m")
         return measures
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what each part adds, and how far the free numbers move the result."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        backwards = (
-            "walks the robot backwards"
-            if m["forward_antiphase"] < 0
-            else f"leaves {m['forward_antiphase'] / m['forward_coordinated']:.0%} of the displacement"
-        )
-        form = ".2f" if self.robot.length > _LONG else ".3g"  # a body may be as small as a hand
-        parts = [f"the swing of the trunk makes {m['gain_spine_swing']:{form}} m"] if "gain_spine_swing" in m else []
-        if "gain_tail_swing" in m:
-            lies = f"{_adds(m['gain_tail_contact'])} by lying on the ground and " if "gain_tail_contact" in m else ""
-            parts.append(f"the tail {lies}{_adds(m['gain_tail_swing'])} by its swing")
-        split = f"Of the difference {'; '.join(parts)}. " if parts else ""
-        pitches = (
-            f"; over the tail pitches tried the displacement runs from {m['forward_over_tail_pitch_low']:.2f} to "
-            f"{m['forward_over_tail_pitch_high']:.2f} m"
-            if "forward_over_tail_pitch_low" in m
-            else ""
-        )
-        lifted = (
-            f"With its tail held in the air the control group drags its hind feet "
-            f"{m['hind_duty_limbs_tail_lifted']:.0%} of the time, with its tail on the ground "
-            f"{m['hind_duty_limbs_only']:.0%}."
-            if "hind_duty_limbs_tail_lifted" in m
-            else f"With limbs only the hind feet stand {m['hind_duty_limbs_only']:.0%} of the time, with all of the "
-            f"axis {m['hind_duty_coordinated']:.0%}."
-        )
-        return (
-            f"With {_AXIS[bool(parts)]} the robot gets {m['forward_ratio']:.1f} times as far as with the same legs "
-            f"alone ({m['forward_coordinated']:{form}} against {m['forward_limbs_only']:{form}} m). {split}"
-            f"{'Three' if pitches else 'Two'} free numbers decide. Over the map of leg stroke and trunk bend the ratio "
-            f"runs from {m['ratio_on_map_low']:.1f} to {m['ratio_on_map_high']:.1f}{pitches}. The worst phase of the "
-            f"trunk against the legs {backwards} ({m['forward_antiphase']:{form}} m). {lifted}"
-        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the crawls, what each part adds, the displacement over time and what decides it."""
@@ -388,10 +351,6 @@ def _ranged(name: str, value: float, repeats: xr.DataArray, unit: str) -> dict[s
         f"{name}_low": Measure(float(repeats.min()), unit),
         f"{name}_high": Measure(float(repeats.max()), unit),
     }
-
-
-def _adds(gain: float) -> str:
-    return f"{'adds' if gain > 0 else 'takes'} {abs(gain):.3f} m"
 
 
 _GAINS = (

@@ -147,10 +147,6 @@ class Feedback(Experiment):
             record, self.gait, self.hold, self.after
         )
 
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what each rule mends and what it does not."""
-        return findings.explain(measures)
-
     def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
         caption = (
             "From limbs out of step: loads felt across the body bring them into the gait, and, half transparent, "

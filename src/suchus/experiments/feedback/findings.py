@@ -1,14 +1,11 @@
 """What the experiment ``feedback`` reads from its record: every number, and what decided."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
 from suchus.experiment import Measure
 from suchus.metrics.coordination import cycles_until, phase_error
 from suchus.motion import START, Gait
-from suchus.verdict import Reading, compared
 
 SHOWN = ("open", "closed", "steered")
 """The arms whose measures are named."""
@@ -92,31 +89,6 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
         measures[f"drift_side_slope_{arm}"] = Measure(drift, "m")
         measures[f"turning_limp_yaw_{arm}"] = Measure(float(turning.sel(arm=arm)), "rad")
     return measures | _undisturbed_measures(record, gait) | _loop_measures(part, gait)
-
-
-def explain(measures: Mapping[str, float]) -> str:
-    """Return what decided the outcome, from its measures."""
-    m = {name: Reading(value) for name, value in measures.items()}
-    when = compared(
-        m["cycles_to_converge"], m["cycles_to_converge_own_load"],
-        less="sooner than", more="later than", same="as soon as", within=0.05,
-    )  # fmt: skip
-    rules, hip = "the rules", "hip"
-    alone = "all change the displacement by "
-    if "uphill_gain_tail" in m:
-        rules, hip = "the three rules", "yaw"
-        alone = f"the tail's rule alone changes the displacement by {m['uphill_gain_tail']:+.0%}, all three by "
-    return (
-        f"Limbs that feel the loads of all feet find the gait from {m['converged_cross_load']:.0%} of the random "
-        f"starts, 90 % of them within {m['cycles_to_converge']:.1f} cycles, {when} limbs that feel their own foot "
-        f"alone ({m['cycles_to_converge_own_load']:.1f}); without feedback {m['converged_off']:.0%} find it. Kicked "
-        f"limbs keep {m['kick_kept_closed']:.0%} of the displacement with {rules} and "
-        f"{m['kick_kept_open']:.0%} without. A stuck spine joint costs {m['locked_spine_loss_closed']:.0%} instead of "
-        f"{m['locked_spine_loss_open']:.0%}; uphill {alone}{m['uphill_gain_closed']:+.0%}. A limp front {hip} turns "
-        f"the robot by {m['turning_limp_yaw_open']:deg.0f} degrees in the last cycle without feedback, by "
-        f"{m['turning_limp_yaw_closed']:deg.0f} with {rules}, and by {m['turning_limp_yaw_steered']:deg.0f} "
-        "with the heading loop."
-    )
 
 
 def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:

@@ -22,7 +22,6 @@ from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 
 STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
 """No motion."""
@@ -201,30 +200,6 @@ class Floating(Experiment):
                for kind, one in (("floating", afloat), ("bare", bare)) for name, unit in _STATICS.items()
                if np.isfinite(float(one[f"static_{name}"]))},
         }  # fmt: skip
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how the bare robot lies in the water, what the hull changes, and how far the forces can be trusted."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        bare = (
-            f"The bare robot sinks: it weighs {m['mass_bare']:.2f} kg and displaces {1e3 * m['volume_bare']:.2f} l, so "
-            f"that {1e3 * m['missing_bare']:.2f} l of foam or {m['surplus_bare']:.2f} kg less would be needed"
-            if m["surplus_bare"] > 0
-            else f"The bare robot floats: it weighs {m['mass_bare']:.2f} kg and could displace "
-            f"{1e3 * m['volume_bare']:.2f} l"
-        )
-        gm = compared(m["metacentric_height_floating"], 0.0, less="unstable", more="stable", same="indifferent")
-        end = (
-            f"comes to rest at {m['roll_at_rest']:deg.1f} degrees"
-            + (f", upright after {m['righting_time']:.1f} s" if m["righting_time"] == m["righting_time"] else "")
-        )  # fmt: skip
-        return (
-            f"{bare}. With its hull it floats with {m['share_above']:.1%} of its volume above the surface and is "
-            f"{gm} upright (metacentric height {m['metacentric_height_floating']:mm.0f} mm); its righting lever "
-            f"vanishes at {m['vanishing_floating']:deg.0f} degrees of heel, and let go at the greatest heel it {end}. "
-            f"The forces are exact to rounding where an answer is known (draft {m['draft_error']:.0e} m); what is left "
-            f"is the time step's: heave period {m['heave_period_error']:.0e}, energy {m['energy_gain']:.1%} in the "
-            f"physics' own steps and {m['energy_gain_rk4']:.0e} in Runge-Kutta's."
-        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the righting lever with the rolls, and the checks against exact answers."""

@@ -29,7 +29,6 @@ from suchus.motion import START, Gait, as_table
 from suchus.paper import CYCLES
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, listed
 
 _PARTS = ("spine", "tail")
 _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
@@ -121,24 +120,7 @@ class GaitDiagram(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how what the feet and joints do differs from what is commanded."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        duties = listed([f"{m[f'duty_factor_{leg}']:.0%} ({leg})" for leg in layout(self.robot).limb_names])
-        bends = listed(
-            [
-                f"the {name} {'bends ' if name == 'spine' else ''}by {m[f'{name}_amplitude']:deg.0f} degrees"
-                f"{' to each side' if name == 'spine' else ''}, {m[f'{name}_gain']:.0%} of its command and "
-                f"{m[f'{name}_lag']:.3f} cycle after it"
-                for name in ("spine", "tail")
-                if f"{name}_gain" in m
-            ]
-        )
-        diagonal = m["diagonal_phase_error"]
-        apart = f"; the stances of diagonal pairs are up to {diagonal:.2f} cycle apart" if diagonal >= 0 else ""
-        return (
-            f"Limb phases and bends are commanded; which foot stands is measured by its contact force. The feet are "
-            f"commanded to stand for {m['duty_factor_commanded']:.0%} of the cycle and stand for {duties}{apart}."
-            f"{' ' if bends else ''}{bends[:1].upper()}{bends[1:]}{'.' if bends else ''}{_upright(m)}"
-        )
+        return self.told(measures, legs=layout(self.robot).limb_names)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw commanded and sensed."""
@@ -165,18 +147,6 @@ class GaitDiagram(Experiment):
             "Below, the lateral angles, then the vertical ones.",
         )
         return {"gait_diagram": figure}
-
-
-def _upright(m: Mapping[str, Reading]) -> str:
-    """Return how spine and tail move up and down, in a sentence; empty where neither can."""
-    moves = listed(
-        [
-            f"the {part} by {m[f'{part}_vertical_amplitude']:deg.1f} degrees about {m[f'{part}_vertical_mean']:deg.1f}"
-            for part in _PARTS
-            if f"{part}_vertical_mean" in m
-        ]
-    )
-    return f" Up and down moves {moves}; down is positive." if moves else ""
 
 
 def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,7 +22,6 @@ from suchus.metrics import between, displacement, flight_share
 from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 _RUN_UP = 1.0  # [s]; before anything is measured
 
@@ -190,25 +188,6 @@ class GallopLimits(Experiment):
             "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
             "gallops_share": Measure(float(gallops.mean()), "-"),
         }
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the bound comes to with the robot's servos, and which it would take."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        verb = "outruns" if m["bound_over_walk"] > 1.0 else "does not outrun"
-        needed = (
-            f"At {m['torque_own']:g} N m it takes servos of {m['servo_speed_needed']:g} rad/s to gallop"
-            if isfinite(m["servo_speed_needed"])
-            else f"At {m['torque_own']:g} N m no servo speed of the map makes it gallop"
-        )
-        return (
-            f"With servos of {m['torque_own']:g} N m and {m['servo_speed_own']:g} rad/s the bound goes "
-            f"{m['speed_bound']:.2f} m/s, {m['flight_bound']:.0%} of the time in flight, and {verb} the fastest trot "
-            f"or walk ({m['speed_walk']:.2f} m/s); its leg joints turn with up to {m['joint_speed_bound']:.1f} rad/s. "
-            f"{needed}, which is to be faster than any trot or walk with the same servos and to fly a tenth of the "
-            f"time at least. The fastest bound on the map, with {m['torque_best']:g} N m and "
-            f"{m['servo_speed_best']:g} rad/s, goes {m['speed_bound_best']:.2f} m/s with {m['flight_bound_best']:.0%} "
-            f"in flight, its leg joints turning with {m['joint_speed_best']:.0f} rad/s."
-        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""

@@ -152,7 +152,13 @@ class JointFaults(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say which choice of reading decides most, what walking without the trunk costs, and what steering does."""
-        return findings.explained(measures, self.kind, self.legs)
+        ends = f"_{KINDS[0]}_{LEGS_FAILED[0]}_coordinated"
+        others = {
+            name.removeprefix("loss_").removesuffix(ends): loss
+            for name, loss in measures.items()
+            if name.startswith("loss_") and name.endswith(ends) and f"{name}_repeated_low" not in measures
+        }
+        return self.told(measures, others=others, only_knees=all("knee" in joint for joint in others))
 
     @property
     def _duration(self) -> float:

@@ -11,7 +11,6 @@ from suchus.experiment import Measure
 from suchus.land import KINDS, LEGS_FAILED
 from suchus.metrics import loss
 from suchus.paper import CLAIMS
-from suchus.verdict import Reading, compared, listed
 
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
@@ -118,64 +117,6 @@ def _support(record: xr.Dataset) -> dict[str, Measure]:
             f"com_rise_{state}": Measure(float(height.sel(state=state) - height.sel(state="intact")), "m"),
         }
     return found
-
-
-def explained(measures: Mapping[str, float], kind: str, legs: str) -> str:
-    """Return what decides, in sentences that follow from the measures.
-
-    Args:
-        measures: every number of the experiment.
-        kind: the reading of the article's 'lost' that is steered.
-        legs: whether one leg or both of a girdle are steered.
-    """
-    m = {name: Reading(value) for name, value in measures.items()}
-    effects = {
-        "what 'failed' means (limp or locked)": m["effect_of_kind"],
-        "which joint fails": m["effect_of_joint"],
-        "whether one leg or both lose it": m["effect_of_legs"],
-    }
-    most = max(effects, key=lambda name: effects[name])
-    sizes = listed([f"{100 * value:.0f} points for {name}" for name, value in effects.items()])
-    tail = "loss_intact_limbs_tail_lifted"
-    lifted = f" (with its tail in the air at {m[tail]:+.0%})" if tail in m else ""
-    return (
-        f"What a fault costs with spine and tail depends most on {most}: on average one choice differs from "
-        f"another by {sizes}. The article says only which joint. Without the trunk the intact "
-        f"robot is already at {m['loss_intact_limbs_only']:+.0%}{lifted}, against which the cost of the fault itself "
-        f"is to be held. {_steering(m, kind, legs)}{_others(m)}"
-    )
-
-
-def _steering(m: Mapping[str, Reading], kind: str, legs: str) -> str:
-    """Return what the feedback rules and the heading loop make of every loss."""
-    changes = []
-    for joint in _joints_of(m, f"_{kind}_{legs}_steered"):
-        name = f"loss_{joint}_{kind}_{legs}"
-        alone, steered = m[f"{name}_coordinated"], m[f"{name}_steered"]
-        word = compared(steered, alone, less="more", more="less", same="as much", within=0.05)
-        changes.append(f"{joint.replace('_', ' ')} {alone:+.0%} to {steered:+.0%} ({word} lost)")
-    if not changes:
-        return "A table of angles cannot be steered."
-    return f"Steering changes the loss from: {'; '.join(changes)}."
-
-
-def _others(m: Mapping[str, Reading]) -> str:
-    """Return what the joints cost, limp in one leg, that lie farther from the hip."""
-    ends = f"_{KINDS[0]}_{LEGS_FAILED[0]}_coordinated"
-    main = _joints_of(m, f"{ends}_repeated_low")
-    others = [joint for joint in _joints_of(m, ends) if joint not in main]
-    costs = listed([f"{joint.replace('_', ' ')} {m[f'loss_{joint}{ends}']:+.0%}" for joint in others])
-    if not others:
-        return ""
-    which = "The knee, of which the article says nothing, costs" if all("knee" in o for o in others) else "Others cost"
-    return f" {which}, limp in one leg: {costs}."
-
-
-def _joints_of(m: Mapping[str, Reading], ends: str) -> list[str]:
-    """Return the joints of whose loss there is a measure of a kind."""
-    return [
-        name.removeprefix("loss_").removesuffix(ends) for name in m if name.startswith("loss_") and name.endswith(ends)
-    ]
 
 
 def table(record: xr.Dataset) -> str:

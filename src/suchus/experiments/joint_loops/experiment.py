@@ -23,7 +23,6 @@ from suchus.metrics import between, displacement, whole
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 
 TESTS = ("step", "load", "let_go")
 """A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
@@ -92,11 +91,11 @@ class JointLoops(Experiment):
             time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
         kp = layout(self.robot).robot.servo(self.joint).kp
-        attrs = {"gripped": self._gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
+        attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return Simulated(record=data.assign_attrs(attrs))
 
     @property
-    def _gripped(self) -> float:
+    def gripped(self) -> float:
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _GRIPPED * control_period(self.robot)
 
@@ -110,7 +109,7 @@ class JointLoops(Experiment):
     def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""
         step = physics_step(self.robot)
-        free, held = round(self.seconds / step), round(self._gripped / step)
+        free, held = round(self.seconds / step), round(self.gripped / step)
         none, at = np.zeros(free), np.full(free, self.step)
         never = np.zeros(free, dtype=bool)
         found: list[list[np.ndarray]] = [[], [], []]
@@ -159,34 +158,6 @@ class JointLoops(Experiment):
             "tracking_by_damping": Measure(1.0 - float(record.less_both_ms.sum()) / total - by_load, "-"),
         }
 
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the integral buys and costs on the stand, and in the crawl."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        first, last = (f"ki_{ki:g}".replace(".", "_") for ki in (self.integrals[0], self.integrals[-1]))
-        better = compared(
-            m[f"tracking_error_{last}"],
-            m[f"tracking_error_{first}"],
-            less="less",
-            more="more",
-            same="as much",
-            within=0.02,
-        )
-        farther = compared(
-            m[f"forward_{last}"], m[f"forward_{first}"], less="less far", more="farther", same="as far", within=0.01
-        )
-        return (
-            f"Under {_load(m['load'])} N m, the torque that {self.joint} bears in the crawl, the joint sags by "
-            f"{m[f'droop_{first}']:deg.2f} degrees without an integral term and ends {m[f'droop_{last}']:deg.2f} "
-            f"degrees off with {self.integrals[-1]:g} N m/(rad s). A free step overshoots by "
-            f"{m[f'overshoot_{first}']:.0%} without and {m[f'overshoot_{last}']:.0%} with it; after being clamped for "
-            f"{self._gripped:g} s, in which it winds up, by {m[f'overshoot_let_go_{first}']:.0%} and "
-            f"{m[f'overshoot_let_go_{last}']:.0%}. In the crawl droop makes {m['tracking_by_droop']:.0%} of the mean "
-            f"square of the tracking error, damping {m['tracking_by_damping']:.0%}. With the integral term the joints "
-            f"are off by {better} ({m[f'tracking_error_{last}']:deg.2f} against "
-            f"{m[f'tracking_error_{first}']:deg.2f} degrees), and the robot gets {farther} "
-            f"({m[f'forward_{last}']:.3f} against {m[f'forward_{first}']:.3f} m)."
-        )
-
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the tests on the stand and the errors of the crawl."""
         return {
@@ -203,11 +174,6 @@ class JointLoops(Experiment):
                 "each kind with several integral gains.",
             ),
         }
-
-
-def _load(torque: float) -> str:
-    """Return a torque as text: two decimals, or two digits of a very small one [N m]."""
-    return f"{torque:.2f}" if torque >= 0.05 else f"{torque:.2g}"
 
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:

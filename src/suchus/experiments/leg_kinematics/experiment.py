@@ -16,7 +16,6 @@ from suchus.gaits import GAITS
 from suchus.kinematics import leg, printed
 from suchus.motion import Gait, movement
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 EXACT = 1e-9
 """A foot nearer than this to where it should be counts as exact [m]."""
@@ -108,20 +107,6 @@ class LegKinematics(Experiment):
             "leg_servos": Measure(float(record.attrs["leg_servos"]), "-"),
             "actuators": Measure(float(record.attrs["actuators"]), "-"),
         }
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say where (14) is exact, and whether the gaits stay there."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        crawl, walk = m["printed_inverse_holds_crawl"], m["printed_inverse_holds_high_walk"]
-        stays = "stay where it is exact" if crawl == 1.0 else f"are where it is exact {crawl:.1%} of the time"
-        return (
-            "The printed arctan confuses a point with the one opposite to it, so that the quadrant of the foot "
-            f"decides. Outboard of and below the hip (14) is exact at {m['printed_inverse_holds_outboard_below']:.0%} "
-            f"of the points, elsewhere at {m['printed_inverse_holds_elsewhere']:.0%}, over the whole reach at "
-            f"{m['printed_inverse_holds']:.0%}; where it fails it sets the foot {m['printed_foot_error_median']:mm.0f} "
-            f"mm off in the median. The feet of the sprawled crawl {stays}; erect feet, below their hips, are there "
-            f"{walk:.1%} of the time. With atan2 and both signs the worst error is {m['round_trip_error']:.0e} m."
-        )
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the maps of error and workspace, and the misprints."""

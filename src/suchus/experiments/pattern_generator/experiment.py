@@ -24,7 +24,6 @@ from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 
 _NUMBERS = Oscillators()
 _EDGE = 0.01  # above the limbs' highest drive, where they have just fallen silent
@@ -142,34 +141,7 @@ class PatternGeneratorExperiment(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the drive does, what steers, and how order comes about."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        jump = compared(m["frequency_jump"], 1.0, less="falls", more="rises", same="stays", within=0.01)
-        kinds = [
-            "a standing wave" if m[f"standing_index_{state}"] >= STANDING else "no standing wave"
-            for state in ("walk", "swim")
-        ]
-        turns = abs(m["turn_steering"] - m["turn_straight"]), abs(m["turn_asymmetry"] - m["turn_straight"])
-        steer = compared(*turns, less="less", more="more", same="as much", within=0.05)
-        walk, swim = (
-            f"{m[f'locked_share{end}']:.0%} of the starts lock {state}, after {m[f'lock_cycles{end}']:.1f} cycles on "
-            f"average and {m[f'lock_cycles{end}_most']:.1f} at most"
-            for end, state in (("", "while walking"), ("_swim", "with silent limbs"))
-        )
-        return (
-            f"The limbs' oscillators saturate at a lower drive than those of the axis. As long as the limbs are active "
-            f"they entrain the axis: {kinds[0]} (standing index {m['standing_index_walk']:.2f}) at "
-            f"{m['frequency_walk']:.2f} Hz. Above that drive the axis oscillates by itself: "
-            f"{kinds[1]} (index {m['standing_index_swim']:.2f}) with a lag of {m['lag_swim']:.3f} cycle from one "
-            f"segment to the next, and the frequency {jump} from {m['frequency_below']:.2f} to "
-            f"{m['frequency_above']:.2f} Hz where the limbs fall silent. From random phases {walk}; {swim}. A steady "
-            f"bend of the trunk turns the walk by {m['turn_steering']:deg+.1f} degrees a cycle and an asymmetric drive "
-            f"by {m['turn_asymmetry']:deg+.1f} (straight: {m['turn_straight']:deg+.1f}): the bend turns {steer}. In "
-            f"water, with the drive for walking and the loads of its feet as feedback, a floating robot swims at "
-            f"{m['drive_swim_speed']:.2f} m/s and walks at {m['drive_walk_speed']:.2f}; its limbs change between "
-            f"silent and walking {m['drive_changes']:.0f} time(s), and it ends {m['drive_ashore']:+.2f} m up "
-            f"the shore from the water "
-            f"line, and {m['drive_ashore_unfelt']:+.2f} m without that feedback."
-        )
+        return self.told(measures, standing=STANDING)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the ramp, the sweep, the locks, and what drive and steering do on land."""

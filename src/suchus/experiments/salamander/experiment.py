@@ -31,7 +31,6 @@ from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 
@@ -140,16 +139,7 @@ class Salamander(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set wave and forces beside the animal's, and say what the axis adds."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        more = compared(m["stride_walk"], m["stride_straight_axis"], less="shorter than", more="longer than", same="as")
-        return (
-            f"Played on the robot, the animal's angles make a stride of {m['stride_walk']:.3f} body lengths, {more} "
-            f"the {m['stride_straight_axis']:.3f} with the axis held straight; over the other frictions it is "
-            f"{m['stride_low']:.3f} to {m['stride_high']:.3f}. The axis bends with a standing index of "
-            f"{m['standing_index_walk']:.2f} (animal: {ANIMAL['standing_index_walk'].value:.2f}). "
-            + " ".join(_foot_forces(m, pair) for pair in PAIRS)
-            + f" The belly carries {m['belly_load']:.1%} of the weight and the tail {m['tail_load']:.0%}."
-        )
+        return self.told(measures, animal=ANIMAL)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the joint angles over the cycle, and the foot forces beside the animal's."""
@@ -171,18 +161,6 @@ def _under_load(record: xr.Dataset, when: Window) -> dict[str, Measure]:
         "belly_share": Measure(float((belly > 0.0).mean()), "-"),
         "tail_load": Measure(float(part.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
     }
-
-
-def _foot_forces(m: Mapping[str, Reading], pair: str) -> str:
-    """Return a sentence on the forces under a pair of feet."""
-    animal, net = ANIMAL[f"foot_force_net_{pair}"], m[f"foot_force_net_{pair}"]
-    apart = abs(net - animal.value) / animal.spread
-    where = "within" if apart <= 1.0 else "outside"
-    return (
-        f"On the {pair} feet the greatest net force is {net:.2f} body weights, {where} one standard deviation of the "
-        f"animals' {animal.value:.2f} ± {animal.spread:.2f}, at {m[f'foot_force_time_{pair}']:.0%} of stance (animals: "
-        f"{ANIMAL[f'foot_force_time_{pair}'].value:.0%}); they slip at {m[f'foot_slip_{pair}']:.2f} of the speed."
-    )
 
 
 experiment = Salamander()

@@ -18,7 +18,6 @@ from suchus.experiments.salamander_swim.figure import draw_envelope, draw_stride
 from suchus.land import Lake, Run, simulate
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,19 +154,7 @@ class SalamanderSwim(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set the stride beside the animal's."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        side = "more" if m["stride_off"] > 0 else "less"
-        within = "within" if m["stride_low"] <= animal.STRIDE <= m["stride_high"] else "outside"
-        return (
-            f"Played on the model, the animal's angles swim {m['stride_swim']:.3f} body lengths a cycle, "
-            f"{abs(m['stride_off']):.0%} {side} than the animal's {animal.STRIDE:g}, which is {within} the "
-            f"{m['stride_low']:.3f} to {m['stride_high']:.3f} of the highest frequency in other waters. The Strouhal "
-            f"number is {m['strouhal']:.2f}. It heels by {m['heel']:deg.0f} degrees at most; {m['share_under']:.0%} "
-            f"of it is under water. The snout swings by {m['swing_snout']:.2f} of the body's length from end to end, "
-            f"the tail's tip by {m['swing_tail']:.2f}, and least of all, by {m['swing_least']:.2f}, the body "
-            f"{m['swing_least_at']:.2f} behind the snout. The joints miss their angles by {m['angle_missed']:deg.1f} "
-            "degrees (root mean square)."
-        )
+        return self.told(measures, stride=animal.STRIDE)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the strides over the frequency, and how far the body swings along its length."""

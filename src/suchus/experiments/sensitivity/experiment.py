@@ -22,7 +22,7 @@ from suchus.robots import ROBOTS
 from suchus.study import Claims, conducted
 from suchus.study.answers import share_interval
 from suchus.study.claims_table import claim_row, table, turned
-from suchus.verdict import SHARES, listed
+from suchus.verdict import SHARES
 from suchus.verdict.shares import ROBUST, Share
 
 _ALARM = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
@@ -110,33 +110,18 @@ class Sensitivity(Experiment):
         }
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say which claims nearly all designs agree on, what turns the others, and whether the shipped table holds."""
-        keys = [n.removeprefix("judged_") for n in measures if n.startswith("judged_") and measures[n] > 0]
-        if not keys:
-            return "No design of this run could be judged."
-        share = {key: measures[f"share_{key}"] for key in keys}
-        groups = {
-            "hold in at least nine of ten": [k for k in keys if share[k] >= ROBUST],
-            "hold in one of ten at most": [k for k in keys if 1 - share[k] >= ROBUST],
-            "depend on the design": [k for k in keys if max(share[k], 1 - share[k]) < ROBUST],
-        }
-        sorted_out = "; ".join(
-            f"{len(claims)} {words} ({listed([key.replace('_', ' ') for key in claims])})"
-            for words, claims in groups.items()
-            if claims
-        )
-        text = (
-            f"Of {sum(measures[name] for name in _COUNTS.values()):.0f} designs "
-            f"{measures['samples_walked']:.0f} walk. Of the {len(keys)} claims {sorted_out}."
-        )
-        compared = int(measures["compared_with_shipped"])
-        if not compared:
-            return text
-        chance = measures["shipped_agreement_chance"]
-        alike = "agree" if chance >= _ALARM else "do not agree"
-        return (
-            f"{text} The shares of this run and those of the shipped table {alike} (Fisher's exact test of {compared} "
-            f"claims, Bonferroni: p = {chance:.2g})."
+        """Say which claims nearly all designs agree on, and whether the shipped table holds."""
+        named = {name.removeprefix("judged_"): count for name, count in measures.items() if name.startswith("judged_")}
+        judged = [key for key, count in named.items() if count > 0]
+        hold = [key for key in judged if measures[f"share_{key}"] >= ROBUST]
+        fail = [key for key in judged if 1.0 - measures[f"share_{key}"] >= ROBUST]
+        depend = [key for key in judged if key not in (*hold, *fail)]
+        spoken_of = {"hold": hold, "fail": fail, "depend": depend, "judged": judged}
+        return self.told(
+            measures,
+            designs=sum(measures[name] for name in _COUNTS.values()),
+            alarm=_ALARM,
+            **{name: [key.replace("_", " ") for key in keys] for name, keys in spoken_of.items()},
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

@@ -23,7 +23,6 @@ from suchus.metrics.energy import METRES
 from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared, listed
 from suchus.water import fit, printed_wave
 
 _DRY, _DEEP = -10.0, 3.0
@@ -240,46 +239,13 @@ class Shore(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how many runs came ashore, what this depends on, and the work per metre."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        by_air = [
-            f"{m[f'ashore_share_air_released_{i}']:.0%} with {m[f'air_released_{i}']:.0%} of its air let out"
-            for i in range(sum(name.startswith("air_released_") for name in m))
-        ]
-        gaits = {name.removeprefix("ashore_share_"): share for name, share in m.items() if name in _gait_names(m)}
-        walked = [f"{share:.0%} by {name.replace('_', ' ')}" for name, share in gaits.items()]
-        by_friction = compared(
-            m["ashore_share_most_grip"],
-            m["ashore_share_least_grip"],
-            less="fewer than",
-            more="more than",
-            same="as many as",
-        )
-        costs = [
-            f"{m[f'work_per_metre_{ending}']:.1f} J {where}"
-            for ending, where in METRES.items()
-            if m[f"work_per_metre_{ending}"] == m[f"work_per_metre_{ending}"]
-        ]
-        by_gait = f"Of all slopes at one friction: {listed(walked)}. " if walked else ""
-        when = f", half of these within {m['time_ashore']:.0f} s" if m["time_ashore"] == m["time_ashore"] else ""
-        return (
-            f"{m['ashore_share']:.0%} of the runs came ashore{when}; {m['falls']:.0f} fell. The most changes between "
-            f"swimming and walking in one run are {m['switches']:.0f}. On the steepest slope it is "
-            f"{m['ashore_share_steepest']:.0%}: {listed(by_air)}. With the greatest friction {by_friction} "
-            f"with the least come ashore ({m['ashore_share_most_grip']:.0%} and {m['ashore_share_least_grip']:.0%}). "
-            f"{by_gait}From land {m['into_water_share']:.0%} went into the water and swam "
-            f"on. The work per metre is {listed(costs)}; the depth is held to {m['depth_error']:mm.0f} mm."
-        )
+        other = ("steepest", "least_grip", "most_grip", "air_released")
+        names = [name.removeprefix("ashore_share_") for name in measures if name.startswith("ashore_share_")]
+        return self.told(measures, metres=METRES, gaits=[name for name in names if not name.startswith(other)])
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
         return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
-
-
-def _gait_names(measures: Mapping[str, float]) -> list[str]:
-    """Return the names of the measures with the share of runs that come ashore by each gait."""
-    other = ("steepest", "least_grip", "most_grip", "air_released")
-    names = [name for name in measures if name.startswith("ashore_share_")]
-    return [name for name in names if not name.removeprefix("ashore_share_").startswith(other)]
 
 
 experiment = Shore()

@@ -25,7 +25,6 @@ from suchus.motion import START, Gait, hip_height
 from suchus.paper.animals import ANIMAL
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
@@ -180,24 +179,13 @@ class SpeedRange(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what a torque-speed line changes."""
-        m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
-        walks = [
-            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} walks at {m[f'speed_{name}']:.2f} m/s with a cost "
-            f"of transport of {m[f'cost_{name}']:.2f} and {m[f'joint_speed_{name}']:.1f} rad/s in its fastest leg joint"
-            for name in names
-        ]
-        fastest, cheapest = (
-            pick(names, key=lambda name: m[f"{what}_{name}{end}"]).replace("_", " ")
-            for pick, what, end in ((max, "speed", "_fastest"), (min, "cost", "_least"))
-        )
-        changed = max(abs(m[f"speed_{name}_speed_line"] / m[f"speed_{name}"] - 1.0) for name in names)
-        return (
-            f"At its own cycle time {'; '.join(walks)}. Over all cycle times the {fastest} is the fastest and "
-            f"{'also' if cheapest == fastest else f'the {cheapest}'} the cheapest. A torque-speed line in the servos "
-            f"changes the speeds by at most {changed:.0%}. "
-            f"{ANIMAL['high_walk_speed'].who} walk high at {m['animals_high_walk_slowest']:g} to "
-            f"{m['animals_high_walk_fastest']:g} m/s."
+        return self.told(
+            measures,
+            fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
+            cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
+            changed=max(abs(measures[f"speed_{name}_speed_line"] / measures[f"speed_{name}"] - 1.0) for name in names),
+            animals=ANIMAL["high_walk_speed"].who,
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

@@ -16,7 +16,6 @@ from suchus.experiments.spine_kinematics import figure as pictures
 from suchus.experiments.spine_kinematics.rules import EXACT
 from suchus.kinematics import printed, spine
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 _METRE = {"units": "m"}
 MILD = pi / 6
@@ -88,19 +87,7 @@ class SpineKinematics(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how far (15) is from Table II, whether the lost term explains it, and what the inverse leaves open."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        long = m["straight_length"]
-        if m["printed_error_share"] <= EXACT:
-            return f"(15) is the end of Table II: they differ by {m['printed_error_max']:.0e} m at most."
-        upward = "is right" if m["printed_error_upward_max"] <= EXACT * long else "is wrong too"
-        term = "explains it all" if m["mended_error_max"] <= EXACT * long else "does not explain it all"
-        return (
-            f"The end of the spine by (15) as printed is {m['printed_error_mean']:mm.0f} mm from that by Table II on "
-            f"average; Pz {upward}. One missing term {term}: with 60.5 C4 where 0.5 stands in Px and Py they differ by "
-            f"{m['mended_error_max']:.0e} m at most. The inverse is ours; position and azimuth leave one joint free, "
-            f"and the least bending fixes it: in the median it saves {m['bending_saved_median']:.0%} of the squared "
-            f"angles. The straight spine can move in {m['straight_jacobian_rank']:.0f} of five directions."
-        )
+        return self.told(measures, exact=EXACT)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the workspace, the misprint and the choice of the least bending."""

@@ -211,10 +211,6 @@ class Swim3d(Experiment):
         """Return what the body did on every grid, and beside it slice, models, motions and tails."""
         return findings.measures(record, self.robot, self.frequency)
 
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Set body, slice and models beside each other."""
-        return findings.explain(measures)
-
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speeds over the cycles, the wake, the tails and the joints' torques."""
         record = outcome.record

@@ -10,7 +10,6 @@ from suchus.design import GRAVITY, Robot
 from suchus.design.water import Water
 from suchus.experiment import Measure
 from suchus.experiments._taken import TAKEN, TakenMidline
-from suchus.verdict import Reading
 
 WHOLE = "trunk and tail"
 """The motion that the others are compared with."""
@@ -169,46 +168,3 @@ def _loads(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     for servo in record.servo.values:
         one = record.sel(servo=servo)
         yield f"servo_load_peak_{servo}", Measure(float(abs(one.servo_torque).max() / one.servo_limit), "-")
-
-
-def explain(measures: Mapping[str, float]) -> str:
-    """Return what decided the outcome, from its measures."""
-    m = {name: Reading(value) for name, value in measures.items()}
-    text = (
-        f"At f L^2 / nu = {m['reynolds']:.0f} the body of the robot swims {1e3 * measures['speed']:.1f} mm/s in cycle "
-        f"{m['cycles']:.0f} on {m['cells_per_length']:.0f} cells a length, {m['speed_gain']:+.1%} on the cycle before"
-    )
-    if "speed_over_grids" in m:
-        text += f" and {m['speed_over_grids']:+.1%} on the next coarser grid"
-    text += (
-        f", with {m['power']:.2f} W. At the same number the slice of unlimited depth swims {m['speed_slice']:.3f} m/s, "
-        f"{m['slice_over_body']:.0f} times as fast, and the slender-body models of the round body say "
-        f"{m['speed_resistive']:.3f} and {m['speed_reactive']:.3f} m/s; in real water they say "
-        f"{m['speed_resistive_real_water']:.2f} and {m['speed_reactive_real_water']:.2f} m/s. "
-    )
-    if "speed_limbs_folded" in m:
-        text += (
-            f"With its limbs folded straight back it swims {1e3 * measures['speed_limbs_folded']:.1f} mm/s on the grid "
-            f"where it swims {1e3 * measures['speed_trunk_and_tail']:.1f} mm/s without them. "
-        )
-    if "speed_trunk_and_tail_as_taken" in m:
-        text += (
-            "With the midlines that the joints take in six degrees of freedom, "
-            f"{m['misfit_trunk_and_tail_as_taken']:.0%} off those commanded (tail alone: "
-            f"{m['misfit_tail_only_as_taken']:.0%}), it swims "
-            f"{1e3 * measures['speed_trunk_and_tail_as_taken']:.1f} mm/s and the tail alone "
-            f"{1e3 * measures['speed_tail_only_as_taken']:.1f} mm/s. "
-        )
-    highest = [name for name in measures if name.startswith("speed_tail_") and name[11].isdigit()]
-    if highest:
-        high, bare = measures[highest[-1]], measures["speed_trunk_and_tail"]
-        text += (
-            f"With the last third of the body {highest[-1].removeprefix('speed_tail_').replace('_', '.')} m high it "
-            f"swims {1e3 * high:.1f} mm/s on the grid where {1e3 * bare:.1f} mm/s is the robot's own: "
-            f"{high / bare:.1f} times as fast. "
-        )
-    return text + (
-        f"In real water f L^2 / nu would be {measures['reynolds_real_water']:.2g}, "
-        f"{measures['reynolds_real_water'] / measures['reynolds']:.3g} times as much: no newton or watt here is "
-        "that of the robot in it."
-    )

@@ -23,7 +23,6 @@ from suchus.land.afloat import check_floats
 from suchus.motion import LIMBS_BACK, Swim
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading, compared
 from suchus.water import Outline, fit, printed_wave, swim
 from suchus.water.sections import likely
 from suchus.water.slender import cruise, cycle, reactive
@@ -244,30 +243,6 @@ class SwimFree(Experiment):
                 "tail_spread": Measure(_uneven(whole, record), "-"),
                 "tail_spread_stiff": Measure(_uneven(part.isel(run=labels.index("whole_stiff")), record), "-"),
             }
-        )
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what each part of the body gives, what the joints' stiffness changes, and how sure that is."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        tail = compared(m["speed_tail_only"], m["speed_tail_only_stiff"], less="less", more="more", within=0.05)
-        gain = compared(m["speed_whole_stiff"], m["speed_whole"], less="slower", more="faster", within=0.02)
-        turns = compared(abs(m["turn_radius"]), 1.0, less="less", more="more")
-        table = f"{m['cross_drag_by_table']:.2f} and {m['added_mass_by_table']:.2f}"
-        return (
-            f"With the whole wave it swims at {m['speed_whole']:.3f} m/s, with the trunk alone at "
-            f"{m['speed_trunk_only']:.3f} and with the tail alone at {m['speed_tail_only']:.3f} m/s, {tail} than the "
-            f"{m['speed_tail_only_stiff']:.3f} m/s of a tail with stiffer joints. The cable fixes the sum of its "
-            f"joints' angles only, and the water distributes it among them: the largest bend is {m['tail_spread']:.1f} "
-            f"times the mean ({m['tail_spread_stiff']:.1f} with stiffer joints). Models whose midline is commanded "
-            f"give {m['speed_tail_only_resistive']:.2f} and {m['speed_tail_only_reactive']:.2f} m/s for the tail "
-            f"alone, since they leave this out. With stiffer joints the whole wave is {gain} "
-            f"({m['speed_whole_stiff']:.3f} m/s). Reversed, it moves at {m['speed_reversed']:.3f} m/s. It rolls by "
-            f"{m['roll_amplitude']:deg.1f} degrees at most and, steered, turns on a radius of "
-            f"{abs(m['turn_radius']):.2f} m, {turns} than 1 m. Over the plausible coefficients of the water the speed "
-            f"is {m['speed_low']:.3f} to {m['speed_high']:.3f} m/s; oscillating sections have {table} times the drag "
-            f"and the added mass that it swims with. Half the time step changes the speed by "
-            f"{m['step_change']:.1%}. The servos take {m['servo_power']:.2f} W, of which the water gets "
-            f"{m['water_power']:.2f}.{submerged.said(m)}"
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

@@ -1,8 +1,7 @@
 """The swims of ``swim_free`` below the surface: how level the robot is, by where its air is and by what holds it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from math import degrees, radians
 
 import numpy as np
 import xarray as xr
@@ -16,7 +15,6 @@ from suchus.experiment import Measure
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run
 from suchus.model.hydrostatics import hydrostatics
-from suchus.verdict import listed
 
 DEEP = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
@@ -118,26 +116,3 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
         arrived = 0.0 if not far.size else float(times[far[-1] + 1]) if far[-1] + 1 < len(times) else float("nan")
         found[f"dive_time{ending}"] = Measure(arrived, "s")
     return found | {"front_air": Measure(float(record.deep_front[0]), "-")}
-
-
-def said(m: Mapping[str, float]) -> str:
-    """Return what the measures say of the swims below the surface; nothing if there are none."""
-    if "pitch_deep" not in m:
-        return ""
-    others = [
-        f"{_pitched(m[f'pitch_deep_{name}'])} {what}"
-        for name, what in (("held", "if moving air holds the pitch"), ("in_foam", "with all air in the foam"))
-        if f"pitch_deep_{name}" in m
-    ]
-    beside = f" ({listed(others)})" if others else ""
-    return (
-        f" Below the surface, neutrally buoyant, it swims {_pitched(m['pitch_deep'])}{beside}, at "
-        f"{m['speed_deep']:.3f} m/s, and keeps its depth within {1e3 * m['depth_error_deep']:.0f} mm."
-    )
-
-
-def _pitched(pitch: float) -> str:
-    """Return how a body is pitched, in words."""
-    if abs(pitch) < radians(0.5):
-        return "level"
-    return f"nose {'down' if pitch > 0 else 'up'} by {degrees(abs(pitch)):.0f} degrees"

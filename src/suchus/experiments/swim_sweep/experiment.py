@@ -18,7 +18,6 @@ from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
 from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.motion import Swim
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 from suchus.water import MODELS, Swum, fit, greatest, printed_wave, scaled, survey
 from suchus.water.resolved import SwimSetting, resolved_swim
 
@@ -194,17 +193,7 @@ class SwimSweep(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how the speed depends on frequency and amplitude, and how far the slender-body models are from CFD."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        said = [
-            f"By the {model} model the speed grows as the frequency to the power of "
-            f"{m[f'speed_power_of_frequency_{model}']:.2f} and as the amplitude to that of "
-            f"{m[f'speed_power_of_amplitude_{model}']:.2f}; where joints and servos can follow it is "
-            f"{m[f'speed_most_{model}']:.2f} m/s at most, the efficiency {m[f'efficiency_most_{model}']:.2f}. It puts "
-            f"{m[f'order_agrees_{model}']:.0%} of the pairs of points in the same order as CFD, and its "
-            f"speeds are off by {m[f'error_mean_{model}']:+.0%} on the average."
-            for model in MODELS
-        ]
-        return " ".join(said)
+        return self.told(measures, models=MODELS)
 
     def _peers(self, record: xr.Dataset) -> str:
         """Return a table of published motions of crocodilians and robots beside the caiman's."""

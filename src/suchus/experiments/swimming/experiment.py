@@ -170,10 +170,6 @@ class PlaneSwims(Experiment):
         """Return what the tethered and the free body did, and how fast each motion swims."""
         return findings.measures(record, self.robot, self.frequency, self.reading)
 
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what tail, trunk and direction of the wave do to the speed."""
-        return findings.explain(measures)
-
     def _setting(
         self, free: tuple[bool, bool, bool], cells: int, cycles: int, reynolds: float | None = None
     ) -> SwimSetting:

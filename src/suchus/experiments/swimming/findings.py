@@ -7,7 +7,6 @@ import xarray as xr
 
 from suchus.design import Robot
 from suchus.experiment import Measure
-from suchus.verdict import Reading
 from suchus.water import Quarters, Sway, Swum, convex_higher, efficiency, wave_form
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
@@ -46,31 +45,6 @@ def part(record: xr.Dataset, name: str) -> xr.Dataset:
     mine = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
     return mine.rename(
         {str(v): str(v).removeprefix(start) for v in {*mine.variables, *mine.dims} if str(v).startswith(start)}
-    )
-
-
-def explain(measures: Mapping[str, float]) -> str:
-    """Return what decided the outcome, from its measures."""
-    m = {name: Reading(value) for name, value in measures.items()}
-    bent = (
-        f" On the midline that the joints take in six degrees of freedom, whose angles are "
-        f"{m['misfit_trunk_and_tail_as_taken']:.0%} off those commanded (tail alone: "
-        f"{m['misfit_tail_only_as_taken']:.0%}), they swim {m['speed_trunk_and_tail_as_taken']:.3f} m/s and the tail "
-        f"alone {m['speed_tail_only_as_taken']:.3f} m/s."
-        if "speed_trunk_and_tail_as_taken" in m
-        else ""
-    )
-    return (
-        f"Trunk and tail together swim {m['speed_trunk_and_tail']:.3f} m/s, the tail alone {m['speed_tail_only']:.3f} "
-        f"and the trunk alone {m['speed_trunk_only']:.3f} m/s: the swing of the tail {_adds(m['gain_tail_swim'])}, "
-        f"that of the trunk {_adds(m['gain_spine_swim'])}. Run as printed, from tail to head, the joints' motion swims "
-        f"{m['speed_as_printed']:+.3f} m/s and a midline that follows the wave exactly "
-        f"{m['speed_exact_wave_as_printed']:+.3f} m/s, head first positive; the resistive model of the round body says "
-        f"{m['speed_as_printed_resistive']:+.3f} m/s. With its few joints the body follows (20) to within "
-        f"{m['misfit']:.0%} of the tail's swing, and the swing of the free body falls back by up to "
-        f"{m['envelope_dip']:.0%} on its way to the "
-        f"tip.{bent} The water is a slice of unlimited depth at a Reynolds number far below the robot's own: "
-        "suchus run swim_3d shows what the robot's own body does there in three dimensions."
     )
 
 
@@ -177,7 +151,3 @@ def _ranged(name: str, values: list[float], unit: str) -> Iterator[tuple[str, Me
     yield name, Measure(float(values[-1]), unit)
     yield f"{name}_low", Measure(float(min(values)), unit)
     yield f"{name}_high", Measure(float(max(values)), unit)
-
-
-def _adds(gain: float) -> str:
-    return f"{'adds' if gain > 0 else 'takes'} {abs(gain):.3f} m/s"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
-from math import isnan, pi
+from math import pi
 from typing import Any, ClassVar
 
 import numpy as np
@@ -22,7 +22,6 @@ from suchus.metrics import between, tail_joint_spread, whole
 from suchus.motion import START, Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 SHAPES = (0.0, pi / 2, pi)
 """Bends at which the tail is drawn [rad]."""
@@ -136,16 +135,7 @@ class TailBending(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how large the dropped term is, what it does to the cords, and how alike the joints turn."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        straight = m["printed_last_joint_error_straight"]
-        already = f"already for a straight tail, by {straight:mm.0f} mm" if straight > 0 else "for a bent tail only"
-        fails = f"fail {already}" if m["printed_last_joint_error_max"] > 0 else "are right"
-        return (
-            "The ratio of the plates' gap h to the cords' spacing d decides: the term that (17) drops is h/d "
-            f"tan(theta / 4N) of the one that it keeps, at most {m['error_of_eq_17_max']:.1%} here and "
-            f"{m['error_of_eq_17_plausible']:.1%} at the ends of the plausible ranges. Where it is not zero one cord "
-            f"hangs loose, by up to {m['slack_max']:mm.1f} mm. The positions of (19) {fails}. {_crawling(m)}"
-        )
+        return self.told(measures, alike=ALIKE)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the bent tails, the error of (17) and what the cords do."""
@@ -240,17 +230,6 @@ def _facts(robot: Robot) -> dict[str, float]:
         "tail_actuators": sum(name.startswith("tail") for name in servo_names()),
         "tail_share": plates.length / robot.length,
     }
-
-
-def _crawling(m: Mapping[str, Reading]) -> str:
-    """Return how alike the joints turn in the crawls."""
-    if isnan(m["tail_joint_spread"]):
-        return "The robot's legs cannot follow the crawl, so that nothing is known of how alike its tail's joints turn."
-    return (
-        f"In the crawl the joints' angles differ by up to {m['tail_joint_spread']:deg.0f} degrees, and by more than "
-        f"{Reading(ALIKE):deg.0f} degrees for {m['tail_joint_spread_share']:.0%} of the time; with a straight trunk by "
-        f"up to {m['tail_joint_spread_straight']:deg.0f} degrees, for {m['tail_joint_spread_share_straight']:.0%}."
-    )
 
 
 def _spreads(record: xr.Dataset) -> dict[str, Measure]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import permutations
+from math import isfinite, nan
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -138,7 +139,8 @@ class Terrain(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each posture keeps of its displacement on rough ground, and what switching is worth."""
-        return findings.explain(measures)
+        kept = {kind: measures.get(f"kept_{kind}_low_crawl", nan) for kind in ("bumps", "step", "stone")}
+        return self.told(measures, kinds=[kind for kind, share in kept.items() if isfinite(share)])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         height = f"{1000 * self._shown_height:.3g}"

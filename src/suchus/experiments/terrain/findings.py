@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from suchus.experiment import Measure
-from suchus.verdict import Reading, listed
 
 FALLEN = np.radians(60)
 """Roll or pitch beyond which nothing on the robot brings it back [rad]."""
@@ -17,15 +16,6 @@ _EVEN = 1e-9  # [m]; heights that differ by less are equal
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED = ("low_crawl", "high_walk_level")
-_CALLED = {
-    "low_crawl": "the low crawl",
-    "semi_erect": "the semi-erect walk",
-    "high_walk": "the high walk",
-    "high_walk_level": "the high walk with the IMU",
-    "switching": "the switching robot",
-    "thrifty": "the robot that begins in the crawl",
-}
-_KINDS = {"bumps": "bumps", "step": "steps", "stone": "stones"}
 
 
 def measures(record: xr.Dataset) -> Mapping[str, Measure]:
@@ -103,23 +93,6 @@ def _transitions(record: xr.Dataset) -> dict[str, Measure]:
         },
         "transition_tilt": Measure(float(record.change_tilt.max()), "rad"),
     }
-
-
-def explain(measures: Mapping[str, float]) -> str:
-    """Return what decided the outcome, from its measures."""
-    m = {name: Reading(value) for name, value in measures.items()}
-    kinds = [kind for kind in _KINDS if m.get(f"kept_{kind}_low_crawl", Reading("nan")) > -1e9]
-    arms = [arm for arm in _CALLED if f"falls_{arm}" in m]
-    shares = {arm: listed([format(m[f"kept_{kind}_{arm}"], ".0%") for kind in kinds]) for arm in arms}
-    kept = "; ".join(f"{_CALLED[arm]} {shares[arm]} (falls: {m[f'falls_{arm}']:.0f})" for arm in arms)
-    met = ", ".join(f"{m[f'met_{kind}_low_crawl']:.0%} of the {_KINDS[kind]}" for kind in kinds)
-    within = m["switching_grounds_within_5_percent"]
-    return (
-        f"On {listed([_KINDS[kind] for kind in kinds])} these shares of the displacement on even ground remain: "
-        f"{kept}. The low crawl met {met}. On even ground it costs {m['flat_cost_ratio']:.2f} of the high walk's work "
-        f"over the same distance. The switching robot gets at least {m['switching_share_of_best_worst']:.0%} as far as "
-        f"the best single posture, and within 5 % of it on {within:.0f} of {m['grounds']:.0f} grounds."
-    )
 
 
 def _share_of_best(record: xr.Dataset) -> xr.DataArray:

@@ -20,7 +20,6 @@ from suchus.metrics import between, heading_change
 from suchus.motion import START, Gait, trunk_amplitude
 from suchus.replay import replay
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 
@@ -184,21 +183,12 @@ class Turning(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say by what each gait turns tightest, and how far commanded circles are off."""
-        m = {name: Reading(value) for name, value in measures.items()}
         names = [gait.name for gait in self.gaits]
-        tightest = [
-            f"the {name.replace('semi_', 'semi-').replace('_', ' ')} {m[f'tightest_bend_{name}']:.2f} m by a "
-            f"curvature offset, {m[f'tightest_asymmetry_{name}']:.2f} m by unequal strokes and "
-            f"{m[f'tightest_both_{name}']:.2f} m by the mixture of both"
-            for name in names
-        ]
-        walked = sum(m[f"circles_walked_{name}"] for name in names)
-        off = max(m[f"radius_off_{name}"] for name in names)
-        circles = f"of {len(names) * len(self.asked)} commanded circles {walked:.0f} can be walked"
-        how = f", and their radius is off by at most {off:.0%}" if walked else ""
-        return (
-            f"Radius of the tightest turn: {'; '.join(tightest)}. "
-            f"The mixture for a commanded radius is read from a measured curve: {circles}{how}."
+        return self.told(
+            measures,
+            circles=len(names) * len(self.asked),
+            walked=sum(measures[f"circles_walked_{name}"] for name in names),
+            off=max(measures[f"radius_off_{name}"] for name in names),
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:

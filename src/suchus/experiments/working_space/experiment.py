@@ -16,7 +16,6 @@ from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.motion.working_space import Extent, Reached, extent, outline, reached
 from suchus.robots import ROBOTS
-from suchus.verdict import Reading
 
 STATES = ("crawling", "standing")
 """On four feet; on hind feet and tail."""
@@ -92,21 +91,6 @@ class WorkingSpace(Experiment):
             low, high = (rooms[state][name][0] for state in STATES)
             measures |= {f"{name}_ratio{end}": Measure(v, "-") for end, v in _quotient(high, low).items()}
         return measures
-
-    def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how much larger the room is, and what is left out."""
-        m = {name: Reading(value) for name, value in measures.items()}
-        return (
-            f"While no foot is moved, the snout reaches on four feet {1000 * m['volume_crawling']:.1f} litres of space "
-            f"({1000 * m['volume_crawling_low']:.1f} to {1000 * m['volume_crawling_high']:.1f}) and on hind feet and "
-            f"tail {1000 * m['volume_standing']:.0f} ({1000 * m['volume_standing_low']:.0f} to "
-            f"{1000 * m['volume_standing_high']:.0f}): {m['volume_ratio']:.0f} times as much, "
-            f"{m['volume_ratio_low']:.1f} times at least. Seen from the side it is {m['area_ratio']:.1f} times the "
-            f"area, and the snout comes up to {m['highest_standing']:.2f} against {m['highest_crawling']:.2f} m. Of "
-            f"the configurations drawn {m['possible_crawling']:.1%} are possible on four feet and "
-            f"{m['possible_standing']:.1%} on two. They keep joint ranges, ground and balance; torques are not "
-            "considered."
-        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the room from the side and from above."""
