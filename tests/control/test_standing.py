@@ -1,4 +1,5 @@
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -7,13 +8,17 @@ from tests.metres import limb_phase, placed
 from tests.start_batch import start_batch
 
 import suchus
+from suchus import blueprint
 from suchus.control.standing import BALANCE, Standing
-from suchus.errors import InvalidDesign
+from suchus.design import Robot, crocodile, with_values
+from suchus.design.scale import coarse_step, scaled
+from suchus.errors import InvalidDesign, UnsuitedRobot
+from suchus.gaits import own_gait
 from suchus.kinematics import leg as leg_kinematics
 from suchus.land import Run, simulate
 from suchus.metrics.reach import lead, reach
 from suchus.motion.posture import plan
-from suchus.motion.rising import stand_up
+from suchus.motion.rising import stand_up, stretched
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 SOON = Standing(at=0.2, hold=4.0, blend=1.0)
@@ -138,6 +143,47 @@ def test_the_caiman_stands_up_and_down_again():
     assert float(height.sel(time=slice(SOON.down_from(CAIMAN), None)).max()) < 0.2
     forward = record.centre_of_mass.sel(xyz="x").isel(run=0)
     assert float(forward[-1] - forward.sel(time=SOON.down_from(CAIMAN), method="nearest")) > 0.05
+
+
+def risen(robot, size):
+    """Return the least height of a robot that should stand, and how high its own chains could reach [m]."""
+    soon = Standing(
+        at=0.2 * size**0.5,
+        hold=1.0 * size**0.5,
+        blend=size**0.5,
+        balance=scaled(BALANCE, length_factor=size),
+        rise=stand_up(robot, slower=size**0.5),
+    )
+    run = Run(robot=robot, gait=own_gait(robot), control=soon)
+    record = simulate([run], duration=soon.upright_until(robot), timestep=coarse_step(robot), every=10)
+    late = reach(robot, record).isel(run=0).sel(time=slice(soon.upright_from(robot), None))
+    return float(late.min()), stretched(robot)
+
+
+def test_a_body_of_the_article_in_another_size_stands_as_it_does():
+    size = 0.3 / CAIMAN.length
+    hatchling = crocodile(replace(scaled(CAIMAN.tables, length_factor=size), name="hatchling"))
+    height, line = risen(hatchling, size)
+    alike, whole = risen(CAIMAN, 1.0)
+    assert height / line == pytest.approx(alike / whole, rel=2e-3)
+    assert height > 0.95 * line
+
+
+@pytest.mark.parametrize(("torque", "stands"), [(4.0, False), (9.0, True)])
+def test_a_longer_body_stands_where_its_trunk_can_lift_its_forebody(torque, stands):
+    """Six spine joints and servos in the tail: it takes 4.09 N m to lift its level forebody off the ground."""
+    file = Path(__file__).parents[1] / "experiments" / "six.toml"
+    longer = with_values(blueprint.read(file, Robot, suchus.ROBOTS), {"spine.pitch_servo.torque": torque})
+    height, line = risen(longer, 1.0)
+    assert (height > 0.9 * line) == stands
+    assert stands or height < 0.3 * line
+
+
+@pytest.mark.parametrize("name", ["salamander", "strider"])
+def test_who_lacks_a_chain_is_refused_before_anything_moves(name):
+    robot = suchus.ROBOTS[name]
+    with pytest.raises(UnsuitedRobot, match=f"needs .*a trunk that bends up and down.*; robot '{name}' lacks that"):
+        start_batch(Standing(at=0.1, hold=0.1), [robot], [own_gait(robot)], [0], 10, PERIOD)
 
 
 def test_impossible_settings_are_refused():

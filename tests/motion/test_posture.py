@@ -1,46 +1,112 @@
 from dataclasses import replace
+from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
 import suchus
-from suchus.design import crocodile, joint_names, servo_names
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus import blueprint
+from suchus.design import Robot, Spring, crocodile, layout
+from suchus.design.scale import scaled
+from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.kinematics import leg as leg_kinematics
 from suchus.model import compile_model, joint_addresses
 from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import STRETCH, stand_up, stretched, tallest
 
 CAIMAN = suchus.ROBOTS["caiman"]
+SIX = blueprint.read(Path(__file__).parents[1] / "experiments" / "six.toml", Robot, suchus.ROBOTS)
+SMALL = replace(scaled(CAIMAN, length_factor=0.3 / CAIMAN.length), name="small")
+
+
+def eight() -> Robot:
+    """A body of eight legs, light ones in the middle, the hind ones not at the root's origin; no tables make it."""
+    front, hind = CAIMAN.girdles
+    light = replace(front.limb, links=tuple(replace(link, mass=0.01) for link in front.limb.links))
+    middle = [replace(front, name=name, segment=f"spine_{i}", at=0.0, limb=light) for name, i in (("M", 3), ("N", 2))]
+    return replace(CAIMAN, name="eight", girdles=(front, *middle, replace(hind, at=-0.02, above=-0.006)))
+
+
 RISE = stand_up(CAIMAN)
 TIME = np.linspace(0.0, RISE.duration, 76)
 
 
 def in_mujoco(robot, targets, pitch, hip_height):
-    """Put a robot into a posture and return its MuJoCo data."""
+    """Put a robot into a posture, its hips above the world's origin, and return its MuJoCo data."""
     model = compile_model(robot)
     data = mujoco.MjData(model)
-    data.qpos[2] = hip_height
+    at, above, s, c = robot.girdles[-1].at, robot.girdles[-1].above, np.sin(pitch), np.cos(pitch)
+    data.qpos[:3] = s * above - c * at, 0.0, hip_height - s * at - c * above
     data.qpos[3:7] = np.cos(pitch / 2), 0.0, -np.sin(pitch / 2), 0.0  # front end up
-    names = [name for name in joint_names(robot) if name in servo_names()]
+    names = [name for name in layout(robot).servos if name in layout(robot).hinges]
     data.qpos[joint_addresses(model, names)] = targets[: len(names)]
     mujoco.mj_forward(model, data)
     return data
 
 
 @pytest.mark.parametrize("tick", [0, 15, 37, 50, 75])
-def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(tick):
-    planned = plan(CAIMAN, RISE, TIME)
-    down = planned.feet[tick, 2]
-    data = in_mujoco(CAIMAN, planned.targets[tick], planned.pitch[tick], down)
+@pytest.mark.parametrize("robot", [CAIMAN, SIX, SMALL, eight()], ids=lambda robot: robot.name)
+def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(robot, tick):
+    planned = plan(robot, stand_up(robot), TIME)
+    data = in_mujoco(robot, planned.targets[tick], planned.pitch[tick], planned.feet[tick, 2])
     for side, name in ((1.0, "LH"), (-1.0, "RH")):
         foot = data.site(f"{name}_foot").xpos
-        out = side * (CAIMAN.hind_leg.hip_offset + planned.feet[tick, 0])
+        out = side * (robot.leg(name).hip_offset + planned.feet[tick, 0])
         assert foot == pytest.approx([planned.feet[tick, 1], out, 0.0], abs=1e-9)
     com = data.subtree_com[1]
     assert planned.feet[tick, 1] - com[0] == pytest.approx(planned.lead[tick], abs=1e-9)
     assert com[1] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("robot", [CAIMAN, SIX, SMALL, eight()], ids=lambda robot: robot.name)
+def test_a_standing_body_touches_the_ground_with_the_tip_of_its_tail(robot):
+    last = stand_up(robot).postures[-1]
+    level = Keyed(name="level", times=(0.0,), postures=(replace(last, tail_press=0.0),))
+    planned = plan(robot, level, np.zeros(1))
+    data = in_mujoco(robot, planned.targets[0], planned.pitch[0], planned.feet[0, 2])
+    tip = data.site("tail_tip").xpos[2] + robot.leg("LH").foot_radius  # the feet's centres are at zero
+    assert tip == pytest.approx(robot.tail.radius_tip, abs=1e-9)
+
+
+def test_a_scaled_body_takes_the_scaled_posture():
+    large, small = (plan(robot, stand_up(robot), TIME) for robot in (CAIMAN, SMALL))
+    assert small.targets == pytest.approx(large.targets, abs=1e-6)
+    assert small.feet / SMALL.length == pytest.approx(large.feet / CAIMAN.length, abs=1e-6)
+
+
+def test_one_pitch_joint_bends_for_both_and_three_share():
+    bent = replace(RISE.postures[-1], trunk_first=0.3, trunk_second=0.2)
+    passive = Spring(stiffness=5.0, damping=0.1, armature=0.0)
+    held = [
+        replace(segment, hinges=tuple(replace(hinge, drive=passive) for hinge in segment.hinges))
+        if segment.name == "spine_4"
+        else segment
+        for segment in CAIMAN.axis
+    ]
+    single = replace(CAIMAN, name="single", axis=tuple(held))
+    for robot, angles in ((single, [-0.5]), (SIX, [-0.3, -0.1, -0.1])):
+        planned = plan(robot, Keyed(name="up", times=(0.0,), postures=(bent,)), np.zeros(1))
+        assert planned.targets[0, list(layout(robot).trunk_pitch)] == pytest.approx(angles)
+
+
+@pytest.mark.parametrize(
+    ("name", "missing"),
+    [
+        ("salamander", ["hind legs of yaw, pitch and knee", "a trunk that bends up and down", "a tail that pitches"]),
+        ("strider", ["a trunk that bends up and down", "a tail that pitches at its root"]),
+        ("swimmer", ["hind legs of yaw, pitch and knee at its root"]),
+    ],
+)
+def test_who_cannot_stand_up_is_told_what_it_lacks(name, missing):
+    for refused in (stand_up, stretched):
+        with pytest.raises(
+            UnsuitedRobot, match=f"standing up on hind legs and tail needs .* robot '{name}' lacks"
+        ) as no:
+            refused(suchus.ROBOTS[name])
+        assert all(words in str(no.value) for words in missing)
+    with pytest.raises(UnsuitedRobot):
+        plan(suchus.ROBOTS[name], RISE, TIME)
 
 
 def test_every_key_has_its_centre_of_mass_where_it_says():
@@ -92,7 +158,8 @@ def test_a_hind_leg_reaches_points_that_do_not_turn_with_the_pelvis():
 
 def test_nothing_reaches_higher_than_the_stretched_robot():
     parts = CAIMAN.hind_leg.femur + CAIMAN.hind_leg.tibia + CAIMAN.spine.length + CAIMAN.head.snout
-    assert stretched(CAIMAN) == parts
+    assert stretched(CAIMAN) == pytest.approx(parts, abs=1e-15)
+    assert stretched(SMALL) == pytest.approx(parts * 0.3 / CAIMAN.length)
     heights = tallest(CAIMAN, np.array([0.0, 0.03, 0.06, 0.1]))
     assert heights.max() < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
     assert heights.max() > stretched(CAIMAN)

@@ -10,12 +10,11 @@ from jaxtyping import Float
 from suchus import rotation
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
-from suchus.control.suited import crocodiles
-from suchus.design import ARTICLE_BODY, Layout, Robot, check_needs, layout
+from suchus.design import Layout, Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
 from suchus.motion import Gait, intended
-from suchus.motion.posture import Keyed, hind_leg, plan
+from suchus.motion.posture import Keyed, hind_leg, plan, upright
 from suchus.motion.rising import stand_up
 
 
@@ -124,7 +123,7 @@ class Standing:
         return self.upright_until(robot) + self.slower_down * self._rise(robot).duration + self.blend
 
     def _rise(self, robot: Robot) -> Keyed:
-        return stand_up(check_needs(robot, ARTICLE_BODY, "standing up")) if self.rise is None else self.rise
+        return stand_up(robot) if self.rise is None else self.rise
 
     @staticmethod
     def start(runs: Runs, period: float) -> "Stander":
@@ -132,14 +131,15 @@ class Standing:
 
         Raises:
             OutsideLimits: a robot cannot take the postures.
+            UnsuitedRobot: a robot lacks something of ``design.STANDING``.
         """
-        robots = crocodiles(runs.robots, "standing up")
+        robots = runs.robots
         keys = [(replace(c, balance=None), r, g) for c, r, g in zip(runs.controls, robots, runs.gaits, strict=True)]
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         time = np.arange(runs.ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
-        legs, balances = [robot.hind_leg for robot in robots], [control.balance for control in runs.controls]
+        legs, balances = [upright(robot).leg for robot in robots], [control.balance for control in runs.controls]
         rows = np.array([unique[key] for key in keys])
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
@@ -165,7 +165,7 @@ class Course(NamedTuple):
 
     targets: Float[np.ndarray, "*row tick servo"]
     """Servo angles [rad]."""
-    phase: Float[np.ndarray, "*row tick 4"]
+    phase: Float[np.ndarray, "*row tick limb"]
     """Phase of the limbs [cycle]."""
     pitch: Float[np.ndarray, "*row tick"]
     """Pitch of the pelvis, front end up positive [rad]."""

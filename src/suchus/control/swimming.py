@@ -10,9 +10,8 @@ from jaxtyping import Float
 from suchus.control.controller import Command, Runs
 from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.control.sensed import Sensed
-from suchus.control.suited import crocodiles
 from suchus.control.trim import Pitches, PitchHold
-from suchus.design import Robot, layout, servo_ranges
+from suchus.design import ARTICLE_BODY, Robot, check_needs, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.kinematics import tail as tail_kinematics
@@ -86,7 +85,7 @@ class Swimming:
             OutsideLimits: a robot cannot follow its swim.
             InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
         """
-        robots = crocodiles(runs.robots, "swimming by trunk and cable")
+        robots = [check_needs(robot, ARTICLE_BODY, "swimming by trunk and cable") for robot in runs.robots]
         return SwimmingController(runs.controls, robots, runs.ticks, period)
 
 

@@ -18,7 +18,7 @@ from suchus.design.joints import (
 )
 from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import ARTICLE_BODY, NEEDS, check_needs, crocodile_like, lacking
+from suchus.design.needs import ARTICLE_BODY, NEEDS, STANDING, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
@@ -30,6 +30,7 @@ __all__ = [
     "GRAVITY",
     "LEGS",
     "NEEDS",
+    "STANDING",
     "WATER_DENSITY",
     "WATER_VISCOSITY",
     "Cable",

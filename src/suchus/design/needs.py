@@ -40,6 +40,21 @@ def _legs(robot: Robot) -> bool:
     return len(robot.girdles) == 2 and all(leg_of(girdle) is not None for girdle in robot.girdles)
 
 
+def _hind_legs(robot: Robot) -> bool:
+    hind = robot.girdles[-1] if robot.girdles else None
+    return (
+        hind is not None
+        and hind.segment == robot.root
+        and leg_of(hind) is not None
+        and all(hinge.servo is not None for hinge in hind.limb.hinges)
+    )
+
+
+def _tail_root(robot: Robot) -> bool:
+    root = robot.axis[robot.root_place]
+    return any(hinge.turn == "pitch" and hinge.servo is not None for hinge in root.hinges)
+
+
 def _shells(robot: Robot) -> bool:
     return None not in (pelvis_of(robot), thorax_of(robot), head_of(robot))
 
@@ -72,6 +87,8 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
         "spine": Need("a spine whose joints turn by yaw and pitch in turn", lambda robot: spine_of(robot) is not None),
         "tail": Need("a tail of equal plates with a passive end", lambda robot: tail_of(robot) is not None),
         "legs": Need("four legs of yaw, pitch and knee", _legs),
+        "hind_legs": Need("hind legs of yaw, pitch and knee at its root", _hind_legs),
+        "tail_root": Need("a tail that pitches at its root", _tail_root),
         "shells": Need("shells called pelvis, thorax and head", _shells),
         "article_spine": Need(
             f"the article's spine of {ARTICLE_JOINTS} joints",
@@ -88,6 +105,8 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
     }
 )
 """Everything that is asked of a robot anywhere, by name."""
+STANDING = ("hind_legs", "trunk_pitch", "tail_root")
+"""What a body needs to stand up on hind legs and tail."""
 ARTICLE_BODY = ("legs", "shells", "article_spine", "cable_tail")
 """What the article's closed forms need of a whole body: standing up, the death roll, swimming by trunk and cable."""
 

@@ -38,7 +38,7 @@ def begin(task: Task) -> Beginning:
         OutsideLimits: its joints cannot follow its swimming motion.
     """
     if task.start == "upright":
-        return _upright(check_needs(task.body, ARTICLE_BODY, "standing up"), task.ground, task.timestep)
+        return _upright(task.body, task.ground, task.timestep)
     model = compile_model(task.body, task.timestep)
     if task.start == "swimming":
         return _afloat(task, model)

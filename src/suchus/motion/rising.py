@@ -6,27 +6,42 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import ARTICLE_BODY, Robot, check_needs, joint_names, layout
-from suchus.kinematics.body import landmarks
-from suchus.kinematics.mass import centre_of_mass
-from suchus.motion.posture import Keyed, Posture, hind_leg, mass_ahead
+from suchus.design import Robot, layout
+from suchus.kinematics.tree import landmarks
+from suchus.motion.posture import (
+    Keyed,
+    Posture,
+    belly,
+    bent_up,
+    hind_leg,
+    mass_ahead,
+    mass_from_hips,
+    tail_down,
+    upright,
+)
 
 PELVIS_PITCH = radians(80)
 """Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
 TRUNK_FIRST, TRUNK_SECOND = radians(6), radians(3)
 """Of the trunk's pitch joints when standing [rad]; the trunk then points straight up."""
 LEAD = 0.05
-"""Where the centre of mass is commanded behind the feet when standing [m].
+"""Where the centre of mass is commanded behind the feet when the article's robot stands [m].
 
 The servos give way under the load and the tail pushes, so that it settles at 0.08 m. With 0.02 m the robot stands
 5 mm higher and falls at less than half the push; with zero it does not stay up.
 """
 STRETCH = 0.937
 """Height of the hips over the feet when standing, as a share of the hind leg [-]; a straight knee cannot push."""
-_STANCE = 0.03  # [m] outside the hips; farther apart the feet reach less far ahead
+_STANCE = 0.03  # [m] outside the hips, of the article's robot; farther apart the feet reach less far ahead
+_LEG = 0.086 + 0.089  # [m]; the hind leg for which the lengths of this module were chosen
 _NOT_QUITE = 0.99  # of the leg's length: a straight knee has no strength
 _ARMS_LYING = {"arm_yaw": 0.0, "arm_pitch": -0.1, "arm_knee": 0.5}  # spread, so that the shoulders come down
 _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the ground and near the trunk
+
+
+def size_of(robot: Robot) -> float:
+    """Return the length of a robot's hind leg over that of the article's, by which lengths of postures scale [-]."""
+    return upright(robot).leg.reach[1] / _LEG
 
 
 def stand_up(
@@ -34,8 +49,9 @@ def stand_up(
     *,
     pelvis_pitch: float = PELVIS_PITCH,
     stretch: float = STRETCH,
-    lead: float = LEAD,
+    lead: float | None = None,
     slower: float = 1.0,
+    size: float | None = None,
 ) -> Keyed:
     """Return the course of rising of a robot, beginning on the ground and ending on hind legs and tail.
 
@@ -49,23 +65,27 @@ def stand_up(
         robot: who stands up.
         pelvis_pitch: of the pelvis when standing [rad].
         stretch: height of the hips over the feet when standing, as a share of the hind leg's length [-].
-        lead: where the centre of mass is commanded behind the feet when standing [m].
+        lead: where the centre of mass is commanded behind the feet when standing [m]; ``LEAD`` in its size if None.
         slower: factor on all times [-].
+        size: factor on clearances and on how far apart the feet stand, 1 for the article's [-]; ``size_of`` if None.
+
+    Raises:
+        UnsuitedRobot: it lacks something of ``design.STANDING``.
     """
-    check_needs(robot, ARTICLE_BODY, "standing up")
-    leg = robot.hind_leg
+    leg, size = upright(robot).leg, size_of(robot) if size is None else size
     length = leg.femur + leg.tibia
-    ground = max(robot.pelvis.height / 2, robot.spine.radius) + 0.002
+    ground = belly(robot) + 0.002 * size
     lying = {"pelvis_pitch": 0.0, "trunk_first": 0.0, "trunk_second": 0.0, **_ARMS_LYING}
-    relaxed = {"hip_height": ground, "tail_press": -0.02, **lying}
-    level = Posture(hip_height=ground + 0.021, lead=0.0, stance=_STANCE, lift=0.0, tail_press=0.0, **lying)
-    bent = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=0.02, **_ARMS_RAISED)
+    relaxed = {"hip_height": ground, "tail_press": -0.02 * size, **lying}
+    stance, press = _STANCE * size, 0.02 * size
+    level = Posture(hip_height=ground + 0.021 * size, lead=0.0, stance=stance, lift=0.0, tail_press=0.0, **lying)
+    bent = replace(level, trunk_first=radians(50), trunk_second=radians(40), tail_press=press, **_ARMS_RAISED)
     ahead = _feet_ahead(robot, level)
     lead_level, lead_bent = (ahead - mass_ahead(robot, posture, ahead) for posture in (level, bent))
-    raised = {"stance": _STANCE, "lift": 0.0, **_ARMS_RAISED}
+    raised = {"stance": stance, "lift": 0.0, **_ARMS_RAISED}
     postures = (
-        Posture(lead=-0.57 * length, stance=0.06, lift=0.0, **relaxed),
-        Posture(lead=lead_level, stance=_STANCE, lift=0.02, **relaxed),
+        Posture(lead=-0.57 * length, stance=2 * stance, lift=0.0, **relaxed),
+        Posture(lead=lead_level, stance=stance, lift=press, **relaxed),
         replace(level, lead=lead_level),
         replace(bent, lead=lead_bent),
         Posture(
@@ -74,16 +94,16 @@ def stand_up(
             lead=0.34 * length,
             trunk_first=radians(30),
             trunk_second=radians(20),
-            tail_press=0.02,
+            tail_press=press,
             **raised,
         ),
         Posture(
             hip_height=leg.foot_radius + stretch * length,
             pelvis_pitch=pelvis_pitch,
-            lead=lead,
+            lead=LEAD * size if lead is None else lead,
             trunk_first=TRUNK_FIRST,
             trunk_second=TRUNK_SECOND,
-            tail_press=0.01,
+            tail_press=press / 2,
             **raised,
         ),
     )
@@ -97,7 +117,7 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
     That is 0.17 of the leg's length, the caiman's 30 mm, past the centre of mass, or as far as the legs reach if the
     forebody is too heavy.
     """
-    leg = robot.hind_leg
+    leg = upright(robot).leg
     length = leg.femur + leg.tibia
     down = level.hip_height - leg.foot_radius
     longest = np.sqrt((_NOT_QUITE * length) ** 2 - down**2 - level.stance**2)
@@ -105,13 +125,15 @@ def _feet_ahead(robot: Robot, level: Posture) -> float:
 
 
 def stretched(robot: Robot) -> float:
-    """Return hind leg, spine and head in one straight line [m]; no posture reaches higher over the feet's centres."""
-    check_needs(robot, ARTICLE_BODY, "standing up")
-    leg = robot.hind_leg
-    return leg.femur + leg.tibia + robot.spine.length + robot.head.snout
+    """Return hind leg, trunk and head in one straight line [m]; no posture reaches higher over the feet's centres."""
+    chains, straight = upright(robot), np.zeros(len(layout(robot).hinges))
+    ahead = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
+    return chains.leg.femur + chains.leg.tibia + ahead
 
 
-def tallest(robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = _STANCE) -> Float[np.ndarray, "*batch"]:
+def tallest(
+    robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float | None = None
+) -> Float[np.ndarray, "*batch"]:
     """Return how high the snout can be while the centre of mass lies ``lead`` behind the feet [m].
 
     Joint ranges and the length of the legs hold; torques, droop and the last millimetre of a straight knee do not
@@ -120,22 +142,19 @@ def tallest(robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = 
     Args:
         robot: the design.
         lead: how far the centre of mass lies behind the feet [m].
-        stance: how far a hind foot stands outside its hip [m].
+        stance: how far a hind foot stands outside its hip [m]; that of ``stand_up`` if None.
     """
-    check_needs(robot, ARTICLE_BODY, "standing up")
+    chains = upright(robot)
+    leg, stance = chains.leg, _STANCE * size_of(robot) if stance is None else stance
     pitch, first, second = (
         g.ravel()
         for g in np.meshgrid(*(np.radians(np.arange(a, b, c)) for a, b, c in ((46, 91, 2), (-15, 46, 5), (-15, 46, 5))))
     )
-    leg = robot.hind_leg
-    angles = np.zeros((len(pitch), len(joint_names(robot))))
-    place = layout(robot)
-    front, hind = place.limbs[:2], place.limbs[2:]
-    for limb in front:
-        angles[:, limb.hinges] = [_ARMS_RAISED[name] for name in ("arm_yaw", "arm_pitch", "arm_knee")]
-    pitch_joints = [place.servo_hinges[servo] for servo in place.trunk_pitch]
-    angles[:, pitch_joints] = np.column_stack([-first, -second])
-    root = place.behind.start  # of the tail
+    angles = np.zeros((len(pitch), len(layout(robot).hinges)))
+    for arm in chains.arms:
+        for hinge, name in zip(arm, ("arm_yaw", "arm_pitch", "arm_knee"), strict=False):
+            angles[:, hinge] = _ARMS_RAISED[name]
+    angles[:, list(chains.trunk)] = bent_up(chains, first, second)
     s, c = np.sin(pitch), np.cos(pitch)
     heights = []
     for shift in np.ravel(lead):
@@ -143,16 +162,14 @@ def tallest(robot: Robot, lead: Float[np.ndarray, "*batch"], *, stance: float = 
         for _ in range(4):  # the legs' own weight moves the centre of mass a little
             feet = np.stack([np.full(len(pitch), stance), behind, down], axis=-1)
             bent = hind_leg(leg, feet, pitch, clip=True)
-            for limb in hind:
-                angles[:, limb.hinges] = bent
-            tail = robot.tail
-            drop = (down + leg.foot_radius - tail.offset * s - tail.radius_tip) / (tail.length - tail.offset)
-            angles[:, root] = np.arcsin(np.clip(drop, -1.0, 1.0)) - pitch
-            com = centre_of_mass(robot, angles)
+            for hinges in chains.standing:
+                angles[:, hinges] = bent
+            angles[:, chains.tail] = tail_down(chains, down + leg.foot_radius, pitch, 0.0)
+            com = mass_from_hips(robot, angles)
             behind = c * com[:, 0] - s * com[:, 2] + shift
             down = np.sqrt(np.maximum(leg.reach[1] ** 2 - behind**2 - stance**2, 0.0))
-        snout = landmarks(robot, angles).snout
-        fits = (angles[:, root] >= tail.pitch_range[0]) & (angles[:, root] <= tail.pitch_range[1]) & (down > 0)
+        snout, root = landmarks(robot, angles).snout - np.array(chains.hips), angles[:, chains.tail]
+        fits = (root >= chains.tail_range[0]) & (root <= chains.tail_range[1]) & (down > 0)
         height = down + leg.foot_radius + s * snout[:, 0] + c * snout[:, 2]
         heights.append(float(np.max(np.where(fits, height, 0.0))))
     return np.reshape(np.array(heights), np.shape(lead))

@@ -12,6 +12,7 @@ from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import Robot
 from suchus.design.checks import Checks
+from suchus.design.scale import scaled
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.bipedal_reach import findings
 from suchus.experiments.bipedal_reach.figure import (
@@ -29,7 +30,7 @@ from suchus.land import Run, simulate
 from suchus.land.push_search import smallest_pushes
 from suchus.metrics import lead, reach, static_margin
 from suchus.motion import START, Gait, hip_height
-from suchus.motion.rising import LEAD, stretched, tallest
+from suchus.motion.rising import LEAD, size_of, stretched, tallest
 from suchus.replay import replay
 from suchus.robots import ROBOTS
 
@@ -92,13 +93,13 @@ class BipedalReach(Experiment):
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
-            check.number("hold", 1.0, 3600.0, "s")
-            check.number("least", 0.1, 10.0, "m")
+            check.number("hold", 0.1, 3600.0, "s")
+            check.number("least", 0.001, 100.0, "m")
             check.whole("repeats", 1, 1000)
             check.number("noise", 0.0, 1.0, "rad")
             check.whole("finer", 0, 100)
             check.that(len(self.hips) > 1, f"{self.name()}.hips has {len(self.hips)} heights; two at least are needed")
-            check.number("wait", 0.1, 60.0, "s")
+            check.number("wait", 0.01, 60.0, "s")
             check.number("timestep", 1e-5, 0.01, "s")
             check.number("longer", 0.001, 0.2, "")
 
@@ -117,6 +118,12 @@ class BipedalReach(Experiment):
             wait=1.5,
             timestep=_COARSE,
         )
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the gaits of a robot of another size, and the balance rule in that size."""
+        return Experiment.gaits_on(self, robot) | {
+            "balance": scaled(self.balance, length_factor=size_of(robot) / size_of(self.robot))
+        }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl, stand, sit, crawl; then what it takes and what it bears."""
@@ -143,7 +150,13 @@ class BipedalReach(Experiment):
             "hip_height": hip_height(self.robot, self.gait),
             "hip_height_plausible": plausible["height"] * length(self.robot, "leg"),
             "up": _UP * stretched(self.robot),
+            "commanded_lead": self._lead,
         }
+
+    @property
+    def _lead(self) -> float:
+        """How far the centre of mass is commanded behind the feet where nothing else is said [m]."""
+        return LEAD * size_of(self.robot)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
@@ -179,7 +192,9 @@ class BipedalReach(Experiment):
 
     def _settled(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
         """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
-        controls = [stand_soon(robot, ahead, self.balance) for robot, ahead in zip(robots, leads, strict=True)]
+        controls = [
+            stand_soon(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
+        ]
         able = [control is not None for control in controls]
         found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
         runs = [
@@ -201,7 +216,7 @@ class BipedalReach(Experiment):
     def _limits(self, progress: Any) -> xr.Dataset:
         """Return what robots with other trunk servos and other forebodies reach."""
         cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
-        found = self._settled(cells, [LEAD] * len(cells), progress)
+        found = self._settled(cells, [self._lead] * len(cells), progress)
         shape = len(self.torques), len(self.forebodies)
         cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
         data = xr.Dataset(
@@ -217,13 +232,13 @@ class BipedalReach(Experiment):
 
     def _pushed(self, progress: Any) -> xr.Dataset:
         """Return the smallest pushes that topple, with feedback and without, over the lead."""
-        leads = sorted({*self.leads, LEAD})
+        leads = sorted({*self.leads, self._lead})
         balances = {"on": self.balance, "off": None}
         stood = self._settled([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
         runs = [
-            Run(robot=self.robot, gait=self.straight, control=stand_soon(self.robot, lead, balance) or OpenLoop())
+            Run(robot=self.robot, gait=self.straight, control=control or OpenLoop())
             for balance in balances.values()
-            for lead in leads
+            for control in (stand_soon(self.robot, lead, balance, size_of(self.robot)) for lead in leads)
         ]
         forces = smallest_pushes(
             runs,
@@ -253,7 +268,7 @@ class BipedalReach(Experiment):
     def _lengths(self, progress: Any) -> xr.Dataset:
         """Return how crawling and standing reach change with the lengths of legs, spine and head."""
         robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
-        stood = self._settled(robots, [LEAD] * len(robots), staged(progress, "", 0.0, 0.5))
+        stood = self._settled(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
         leg = length(self.robot, "leg")
         crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
         crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
@@ -287,7 +302,7 @@ class BipedalReach(Experiment):
 
     def _ceiling(self) -> xr.Dataset:
         """Return how high any posture could reach over the distance of the centre of mass behind the feet."""
-        behind = np.linspace(0.0, 0.1, 11)
+        behind = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
         return xr.Dataset(
             {"ceiling": ("behind", tallest(self.robot, behind), {"units": "m"})},
             coords={"behind": ("behind", behind, {"units": "m"})},
@@ -302,7 +317,7 @@ class BipedalReach(Experiment):
             "height_over_time": draw_heights(record, self.hold),
             "torque_and_mass": draw_limits(self.robot, record, _UP * stretched(self.robot)),
             "ceiling": draw_ceiling(self.robot, record),
-            "pushes": draw_pushes(record, LEAD),
+            "pushes": draw_pushes(record, record.attrs["commanded_lead"]),
         }
 
 

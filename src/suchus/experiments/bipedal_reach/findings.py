@@ -5,7 +5,6 @@ import xarray as xr
 
 from suchus.experiment import Measure
 from suchus.metrics import held, peak_torque
-from suchus.motion.rising import LEAD
 from suchus.paper import CLAIMS
 
 _LIFTED = 0.37
@@ -71,7 +70,7 @@ def _pushes(record: xr.Dataset) -> dict[str, Measure]:
         stays = (reach > record.attrs["least"]).all("repeat_time")
         found[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
         for direction in record.direction.values:
-            force = record.push.sel(feedback=feedback, commanded=LEAD, direction=direction)
+            force = record.push.sel(feedback=feedback, commanded=record.attrs["commanded_lead"], direction=direction)
             found[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
     return found
 

@@ -52,10 +52,17 @@ def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
     return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
-def stand_soon(robot: Robot, ahead: float, balance: Balance | None) -> Standing | None:
-    """Return a control that stands up at once and stays, or None for a robot that cannot take the postures."""
+def stand_soon(robot: Robot, ahead: float, balance: Balance | None, size: float) -> Standing | None:
+    """Return a control that stands up at once and stays, or None for a robot that cannot take the postures.
+
+    Args:
+        robot: that stands up.
+        ahead: how far its feet are ahead of its centre of mass when it stands [m].
+        balance: by which it keeps its balance.
+        size: of the robot of which it is a variant, over that of the article's [-].
+    """
     try:
-        rise = stand_up(robot, lead=ahead)
+        rise = stand_up(robot, lead=ahead, size=size)
         plan(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None
