@@ -22,9 +22,8 @@ from suchus.record import save
 from suchus.replay import replay as replay_file
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.animal import beside
 from suchus.viewer.pages import LivePage, ReplayPage, Viewer
-from suchus.viewer.replay import takes
+from suchus.viewer.replay import beside, takes
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SIZE = {"width": 1400, "height": 860}

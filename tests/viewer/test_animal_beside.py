@@ -14,8 +14,7 @@ from suchus.land import Run, simulate
 from suchus.motion import START
 from suchus.record import save
 from suchus.robots import ROBOTS
-from suchus.viewer.animal import beside
-from suchus.viewer.replay import Take, takes
+from suchus.viewer.replay import Take, beside, takes
 
 LIZARD = SyntheticAnimal(
     trunk=0.12, tail=0.20, period=0.8, duty_factor=0.7, limb_phases=(0.0, 0.5, 0.25, 0.75), stride=0.15, outward=0.06,

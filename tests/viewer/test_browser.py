@@ -21,8 +21,7 @@ from suchus.record import save
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.replay import takes
-from suchus.viewer.swim import films
-from suchus.viewer.vortices import vortex_film
+from suchus.viewer.swim import films, vortex_film
 
 pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")

@@ -12,7 +12,7 @@ from websockets.exceptions import InvalidStatus  # noqa: E402
 from websockets.http11 import Request  # noqa: E402
 from websockets.sync.client import connect  # noqa: E402
 
-from suchus.viewer.gate import Gate  # noqa: E402
+from suchus.viewer.server import Gate  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("default")  # viser's threads outlive its server for a moment
 

@@ -19,12 +19,10 @@ from suchus.motion import Gait, check_limits, suits
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.bodies import BodyPoses, pieces
-from suchus.viewer.controls import Controls
 from suchus.viewer.history import columns
 from suchus.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
-from suchus.viewer.live_page import status
+from suchus.viewer.live_page import Controls, gait_file, robot_file, status
 from suchus.viewer.plots import gait_bars, plans
-from suchus.viewer.saving import gait_file, robot_file
 from suchus.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]

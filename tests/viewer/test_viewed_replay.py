@@ -13,11 +13,11 @@ from suchus.land import Lake, Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
 from suchus.rotation import rotate
-from suchus.viewer import rods
 from suchus.viewer.bodies import BodyPoses, pieces, support
 from suchus.viewer.history import columns
 from suchus.viewer.plots import gait_bars
 from suchus.viewer.replay import _NEEDED, Player, takes
+from suchus.viewer.stage import RodShape, rod, upright
 from suchus.viewer.swim import films
 
 stage = pytest.importorskip("suchus.viewer.stage", reason="the extra viewer is not installed")
@@ -198,12 +198,12 @@ def test_a_film_of_a_swim_has_a_frame_for_every_instant(tmp_path):
 
 @pytest.mark.parametrize("way", [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8), (0.0, -1.0, 0.0)])
 def test_a_rod_points_where_it_should(way):
-    np.testing.assert_allclose(rotate(rods.upright(np.array(way)), np.array([0.0, 0.0, 1.0])), way, atol=1e-12)
+    np.testing.assert_allclose(rotate(upright(np.array(way)), np.array([0.0, 0.0, 1.0])), way, atol=1e-12)
 
 
 def test_a_rod_is_closed():
-    for shape in (rods.RodShape(radius=0.1), rods.RodShape(radius=0.1, head=0.3, head_radius=0.2)):
-        _, faces, weights = rods.rod(shape)
+    for shape in (RodShape(radius=0.1), RodShape(radius=0.1, head=0.3, head_radius=0.2)):
+        _, faces, weights = rod(shape)
         edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         ahead, back = {tuple(edge) for edge in edges.tolist()}, {tuple(edge) for edge in edges[:, ::-1].tolist()}
         assert len(ahead) == len(edges)

@@ -10,8 +10,8 @@ from tests.wakes import CORE, RADIUS, ringed
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord
 from suchus.record import save
-from suchus.viewer import vortices
-from suchus.viewer.vortices import VortexFilm, vortex_film
+from suchus.viewer import swim
+from suchus.viewer.swim import VortexFilm, vortex_film
 
 
 @pytest.mark.parametrize(("level", "lower"), [(2.0, False), (4.0, True), (6.0, False)])
@@ -32,11 +32,11 @@ def test_a_value_outside_what_was_kept_is_set_to_the_nearest(asked, found):
 def test_large_surfaces_are_taken_of_blocks(monkeypatch):
     film = VortexFilm(ringed())
     fine = len(film.surfaces(2, 4.0).vertices)
-    monkeypatch.setattr(vortices, "LARGEST", fine // 2)
+    monkeypatch.setattr(swim, "LARGEST", fine // 2)
     assert film.blocks(4.0) == 1
-    monkeypatch.setattr(vortices, "LARGEST", fine // 2 - 1)
+    monkeypatch.setattr(swim, "LARGEST", fine // 2 - 1)
     assert film.blocks(4.0) == 2
-    monkeypatch.setattr(vortices, "LARGEST", 1)
+    monkeypatch.setattr(swim, "LARGEST", 1)
     assert film.blocks(4.0) == 4
 
 

@@ -18,10 +18,8 @@ from suchus.motion import Gait, Swim
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
-from suchus.viewer.animal import FilmedAnimal, beside
-from suchus.viewer.replay import Take, takes
-from suchus.viewer.swim import films
-from suchus.viewer.vortices import vortex_film
+from suchus.viewer.replay import FilmedAnimal, Take, beside, takes
+from suchus.viewer.swim import films, vortex_film
 from suchus.water import fit, printed_wave
 
 _SWIM = 1.0

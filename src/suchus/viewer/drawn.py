@@ -10,8 +10,8 @@ from suchus.design import Robot
 from suchus.design.relief import Relief
 from suchus.fault import Fault
 from suchus.robots import beside_article
-from suchus.viewer.animal import FilmedAnimal
 from suchus.viewer.bodies import BodyPoses, pieces
+from suchus.viewer.replay import FilmedAnimal
 
 Look = Literal["skin", "collision geoms"]
 _MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is

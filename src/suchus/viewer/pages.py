@@ -5,7 +5,6 @@ from suchus.viewer.replay_page import ReplayPage
 from suchus.viewer.server import CannotServe, Viewer
 from suchus.viewer.stage import camera
 from suchus.viewer.swim_page import CAMERA as FROM_ABOVE
-from suchus.viewer.swim_page import SwimPage
-from suchus.viewer.vortex_page import VortexPage
+from suchus.viewer.swim_page import SwimPage, VortexPage
 
 __all__ = ["FROM_ABOVE", "CannotServe", "LivePage", "ReplayPage", "SwimPage", "Viewer", "VortexPage", "camera"]

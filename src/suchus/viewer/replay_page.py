@@ -2,22 +2,20 @@
 
 from collections.abc import Sequence
 from html import escape
-from threading import Event
-from time import monotonic
 from typing import Any
 
 from viser import uplot
 
-from suchus.viewer.animal import FilmedAnimal
 from suchus.viewer.drawn import DrawnAnimal
 from suchus.viewer.knobs import SPEED
-from suchus.viewer.live_page import DRAWN, FRAME, PLOT
+from suchus.viewer.live_page import DRAWN, PLOT
 from suchus.viewer.plots import Plots
-from suchus.viewer.replay import Player, Take
+from suchus.viewer.replay import FilmedAnimal, Player, Take
+from suchus.viewer.server import BrowserPage
 from suchus.viewer.stage import WORLD, WalkScene
 
 
-class ReplayPage:
+class ReplayPage(BrowserPage):
     """A browser and its own player of a record.
 
     Args:
@@ -30,7 +28,7 @@ class ReplayPage:
     def __init__(
         self, client: Any, takes: Sequence[Take], ghosts: Sequence[Take] = (), animals: Sequence[FilmedAnimal] = ()
     ) -> None:
-        self._client, self._closed = client, Event()
+        super().__init__(client)
         self._takes = {take.label: take for take in takes}
         self._ghosts = {take.label: take for take in ghosts}
         end = max(take.end for take in (*takes, *ghosts))
@@ -38,7 +36,6 @@ class ReplayPage:
         self._drawn: DrawnAnimal | None = None
         self._player = Player(float(takes[0].record.time[0]), end)
         gui = client.gui
-        self._status = gui.add_html("")
         with gui.add_folder("Replay"):
             self._play(gui, end)
         with gui.add_folder("Record"):
@@ -49,14 +46,15 @@ class ReplayPage:
         with gui.add_folder("Look"):
             skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
             self._follow = gui.add_checkbox("camera follows", initial_value=True)
-        gui.main_panel.dock_right()
-        gui.main_panel.set_width(330)
+        self._dock()
         self._plots = Plots(gui, uplot, takes[0].robot, compared=bool(ghosts))
         self._stage = WalkScene(client.scene, takes[0].robot)
         if ghosts:
             self._stage.compare(ghosts[0].robot)
         self._stage.look("skin")
         skin.on_update(lambda _: self._stage.look("skin" if skin.value else "collision geoms"))
+        self._shown: tuple[str, str] = ("", "")
+        self._pictures, self._plotted = 0, 0.0
 
     def _play(self, gui: Any, end: float) -> None:
         player = self._player
@@ -78,33 +76,23 @@ class ReplayPage:
         speed.on_update(faster)
         paused.on_update(pause)
 
-    def close(self) -> None:
-        """End the replay."""
-        self._closed.set()
-
-    def run(self) -> None:
-        """Play until closed."""
-        before = plotted = monotonic()
-        shown: tuple[str, str] = ("", "")
-        picture = 0
-        while not self._closed.is_set():
-            start, picture = monotonic(), picture + 1
-            self._player.advance(start - before)
-            before = start
-            take = self._takes[self._run.value]
-            ghost = self._ghosts[self._ghost.value] if self._ghost is not None else None
-            now = (take.label, ghost.label if ghost else "")
-            if now != shown:
-                shown, plotted = now, 0.0
-                self._tables = take.table(), ghost.table() if ghost else None
-                self._stage.lay(take.ground.relief)
-                self._accompany(take)
-                self._stage.draw_track(take.record.centre_of_mass.values[::5])
-            self._show(take, ghost, everything=picture % DRAWN == 1)
-            if start - plotted > PLOT:
-                plotted = start
-                self._plots.draw(*self._tables, now=self._player.time)
-            self._closed.wait(max(0.005, FRAME - (monotonic() - start)))
+    def draw(self, now: float, passed: float) -> None:
+        """Play on, and draw the sample that is due."""
+        self._player.advance(passed)
+        take = self._takes[self._run.value]
+        ghost = self._ghosts[self._ghost.value] if self._ghost is not None else None
+        labels = (take.label, ghost.label if ghost else "")
+        if labels != self._shown:
+            self._shown, self._plotted = labels, 0.0
+            self._tables = take.table(), ghost.table() if ghost else None
+            self._stage.lay(take.ground.relief)
+            self._accompany(take)
+            self._stage.draw_track(take.record.centre_of_mass.values[::5])
+        self._pictures += 1
+        self._show(take, ghost, everything=self._pictures % DRAWN == 1)
+        if now - self._plotted > PLOT:
+            self._plotted = now
+            self._plots.draw(*self._tables, now=self._player.time)
 
     def _accompany(self, take: Take) -> None:
         """Draw the animal that walks beside a run."""
@@ -130,11 +118,11 @@ class ReplayPage:
 def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnimal | None = None) -> str:
     """Return the head of the page as HTML: the displacement of each at this time."""
     rows = []
-    for name, one in (("", take), ("ghost", ghost)):
-        if one is not None:
-            displaced = one.at(time)["centre_of_mass"] - one.origin
+    for prefix, shown in (("", take), ("ghost", ghost)):
+        if shown is not None:
+            displaced = shown.at(time)["centre_of_mass"] - shown.origin
             rows.append(
-                f'<tr><td style="padding-right:14px">{escape(f"{name} {one.label}".strip())}</td>'
+                f'<tr><td style="padding-right:14px">{escape(f"{prefix} {shown.label}".strip())}</td>'
                 f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displaced[0]:+.3f} m</td>'
                 f'<td style="font-weight:600">{displaced[1]:+.3f} m</td></tr>'
             )
