@@ -10,7 +10,7 @@ export PIP_CONSTRAINT := constraints.txt
 .PHONY: release matrix sizes clean
 
 reproduce: .venv/.runtime
-	$(PY) -m suchus.cli reproduce --out out
+	$(PY) -m suchus reproduce --out out
 
 test: # tests/README.md lists what it leaves out; the processor time is that of everything below it, installation included
 	@test -e .venv/.dev && from=here || from=fresh; \
@@ -45,7 +45,7 @@ validate: .venv/.dev
 	$(PY) -m pytest -m validate -s
 
 atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on where it stopped
-	$(PY) -m suchus.cli flow-atlas --out out/atlas
+	$(PY) -m suchus flow-atlas --out out/atlas
 	$(PY) tools/atlas_page.py out/atlas
 
 .venv/.base:

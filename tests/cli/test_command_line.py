@@ -12,7 +12,7 @@ import pytest
 import suchus.experiments
 from suchus import blueprint
 from suchus.cli import main
-from suchus.cli.commands import COMMANDS
+from suchus.cli.entry import COMMANDS
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.record import load

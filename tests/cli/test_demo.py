@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from suchus.cli import browser, demo, main
+from suchus.cli import demo, doctor, main
 from suchus.land import simulate
 
 
@@ -99,11 +99,11 @@ def test_no_browser_and_one_of_letters_are_none(monkeypatch):
         raise webbrowser.Error("could not locate runnable browser")
 
     monkeypatch.setattr(webbrowser, "get", missing)
-    assert browser.browser() is None
+    assert doctor.browser() is None
     monkeypatch.setattr(webbrowser, "get", lambda: webbrowser.GenericBrowser("/usr/bin/lynx"))
-    assert browser.browser() is None
+    assert doctor.browser() is None
     drawing = webbrowser.GenericBrowser("/usr/bin/firefox")
     monkeypatch.setattr(webbrowser, "get", lambda: drawing)
-    assert browser.browser() is drawing
-    assert browser.called(drawing) == "firefox"
-    assert browser.called(SimpleNamespace()) == "SimpleNamespace"
+    assert doctor.browser() is drawing
+    assert doctor.called(drawing) == "firefox"
+    assert doctor.called(SimpleNamespace()) == "SimpleNamespace"

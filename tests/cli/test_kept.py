@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
-from suchus.cli.attempt import Reproduction, attempt, kept
+from suchus.cli.reproduce import Reproduction, attempt, kept
 from suchus.experiment import silent
 from suchus.experiments import EXPERIMENTS
 from suchus.report import Result

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from pages import gallery, reference
-from suchus.cli.commands import COMMANDS
+from suchus.cli.entry import COMMANDS
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
 

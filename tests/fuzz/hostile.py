@@ -26,7 +26,7 @@ from suchus import blueprint, flow, kinematics
 from suchus.capture import observe, read_tracks
 from suchus.capture.tracks import NEEDED
 from suchus.cli import main
-from suchus.cli.commands import COMMANDS
+from suchus.cli.entry import COMMANDS
 from suchus.design import Robot, layout, servo_names, value_at, with_values
 from suchus.errors import SuchusError
 from suchus.hardware import read_map, straight, write_map

@@ -100,7 +100,7 @@ def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_b
     page = tmp_path / "strokes.toml"
     page.write_text(PAGE)
     store = tmp_path / "killed"
-    command = [sys.executable, "-m", "suchus.cli", "study", str(page), "--out", str(store)]
+    command = [sys.executable, "-m", "suchus", "study", str(page), "--out", str(store)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         while len(list((store / "parts").glob("*.nc"))) < 2 and process.poll() is None:
             time.sleep(0.002)

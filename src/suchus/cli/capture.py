@@ -1,7 +1,7 @@
 """``suchus capture TRACKS``: keypoints of a walking body in, a gait file and its diagram out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -23,7 +23,7 @@ from suchus.capture import (
     to_gait,
     write_gait,
 )
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
@@ -82,9 +82,7 @@ def capture(words: Sequence[str]) -> int:
         SuchusError: the words or the tracks make no sense.
     """
     about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
-    options: CaptureOptions = parse(
-        CaptureOptions, "suchus capture", words, about, [f.name for f in fields(CaptureOptions)]
-    )
+    options = parse(CaptureOptions, "suchus capture", words, about)
     if options.out.suffix != ".toml":
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)

@@ -1,7 +1,7 @@
 """``suchus compare A B``: two outcomes side by side, in the terminal and as a page."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from suchus.cli.commands import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.entry import BadCommand
+from suchus.cli.options import check_page, parse
 from suchus.record import check_writable
 from suchus.report import Comparison, compare, load_result, number, quantity, write_comparison
 from suchus.report.saving import OUTCOME
@@ -39,11 +39,8 @@ def compare_outcomes(words: Sequence[str]) -> int:
         SuchusError: the words or a file make no sense, or the place cannot be written to.
     """
     about = "Set two outcomes side by side: measures and their differences, verdicts, settings, figures and replays."
-    options: CompareOptions = parse(
-        CompareOptions, "suchus compare", words, about, [f.name for f in fields(CompareOptions)]
-    )
-    if options.out.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {options.out}; say --out FILE.html.")
+    options = parse(CompareOptions, "suchus compare", words, about)
+    check_page(options.out)
     check_writable(options.out.parent)
     folders = [_folder(path) for path in (options.first, options.second)]
     names = (str(folders[0]), str(folders[1]))

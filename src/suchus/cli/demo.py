@@ -1,7 +1,7 @@
 """``suchus demo``: a first walk, live in the browser where that can be, else as a page."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -10,9 +10,8 @@ from webbrowser import BaseBrowser
 import tyro
 import xarray as xr
 
-from suchus.cli.browser import browser
-from suchus.cli.commands import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.doctor import browser
+from suchus.cli.options import check_page, parse
 from suchus.cli.terminal import working
 from suchus.cli.view import ViewWalkOptions, serve_walk
 from suchus.design.checks import require
@@ -56,7 +55,7 @@ def demo(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, or the page cannot be written.
     """
     about = "A robot walks: live in the browser, or on a page that plays offline."
-    options: DemoOptions = parse(DemoOptions, "suchus demo", words, about, [f.name for f in fields(DemoOptions)])
+    options = parse(DemoOptions, "suchus demo", words, about)
     opener = None if options.no_browser else browser()
     live = all(find_spec(name) for name in _NEEDED)
     if opener is not None and live:
@@ -66,8 +65,7 @@ def demo(words: Sequence[str]) -> int:
 
 def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
     """Write the page, name it, and print the results."""
-    if out.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {out}; say --out FILE.html.")
+    check_page(out)
     check_writable(out.parent)
     with working() as bars:
         move = bars.reporter("demo")

@@ -1,4 +1,8 @@
-"""``suchus doctor``: whether suchus can run here, and what is missing, on one page."""
+"""``suchus doctor``: whether suchus can run here, and what is missing, on one page.
+
+Trials run in processes of their own, so that a library that dies takes nobody along: ``python -m suchus.cli.doctor
+NAME`` prints what a trial found as JSON.
+"""
 
 import json
 import os
@@ -6,6 +10,8 @@ import platform
 import subprocess
 import sys
 import tempfile
+import time
+import webbrowser
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -16,8 +22,7 @@ from textwrap import fill
 from typing import Any
 
 from suchus import threads
-from suchus.cli.browser import browser, called
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.errors import SuchusError
 
 _USAGE = """usage: suchus doctor
@@ -193,7 +198,7 @@ def installed(name: str) -> str | None:
 
 def tried(*names: str) -> list[Trial]:
     """Return the results of trials, side by side, each in a process of its own."""
-    command = [sys.executable, "-P", "-m", "suchus.cli.trial"]
+    command = [sys.executable, "-P", "-m", "suchus.cli.doctor"]
     with ExitStack() as stack:
         running = []
         for name in names:
@@ -235,3 +240,77 @@ def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
     if not extra:
         return plain
     return [one for one in every if one not in plain and one.marker and one.marker.evaluate({"extra": extra})]
+
+
+_TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
+"""Browsers that draw letters only, and would take the terminal."""
+
+
+def browser() -> webbrowser.BaseBrowser | None:
+    """Return the browser that an address is opened with, or None where there is none that draws.
+
+    It is the one that ``BROWSER`` names, or the system's; on Linux without a display there is none.
+    """
+    try:
+        found = webbrowser.get()
+    except webbrowser.Error:
+        return None
+    return None if called(found) in _TEXT else found
+
+
+def called(found: webbrowser.BaseBrowser) -> str:
+    """Return the name of a browser, as it is called on the command line."""
+    return Path(str(getattr(found, "name", ""))).name or type(found).__name__
+
+
+def trial_walk() -> dict[str, Any]:
+    """Let the caiman walk for a moment; return how long walking took [s]."""
+    import suchus  # noqa: PLC0415  what fails to import is what a trial finds
+
+    crawl = suchus.crawl  # imports what it needs
+    start = time.perf_counter()
+    record = crawl("caiman", "belly_crawl", duration=0.2)
+    return {"seconds": time.perf_counter() - start, "finite": bool(record.position.notnull().all())}
+
+
+def trial_swim() -> dict[str, Any]:
+    """Compile a loop that runs on threads; return by which layer, and where the flow solver's code is kept."""
+    import numba  # noqa: PLC0415
+    import numpy as np  # noqa: PLC0415
+
+    from suchus.flow import compiled, linking  # noqa: PLC0415
+
+    @numba.njit(parallel=True)  # type: ignore[untyped-decorator]
+    def doubled(values: Any) -> Any:
+        out = np.empty_like(values)
+        for i in numba.prange(values.size):
+            out[i] = 2.0 * values[i]
+        return out
+
+    doubled(np.ones(8))
+    kept = compiled.FOLDER
+    return {
+        "layer": numba.threading_layer(),
+        "folder": None if kept is None else str(kept),
+        "compiled": 0 if kept is None else len(list(kept.rglob("*.nbc"))),
+        "missing": linking.missing(),
+    }
+
+
+def trial_draw() -> dict[str, Any]:
+    """Open an OpenGL context without a window; return by what."""
+    os.environ.setdefault("MUJOCO_GL", "egl" if sys.platform == "linux" else "glfw")
+    import mujoco  # noqa: PLC0415
+
+    context = mujoco.GLContext(64, 64)
+    context.make_current()
+    context.free()
+    return {"by": os.environ["MUJOCO_GL"]}
+
+
+TRIALS: dict[str, Callable[[], dict[str, Any]]] = {"walk": trial_walk, "swim": trial_swim, "draw": trial_draw}
+"""By name."""
+
+
+if __name__ == "__main__":
+    print(json.dumps(TRIALS[sys.argv[1]]()))

@@ -1,14 +1,13 @@
 """``suchus export``: a robot as a folder that other tools open."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
-from itertools import pairwise
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, get_args
 
 import tyro
 
-from suchus.cli.options import parse
+from suchus.cli.options import given, parse
 from suchus.design import Robot
 from suchus.errors import UnknownName
 from suchus.gaits import own_gait
@@ -42,9 +41,7 @@ def export_robot(words: Sequence[str]) -> int:
     """
     about = "Write a robot for other tools: model, scene, home posture, and a README of what the format leaves out."
     _check_format(words)
-    options: ExportOptions = parse(
-        ExportOptions, "suchus export", words, about, [f.name for f in fields(ExportOptions)]
-    )
+    options = parse(ExportOptions, "suchus export", words, about)
     if options.out is None:
         check_name(options.robot.name, "robot")
     folder = options.out or Path("export") / f"{options.robot.name}_{options.format}"
@@ -56,8 +53,6 @@ def export_robot(words: Sequence[str]) -> int:
 
 def _check_format(words: Sequence[str]) -> None:
     """Refuse a format that is not there with those near it; the parser only lists all."""
-    given = [word.partition("=")[2] for word in words if word.startswith("--format=")]
-    given += [after for word, after in pairwise(words) if word == "--format"]
-    for word in given:
+    for word in given(words, "--format"):
         if word not in get_args(Format):
             raise UnknownName("format", word, get_args(Format))

@@ -2,14 +2,14 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
 from suchus import blueprint
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.design import Robot
@@ -67,13 +67,7 @@ def export_commands(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
     about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options: ExportCommandsOptions = parse(
-        ExportCommandsOptions,
-        "suchus export-commands",
-        _gait_first(words),
-        about,
-        [f.name for f in fields(ExportCommandsOptions)],
-    )
+    options = parse(ExportCommandsOptions, "suchus export-commands", _gait_first(words), about)
     if (
         options.gait == ExportCommandsOptions().gait
         and options.gait.name not in words

@@ -1,7 +1,7 @@
 """``suchus flow-atlas``: published data of flows beside what the flow solver makes of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,7 @@ import tyro
 
 from suchus import threads
 from suchus.atlas import CASES, LONGEST, FlowOutcome, chosen, compute_all
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import working
 from suchus.figures.atlas import write_atlas
@@ -47,9 +47,7 @@ def flow_atlas(words: Sequence[str]) -> int:
         "Compute flows around bodies that others have published, and draw ours beside theirs. Started again it goes on "
         "where it stopped."
     )
-    options: AtlasOptions = parse(
-        AtlasOptions, "suchus flow-atlas", words, about, [f.name for f in fields(AtlasOptions)]
-    )
+    options = parse(AtlasOptions, "suchus flow-atlas", words, about)
     rows = chosen(options.rows)
     if options.jobs is not None and options.jobs < 1:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 flow at a time is needed.")

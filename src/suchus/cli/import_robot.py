@@ -1,14 +1,14 @@
 """``suchus import ROBOT.urdf``: a robot of another tool as a draft, with a gait to begin with."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
 from suchus import blueprint
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.design import layout
 from suchus.errors import OutsideLimits
@@ -51,9 +51,7 @@ def import_file(words: Sequence[str]) -> int:
         "Read a robot from a URDF or an MJCF: a draft in which every guess has a comment, and a gait to begin with. "
         "Nothing in the file is executed; what it includes is read from its own folder only."
     )
-    options: ImportOptions = parse(
-        ImportOptions, "suchus import", words, about, [f.name for f in fields(ImportOptions)]
-    )
+    options = parse(ImportOptions, "suchus import", words, about)
     out = options.out or Path(f"{options.file.stem}.toml")
     if out.suffix != ".toml":
         raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -40,9 +40,7 @@ def optimise(words: Sequence[str]) -> int:
     """
     ready = "\n".join(f"  {name}: {made.__doc__}" for name, made in READY.items())
     about = f"Search for a better gait or body. A search that was stopped is continued. Ready-made:\n{ready}"
-    options: OptimiseOptions = parse(
-        OptimiseOptions, "suchus optimise", words, about, [f.name for f in fields(OptimiseOptions)]
-    )
+    options = parse(OptimiseOptions, "suchus optimise", words, about)
     spec = _asked(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)

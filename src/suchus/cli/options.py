@@ -10,14 +10,14 @@ from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
 from types import NoneType
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
 import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from suchus import blueprint
 from suchus.catalog import Catalog
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.design import Robot
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
@@ -76,7 +76,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     if robot is not None:
         start = start.on(robot)
     prog = f"suchus run {name}"
-    options = make_dataclass(
+    options: type[Any] = make_dataclass(
         "Options",
         [
             ("quick", QUICK, field(default=False)),
@@ -96,8 +96,7 @@ def _robot(words: Sequence[str]) -> Robot | None:
 
     None where they name none, or none that there is: what is wrong is said when all words are read.
     """
-    named = [word.partition("=")[2] for word in words if word.startswith("--robot=")]
-    named += [after for word, after in pairwise(words) if word == "--robot"]
+    named = given(words, "--robot")
     if not named or named[-1].startswith("-"):
         return None
     try:
@@ -107,14 +106,33 @@ def _robot(words: Sequence[str]) -> Robot | None:
     return found
 
 
+def given(words: Sequence[str], option: str) -> list[str]:
+    """Return the values that words give an option, before all of them are read."""
+    joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
+    return joined + [after for word, after in pairwise(words) if word == option]
+
+
+def check_page(path: Path) -> None:
+    """Refuse a page that a browser would not open as one.
+
+    Raises:
+        BadCommand: the name of its file does not end in .html.
+    """
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
+
+
+Options = TypeVar("Options")
+
+
 def parse(
-    options: type,
+    options: type[Options],
     prog: str,
     words: Sequence[str],
     description: str,
-    names: Sequence[str],
+    names: Sequence[str] = (),
     robot: Robot | None = None,
-) -> Any:
+) -> Options:
     """Let tyro read the words; what it refuses becomes one sentence.
 
     Args:
@@ -122,7 +140,7 @@ def parse(
         prog: the command, for messages.
         words: what follows it.
         description: the head of the help.
-        names: fields that can be set, for the message about one that cannot.
+        names: what can be set, for the message about an option that cannot; by default the fields.
         robot: for which gait files are read where the words name none; the caiman if None.
 
     Raises:
@@ -131,6 +149,7 @@ def parse(
         SystemExit: help was asked for, and printed.
     """
     box = io.StringIO()
+    names = names or [f.name for f in fields(options)]  # type: ignore[arg-type]
     chosen: Any
     try:
         with redirect_stderr(box):
@@ -233,6 +252,9 @@ def named(kind: Any) -> str:
 
 def _sentence(box: str, owner: str) -> str:
     """What tyro draws as a titled box, up to its first line across, as a sentence without a stop.
+
+    tyro offers the parts of the sentence in a module only that it calls private and may change at any time; what it
+    prints is the most stable thing that it says.
 
     Args:
         box: what tyro wrote.

@@ -1,7 +1,7 @@
 """``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +9,8 @@ import tyro
 import xarray as xr
 
 from suchus import record
-from suchus.cli.commands import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.entry import BadCommand
+from suchus.cli.options import check_page, parse
 from suchus.design import Robot
 from suchus.record import check_file
 from suchus.replay import replay, save
@@ -42,13 +42,10 @@ def make_replay(words: Sequence[str]) -> int:
         SuchusError: the words or the record make no sense, or the place cannot be written to.
     """
     about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
-    options: ReplayOptions = parse(
-        ReplayOptions, "suchus replay", words, about, [f.name for f in fields(ReplayOptions)]
-    )
+    options = parse(ReplayOptions, "suchus replay", words, about)
     check_file(options.file)
     out = options.out or options.file.with_suffix(".html")
-    if out.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {out}; say --out FILE.html.")
+    check_page(out)
     stored = record.load(options.file)
     shown = _chosen(stored, options.run, "--run")
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")

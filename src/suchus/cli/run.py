@@ -1,16 +1,111 @@
 """``suchus run NAME``: one experiment, its results into a folder."""
 
 import shlex
+import time
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
 
-from suchus.cli.commands import PROJECT, BadCommand
+import xarray as xr
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from suchus.cli.entry import PROJECT, BadCommand
 from suchus.cli.options import TABLES, choose
-from suchus.cli.perform import perform
 from suchus.cli.shelves import entry, title
-from suchus.cli.terminal import show_outcome, working
+from suchus.cli.terminal import working
+from suchus.errors import plain_warnings
+from suchus.experiment import Experiment, Outcome
 from suchus.experiments import EXPERIMENTS
+from suchus.figures import styled
+from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
+from suchus.report import check_place, quantity, save_outcome
 from suchus.sources import current
+
+_COLOURS = {
+    "reproduced": "green",
+    "same sense": "yellow",
+    "contradicted": "red",
+    "not testable": "dim",
+    "by construction": "cyan",
+    "fitted": "cyan",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Performed:
+    """An experiment that was run and saved."""
+
+    outcome: Outcome
+    """Its outcome."""
+    folder: Path
+    """Folder of its files."""
+    seconds: float
+    """Duration of running and drawing [s]."""
+
+
+def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Performed:
+    """Run an experiment, draw its figures and save all of it in ``out / name``.
+
+    Args:
+        experiment: the question.
+        name: its name on the shelf.
+        out: the folder for results.
+        progress: called with the share that is done, 0 to 1.
+        command: what makes the same result again.
+
+    Raises:
+        Unwritable: the results cannot be saved; reported before the run where it can be known.
+    """
+    start = time.perf_counter()
+    check_place(out / name)
+    with _plain_sums(), plain_warnings(name):
+        outcome = experiment.run(progress)
+        progress("drawing", 1.0)
+        with styled():
+            figures = experiment.draw(outcome)
+        progress("saving", 1.0)
+        folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+    return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+
+
+def _plain_sums() -> AbstractContextManager[object]:
+    """Let xarray take NumPy's sums and medians, whatever else is installed beside it.
+
+    Those of ``numbagg``, which comes with the extra ``capture``, round otherwise, so that equal runs would not give
+    equal bytes everywhere; and they compile for up to half a minute in every process.
+    """
+    return xr.set_options(use_numbagg=False, use_bottleneck=False)  # type: ignore[no-untyped-call]
+
+
+def show_outcome(question: Experiment, done: Performed) -> None:
+    """Print the verdicts, and where everything else is."""
+    console = Console(highlight=False)
+    console.print(f"[bold]{escape(question.title)}[/]")
+    if done.outcome.verdicts:
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        for heading, side in (
+            ("claim", "left"),
+            ("printed", "right"),
+            ("measured", "right"),
+            ("verdict", "left"),
+        ):
+            table.add_column(heading, justify=side, style=None)  # type: ignore[arg-type]
+        for verdict in done.outcome.verdicts:
+            claim = verdict.claim
+            table.add_row(
+                escape(f"{claim.quantity} ({claim.where})"),
+                quantity(claim.value, claim.unit, 3),
+                quantity(verdict.measured, claim.unit, 3) if claim.value is not None else "",
+                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
+            )
+        console.print(table)
+    if done.outcome.unjudged:
+        console.print(escape(done.outcome.unjudged), soft_wrap=True)
+    console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)
 
 
 def run(words: Sequence[str]) -> int:

@@ -8,7 +8,7 @@ from pkgutil import resolve_name
 from shutil import get_terminal_size
 from textwrap import fill
 
-from suchus.cli.commands import PROJECT, BadCommand
+from suchus.cli.entry import PROJECT, BadCommand
 from suchus.errors import SuchusError
 from suchus.sources import SHELVES, Source, gather
 

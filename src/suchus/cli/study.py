@@ -1,14 +1,14 @@
 """``suchus study FILE.toml``: many runs, their results into a folder that a kill cannot spoil."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 import xarray as xr
 
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
 from suchus.jobs import at_scheduler
@@ -47,7 +47,7 @@ def study(words: Sequence[str]) -> int:
         SuchusError: the words or the file make no sense, or the store cannot be written to.
     """
     about = "Run many variants of one run, and store what is measured. A study that was stopped is continued."
-    options: StudyOptions = parse(StudyOptions, "suchus study", words, about, [f.name for f in fields(StudyOptions)])
+    options = parse(StudyOptions, "suchus study", words, about)
     if options.jobs < 1:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 process is needed.")
     if options.jobs > 1 and options.scheduler is not None:

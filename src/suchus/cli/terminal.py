@@ -1,4 +1,4 @@
-"""What people see in the terminal: bars while it works, then a table of verdicts."""
+"""What people see in the terminal while a command works: bars, or a line now and then."""
 
 import time
 from collections.abc import Iterator
@@ -9,22 +9,10 @@ from rich import progress as rich_progress
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
-from suchus import experiment as contract
-from suchus.cli.perform import Performed
 from suchus.progress import Progress
-from suchus.report import quantity
 
 _EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
-_COLOURS = {
-    "reproduced": "green",
-    "same sense": "yellow",
-    "contradicted": "red",
-    "not testable": "dim",
-    "by construction": "cyan",
-    "fitted": "cyan",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,30 +65,3 @@ def working() -> Iterator[Bars]:
     )
     with rich_progress.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         yield Bars(progress)
-
-
-def show_outcome(question: contract.Experiment, done: Performed) -> None:
-    """Print the verdicts, and where everything else is."""
-    console = Console(highlight=False)
-    console.print(f"[bold]{escape(question.title)}[/]")
-    if done.outcome.verdicts:
-        table = Table(box=None, padding=(0, 2, 0, 0))
-        for heading, side in (
-            ("claim", "left"),
-            ("printed", "right"),
-            ("measured", "right"),
-            ("verdict", "left"),
-        ):
-            table.add_column(heading, justify=side, style=None)  # type: ignore[arg-type]
-        for verdict in done.outcome.verdicts:
-            claim = verdict.claim
-            table.add_row(
-                escape(f"{claim.quantity} ({claim.where})"),
-                quantity(claim.value, claim.unit, 3),
-                quantity(verdict.measured, claim.unit, 3) if claim.value is not None else "",
-                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
-            )
-        console.print(table)
-    if done.outcome.unjudged:
-        console.print(escape(done.outcome.unjudged), soft_wrap=True)
-    console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)

@@ -1,7 +1,7 @@
 """``suchus view``: a walk live, or a record played back, in the browser."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Annotated, Any
@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import tyro
 
 from suchus.capture import ReadingOptions, read_tracks
-from suchus.cli.commands import BadCommand
+from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.design import ARTICLE_BODY, Robot, check_needs, with_values
 from suchus.design.checks import require
@@ -106,9 +106,7 @@ def _walk(words: Sequence[str]) -> int:
     first = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     named = [part for option, word in zip(("--robot", "--gait"), first, strict=False) for part in (option, word)]
     given = [*named, *words[len(first) :]]
-    options: ViewWalkOptions = parse(
-        ViewWalkOptions, "suchus view", given, about, [f.name for f in fields(ViewWalkOptions)]
-    )
+    options = parse(ViewWalkOptions, "suchus view", given, about)
     if options.lake and not first and "--robot" not in given:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
@@ -151,7 +149,7 @@ def _wave_of(robot: Robot) -> Swim:
 
 def _replay(words: Sequence[str]) -> int:
     about = "A record played back in the browser."
-    options: Replaying = parse(Replaying, "suchus view", words, about, [f.name for f in fields(Replaying)])
+    options = parse(Replaying, "suchus view", words, about)
     runs = takes(options.record, options.robot)
     ghosts = takes(options.ghost, options.robot) if options.ghost else ()
     animals = _animals(options, runs)
@@ -169,9 +167,7 @@ def _animals(options: Replaying, runs: Sequence[Take]) -> tuple[FilmedAnimal, ..
 
 def _swim(words: Sequence[str]) -> int:
     about = "Play a swim back in the browser, with vorticity and pressure of the flow, or the vortices around it."
-    options: ViewSwimOptions = parse(
-        ViewSwimOptions, "suchus view swim", words, about, [f.name for f in fields(ViewSwimOptions)]
-    )
+    options = parse(ViewSwimOptions, "suchus view swim", words, about)
     space = vortex_film(options.record)
     if space is not None:
         pages = _pages()
