@@ -10,7 +10,6 @@ from suchus.design import GRAVITY, joint_names, layout, leg_joints, servo_names,
 from suchus.design.scale import gravity_time, physics_step
 from suchus.gaits import own_gait, suits
 from suchus.model import build, compile_model, joint_addresses, sensor_names
-from suchus.model.build import servo_of
 from suchus.robots import ROBOTS
 
 FROM_THE_ARTICLE = {
@@ -82,9 +81,9 @@ def test_it_has_its_servos_with_their_limits(shelved):
     assert model.nu == len(servo_names(shelved))
     for i, name in enumerate(servo_names(shelved)):
         assert model.actuator(i).name == name
-        limit = servo_of(shelved, name).torque
+        limit = shelved.servo(name).torque
         assert tuple(model.actuator(i).forcerange) == (-limit, limit)
-        assert model.actuator(i).biasprm[1] == -servo_of(shelved, name).kp
+        assert model.actuator(i).biasprm[1] == -shelved.servo(name).kp
 
 
 def test_sensors_stand_in_the_order_that_readers_rely_on(shelved):

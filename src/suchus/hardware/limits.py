@@ -12,7 +12,6 @@ from suchus.hardware.commands import Commands
 from suchus.hardware.servo_map import ServoMap
 from suchus.land import Run, simulate
 from suchus.metrics import between, whole
-from suchus.model.build import servo_of
 from suchus.motion import START, Gait
 from suchus.progress import Progress, silent
 
@@ -71,7 +70,7 @@ def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Comma
         OutsideLimits: the message names the servo, the time and what is allowed.
     """
     for i, (name, line) in enumerate(zip(layout(robot).servos, servo_map.ordered(robot), strict=True)):
-        limit = servo_of(robot, name).speed
+        limit = robot.servo(name).speed
         steps = np.diff(samples.angles[:, i]) / np.diff(samples.time)
         worst = int(np.argmax(np.abs(steps)))
         if abs(steps[worst]) > limit:
@@ -148,7 +147,7 @@ def _borne(robot: Robot, walk: xr.Dataset) -> Mapping[str, ServoLoad]:
     torques, off = np.abs(walk.servo_torque), np.abs(walk.servo_target - walk.servo_angle).isel(run=0)
     borne = {}
     for name in layout(robot).servos:
-        own, limit = torques.sel(servo=name).values, servo_of(robot, name).torque
+        own, limit = torques.sel(servo=name).values, robot.servo(name).torque
         full = own[0] >= _FULL * limit
         borne[name] = ServoLoad(
             torque=float(own[0].max()),
@@ -208,7 +207,7 @@ def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
         robot: whose record it is.
         record: of the time that counts, as ``metrics.between`` cuts it.
     """
-    limits = xr.DataArray([servo_of(robot, str(name)).torque for name in record.servo.values], dims="servo")
+    limits = xr.DataArray([robot.servo(str(name)).torque for name in record.servo.values], dims="servo")
     return (np.abs(record.servo_torque) >= _FULL * limits).mean("time")
 
 

@@ -23,7 +23,7 @@ from suchus.design.pieces import pieces
 from suchus.hydro import column, unpacked
 from suchus.land import wetting
 from suchus.land.lake import DEEPEST, Lake
-from suchus.model.names import SNOUT
+from suchus.model.build import SNOUT
 from suchus.model.wet import wet_model
 from suchus.motion import Swim
 from suchus.motion.swim import trunk_yaws

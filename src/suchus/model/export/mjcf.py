@@ -7,8 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from suchus.design import Robot
-from suchus.model.build import TIMESTEP, build
-from suchus.model.standing import activations, standing
+from suchus.model.build import TIMESTEP, activations, build, standing
 from suchus.motion import Gait, hip_height, middle_stance
 
 _DIGITS = 6  # what MuJoCo prints

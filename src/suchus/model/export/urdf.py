@@ -1,6 +1,6 @@
 """URDF: links, joints, limits and shapes; what it cannot say is listed in ``UNSAID``."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
@@ -8,11 +8,46 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import Robot, layout
-from suchus.model.build import compile_model, servo_of
+from suchus.design import Robot, Spring, layout
+from suchus.model.build import IMU, compile_model, sites
 from suchus.model.export.mjcf import numbers
-from suchus.model.export.unsaid import filled
-from suchus.model.names import IMU, sites
+
+_CABLES, _SPRINGS = "The cable.", "Springs"
+_BESIDE = "{name} {stiffness:g} N m/rad"
+
+
+def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]:
+    """Return sentences with the robot's numbers in their braces; those about cables or springs only if it has some.
+
+    Args:
+        texts: what a format leaves out, and what to do about it.
+        robot: the design.
+        own: further values, of the format.
+    """
+    place, contact = layout(robot), robot.contact
+    cables = place.robot.cables
+    springs = [
+        _BESIDE.format(name=name, stiffness=hinge.drive.stiffness)
+        for body in place.bodies
+        for hinge, name, _ in body.hinges
+        if isinstance(hinge.drive, Spring)
+    ]
+    values = {
+        "cables": cables[0].joints if cables else 0,
+        "first": cables[0].hinges[0] if cables else "",
+        "last": cables[0].hinges[-1] if cables else "",
+        "springs": ", ".join(springs),
+        "foot": contact.foot_friction,
+        "skin": contact.skin_friction,
+        "root": place.robot.root,
+    }
+    kept = [
+        text
+        for text in texts
+        if (cables or not text.startswith(_CABLES)) and (springs or not text.startswith(_SPRINGS))
+    ]
+    return tuple(text.format(**values, **own) for text in kept)
+
 
 BALL = "meshes/ball.obj"
 """A ball of radius 1, which ellipsoids stretch; URDF has none of its own."""
@@ -138,7 +173,8 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
     place = layout(robot)
     pulled = [cable for cable in place.robot.cables if name in cable.hinges]
     if name in place.servos:
-        effort, speed = servo_of(robot, name).torque, servo_of(robot, name).speed
+        servo = robot.servo(name)
+        effort, speed = servo.torque, servo.speed
     elif pulled:
         cable = pulled[0]
         effort, speed = cable.servo.torque * cable.cord_spacing / 2 / cable.pulley, cable.servo.speed

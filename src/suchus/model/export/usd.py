@@ -8,12 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from suchus.design import GRAVITY, Robot, layout
 from suchus.errors import SuchusError
-from suchus.model.build import compile_model, servo_of
+from suchus.model.build import IMU, compile_model, sites, standing
 from suchus.model.export.mjcf import home
-from suchus.model.export.unsaid import filled
-from suchus.model.export.urdf import ball
-from suchus.model.names import IMU, sites
-from suchus.model.standing import standing
+from suchus.model.export.urdf import ball, filled
 from suchus.motion import Gait
 
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
@@ -129,7 +126,7 @@ def Xform "World"
 
 def unsaid_in_usd(robot: Robot) -> tuple[str, ...]:
     """Return what the USD of a robot leaves out, and what to do about it."""
-    speeds = sorted({servo_of(robot, name).speed for name in layout(robot).servos})
+    speeds = sorted({robot.servo(name).speed for name in layout(robot).servos})
     return filled(UNSAID, robot, speeds=" or ".join(f"{v:g}" for v in speeds), link=LINK_MASS)
 
 
@@ -241,7 +238,7 @@ class _Writer:
         drive = self.pxr.UsdPhysics.DriveAPI.Apply(prim, "angular")
         drive.CreateTypeAttr("force")
         if name in layout(self.robot).servos:
-            servo = servo_of(self.robot, name)
+            servo = self.robot.servo(name)
             stiffness, damping = servo.kp, servo.kd
             drive.CreateMaxForceAttr(servo.torque)
         else:

@@ -9,10 +9,7 @@ import mujoco
 import numpy as np
 
 from suchus.errors import SuchusError, UnreadableFile
-from suchus.model.importing.drives import Drive
-from suchus.model.importing.mjcf_file import clean_mjcf, inside, with_includes
-from suchus.model.importing.safe_xml import parse
-from suchus.model.importing.urdf_file import clean_urdf
+from suchus.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, inside, parse, with_includes
 from suchus.reading import check_file
 
 Format = Literal["URDF", "MJCF"]

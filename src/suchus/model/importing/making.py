@@ -1,15 +1,176 @@
-"""What is gathered while a robot is drafted from a body plan."""
+"""What is gathered while a robot is drafted from a body plan: its hinges, remarks, and guesses with their reasons."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import degrees, pi
 
 import numpy as np
 
-from suchus.design import Hinge, Spring
+from suchus.design import Crank, Hinge, Servo, Spring
+from suchus.design.hinge import Turn
+from suchus.design.layout import LIMB_AXES
+from suchus.design.scale import servo_for, spring_for
 from suchus.design.segment import Point
-from suchus.model.importing.draft_hinges import Match, Size
-from suchus.model.importing.options import Words
-from suchus.model.importing.plan import BodyPlan, LimbChain, links_between
+from suchus.errors import UnreadableFile
+from suchus.model.importing.plan import BodyPlan, LimbChain, Words, links_between
 from suchus.model.importing.tree import Joint
+
+SKEW = 5.0
+"""Degrees by which a hinge may miss the robot's axes."""
+_EXACT = 0.06  # degrees; less is not worth a word
+_WIDEST = 3.1416  # rad; of a range in a robot's file
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Match:
+    """A hinge of the robot and the one of the file that it was read from."""
+
+    ours: str
+    """Name in the robot's layout."""
+    theirs: str
+    """Name in the file."""
+    sign: float
+    """1 where positive angles turn the same way, else -1 [-]."""
+    zero: float
+    """Angle of the file's hinge at our zero [rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Size:
+    """Mass and length, from which servos and springs follow."""
+
+    mass: float
+    """Mass of the robot [kg]."""
+    length: float
+    """Length of the robot [m]."""
+
+
+def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
+    """Return what a hinge turns, and 1 where its axis points along x, y or z of the robot, else -1.
+
+    Args:
+        joint: the hinge.
+        axis: its axis in the robot's frame.
+        remarks: takes a sentence where the axis is rounded.
+
+    Raises:
+        UnreadableFile: it is skew.
+    """
+    along = int(np.argmax(np.abs(axis)))
+    off = degrees(np.arccos(min(abs(axis[along]), 1.0)))
+    if off > SKEW:
+        raise UnreadableFile(
+            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off "
+            "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
+        )
+    if off > _EXACT:
+        remarks.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
+    turn: Turn = ("roll", "pitch", "yaw")[along]
+    return turn, float(np.sign(axis[along]))
+
+
+def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
+    """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
+    along, sense = turn_of(joint, axis, remarks)
+    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
+    ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
+    return turn, sense * ours * (side if turn != "roll" else 1.0)
+
+
+def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
+    """Return 1 where a hinge of the axis turns as ours does, else -1.
+
+    Args:
+        turn: what it turns.
+        sense: whether its axis points along that of the robot's frame.
+        ahead: whether it lies ahead of the root.
+        onward: whether a positive angle of the file moves the part farther from our root.
+    """
+    ours = 1.0 if ahead or turn == "yaw" else -1.0
+    return sense * ours * (1.0 if onward else -1.0)
+
+
+def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:
+    """Return a hinge of the robot.
+
+    Args:
+        name: of it.
+        turn: what it turns.
+        sign: of its angles against those of the file.
+        joint: of the file.
+        size: of the robot.
+        share: mass of what it carries over that of the heaviest part, for a spring.
+        lone: whether it is the only hinge of a limb, which may turn all round.
+    """
+    servo = _servo(joint, size)
+    if joint.range is None and lone and servo is not None:
+        return Hinge(name=name, turn=turn, drive=Crank(servo=servo))
+    low, high = sorted(sign * end for end in joint.range or (-pi, pi))
+    low, high = max(low, -_WIDEST), min(high, _WIDEST)
+    if not low < high:
+        raise UnreadableFile(
+            f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty."
+        )
+    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(low, high))
+
+
+def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
+    """Return names for hinges of the axis: those of the file where they follow the rule, else made ones.
+
+    Args:
+        turns: what each turns, its part of the body (``spine``, ``neck`` or ``tail``), its name in the file; of each
+            part of the body from the root on.
+    """
+    theirs = [name for _, _, name in turns]
+    rule = all((turn == "yaw" and part == "spine") == name.startswith("spine_yaw_") for turn, part, name in turns)
+    if rule and len(set(theirs)) == len(theirs):
+        return theirs
+    count: dict[tuple[str, str], int] = {}
+    found = []
+    for turn, part, _ in turns:
+        count[part, turn] = count.get((part, turn), 0) + 1
+        found.append(f"{part}_{turn}_{count[part, turn]}")
+    return found
+
+
+def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[str] | None:
+    """Return what follows the limb's name in names as ``LF_yaw`` and ``RF_yaw``; None if they are not such."""
+    heads = f"L{girdle}_", f"R{girdle}_"
+    alike = all(
+        one.startswith(heads[0]) and two.startswith(heads[1]) and one[len(heads[0]) :] == two[len(heads[1]) :]
+        for one, two in zip(left, right, strict=True)
+    )
+    found = [name.removeprefix(heads[0]) for name in left]
+    return found if alike and all(found) and len(set(found)) == len(found) else None
+
+
+def numbered(turns: Sequence[str]) -> list[str]:
+    """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
+    found: list[str] = []
+    for i, turn in enumerate(turns):
+        before = list(turns[:i]).count(turn)
+        found.append(turn if not before else f"{turn}_{before + 1}")
+    return found
+
+
+def _servo(joint: Joint, size: Size) -> Servo | None:
+    if joint.drive is not None and joint.drive.passive:
+        return None
+    servo = servo_for(size.mass, size.length)
+    if joint.drive is None:
+        return servo
+    return replace(
+        servo,
+        torque=min(max(joint.drive.torque or servo.torque, 1e-9), 1e6),
+        speed=min(max(joint.drive.speed or servo.speed, 0.01), 1e4),
+    )
+
+
+def _spring(joint: Joint, size: Size, share: float) -> Spring:
+    spring = spring_for(size.mass, size.length, share)
+    if joint.stiffness > 0:
+        return replace(spring, stiffness=joint.stiffness, damping=joint.damping)
+    return spring
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
