@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.image import imsave
 
 from suchus import flow, rotation
-from suchus.figures.solids import Viewpoint, picture
+from suchus.figures.vortices import Viewpoint, picture
 from suchus.skin.mesh import Mesh, ellipsoid, joined
 
 shape = flow.Ellipsoid(length=1.0, width=1.0, height=0.28)

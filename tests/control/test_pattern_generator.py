@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.felt import felt
 from tests.start_batch import start_batch
 
-from suchus.capture.wave import standing_index
+from suchus.capture.angles import standing_index
 from suchus.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
 from suchus.control import oscillate as turned
 from suchus.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed

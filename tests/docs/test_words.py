@@ -52,7 +52,7 @@ MEANT = {
     "src/suchus/experiments/sensitivity/experiment.py": (_APART,),
     "src/suchus/experiments/shore/experiment.py": (_GRIP,),
     "src/suchus/experiments/shore/figure.py": (_GRIP,),
-    "src/suchus/figures/validation_page.py": (_HELD,),
+    "tools/validation_page.py": (_HELD,),
     "src/suchus/paper/claims_land.py": (_LOST,),
     "src/suchus/paper/errata_words.py": (_LOST,),
     "src/suchus/record/ground.py": (_GRIP,),

@@ -17,7 +17,7 @@ from gymnasium.vector import AutoresetMode  # noqa: E402
 from suchus import envs, rotation  # noqa: E402
 from suchus.design import layout, leg_joints, servo_names  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
-from suchus.envs.reward import Terms  # noqa: E402
+from suchus.envs.task import Terms  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402

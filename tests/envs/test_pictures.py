@@ -8,8 +8,8 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from suchus.envs.goals import Goal, Landing
-from suchus.envs.picture import _draw_goal, draw_water
+from suchus.envs.single import _draw_goal, draw_water
+from suchus.envs.task import Goal, Landing
 from suchus.figures import COLOURS
 
 WATER = np.array(to_rgb(COLOURS["water"]))

@@ -8,7 +8,7 @@ from PIL import Image
 from tests.wakes import CORE, RADIUS, ringed
 
 from suchus.figures import caption, vortices
-from suchus.figures.solids import Viewpoint, picture
+from suchus.figures.vortices import Viewpoint, picture
 from suchus.skin.mesh import Mesh
 
 

@@ -4,9 +4,9 @@ from pathlib import Path
 import pytest
 from validation_rows import OUT, ROOT, SOURCES, is_whole, tests_there_are
 
-from suchus.figures.validation import write_table
-
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
+
+from validation_page import write_table
 
 
 @pytest.fixture(scope="session")

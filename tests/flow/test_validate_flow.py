@@ -14,9 +14,9 @@ import pytest
 from validation_rows import OUT, ROOT, SOURCES, is_whole, note
 
 from suchus import flow
-from suchus.figures.validation import write_validation
 from suchus.flow import signals
 from suchus.flow.resolution import SKIN_SUM
+from validation_page import write_validation
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

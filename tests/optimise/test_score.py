@@ -12,8 +12,8 @@ from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
 from suchus.motion import excess
 from suchus.optimise import Aim, Limit
-from suchus.optimise.score import allowed, excesses, losses, score, units
-from suchus.optimise.search_result import SearchResult
+from suchus.optimise.evaluate import allowed, excesses, losses, score, units
+from suchus.optimise.search import SearchResult
 from suchus.robots import ROBOTS
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from suchus.figures import captioned, panels, save, styled
-from suchus.report.embedding import as_drawing, as_pixels, embedded
+from suchus.report.rendering import as_drawing, as_pixels, embedded
 
 
 @pytest.fixture

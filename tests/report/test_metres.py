@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from suchus.report.metres import metres
+from suchus.report.page import metres
 
 
 def result(**measures):

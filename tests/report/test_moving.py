@@ -11,7 +11,7 @@ from suchus.paper.animals import ANIMALS
 from suchus.record import plain
 from suchus.report import load_result, render_page, write_page
 from suchus.report.beside import beside
-from suchus.report.robot import robot_of
+from suchus.report.page import robot_of
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]

@@ -4,12 +4,18 @@ A ``Case`` is a flow that is computed once; an ``AtlasRow`` is one published dat
 bound of a row follows from the scatter of its sources, before anything is computed.
 """
 
-from suchus.atlas.case import AtlasRow, Case, Curves, RunEffort, bound
+from suchus.atlas.case import AtlasRow, Case, Curves, PublishedCurves, RunEffort, bound, published
 from suchus.atlas.comparison import CurveComparison, compare, rms_over_peak
-from suchus.atlas.computing import compute_all, finished_outcome
-from suchus.atlas.outcome import FlowOutcome, compute, digest_of, load_outcome, save_outcome
-from suchus.atlas.published import PublishedCurves, published
-from suchus.atlas.refine import refined
+from suchus.atlas.marching import refined
+from suchus.atlas.outcome import (
+    FlowOutcome,
+    compute,
+    compute_all,
+    digest_of,
+    finished_outcome,
+    load_outcome,
+    save_outcome,
+)
 from suchus.atlas.rows import CASES, GROUPS, LONGEST, ROWS, chosen
 from suchus.atlas.skin import WallValues, read_skin
 

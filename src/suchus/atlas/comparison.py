@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.atlas.case import AtlasRow, Curves, bound
-from suchus.atlas.published import PublishedCurves, published
+from suchus.atlas.case import AtlasRow, Curves, PublishedCurves, bound, published
 from suchus.errors import IncompatibleRecord
 
 LEAST_SHARE = 0.5

@@ -8,12 +8,11 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles, nudged, shedding
-from suchus.atlas.refine import refined
+from suchus.atlas.marching import march, middles, nudged, refined, shedding
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
-_CODE = ("cylinders.py", "marching.py", "refine.py", "skin.py")
+_CODE = ("cylinders.py", "marching.py", "skin.py")
 _PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged
 _READINGS = 0.1  # [s] between two readings of the skin
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own

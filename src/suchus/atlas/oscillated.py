@@ -7,8 +7,7 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles, nudged, shedding
-from suchus.atlas.refine import refined
+from suchus.atlas.marching import march, middles, nudged, refined, shedding
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
@@ -21,7 +20,7 @@ NATURAL = 0.195
 AMPLITUDE = 0.2
 """Amplitude of the motion [m]."""
 
-_CODE = ("oscillated.py", "marching.py", "refine.py", "skin.py")
+_CODE = ("oscillated.py", "marching.py", "skin.py")
 _COARSE = 24
 """Cells a diameter of the run in which the wake forms [-]. Chosen after a first result: on 16 cells the wake at a ratio
 of 1.0 switches its state too early, and does not switch back on the finer grid; see docs/flow_limits.md."""

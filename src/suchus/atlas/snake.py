@@ -5,15 +5,13 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles
-from suchus.atlas.published import published
-from suchus.atlas.refine import refined
+from suchus.atlas.case import Case, Curves, RunEffort, published
+from suchus.atlas.marching import march, middles, refined
 from suchus.progress import Progress, staged
 
 # At a Reynolds number of 2000 the wake has two states, in one of which the lift is a quarter larger. At 35 degrees it
 # goes over into that one after some 48 chords on 64 cells, and later on 32; see docs/flow_limits.md.
-_CODE = ("snake.py", "marching.py", "published.py", "refine.py")
+_CODE = ("snake.py", "marching.py", "case.py")
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
 
 

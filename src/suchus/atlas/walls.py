@@ -6,12 +6,11 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles
-from suchus.atlas.refine import refined
+from suchus.atlas.marching import march, middles, refined
 from suchus.flow.signals import last_periods
 from suchus.progress import Progress, staged
 
-_CODE = ("walls.py", "marching.py", "refine.py")
+_CODE = ("walls.py", "marching.py")
 _HEIGHT, _DIAMETER = 0.41, 0.1  # [m]; of the DFG channel and of its cylinder
 _STEADY = 0.25  # [s] at the end of the steady flow, over which is averaged
 _SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from

@@ -2,12 +2,14 @@
 
 Every segment of the midline looks forward: from the point behind to the point ahead. Lateral angles are taken in the
 ground plane, seen from above; vertical ones against it, which needs heights. Bends beyond half a turn fold over.
+Whether joints bend all at once or one after another is a standing wave or a travelling one.
 """
 
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 
 from suchus.capture.tracks import Tracks
 from suchus.paper import BendAngles, JointSums, to_bend_angles
@@ -78,3 +80,25 @@ def joint_bends(tracks: Tracks, chain: tuple[str, ...]) -> Float[np.ndarray, "jo
 def wrapped(angle: np.ndarray) -> np.ndarray:
     """Return an angle within half a turn of zero [rad]."""
     return np.asarray(np.mod(angle + np.pi, 2 * np.pi) - np.pi)
+
+
+STANDING = 0.8
+"""Index from which we speak of a standing wave [-]; a salamander's walk has 0.91, its swimming 0.08."""
+
+
+def standing_index(amplitude: ArrayLike, phase: ArrayLike) -> float:
+    """Return 1 for a standing wave, 0 for a travelling one: ``|sum A exp(2 i phi)| / sum A`` [-].
+
+    Joints in antiphase count as in phase, since a standing wave may have a node. A straight line through the phases
+    cannot tell the two apart: a half turn at the node looks like a lag.
+
+    Args:
+        amplitude: of the bend at each joint, of any one unit.
+        phase: of the bend at each joint [rad].
+
+    Returns:
+        NaN if nothing bends.
+    """
+    A, phi = np.asarray(amplitude, dtype=float), np.asarray(phase, dtype=float)
+    total = A.sum()
+    return float(np.abs((A * np.exp(2j * phi)).sum()) / total) if total > 0 else float("nan")

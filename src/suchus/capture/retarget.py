@@ -8,9 +8,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from suchus.capture.angle_table import AngleCycle
+from suchus.capture.angles import STANDING
+from suchus.capture.table import AngleCycle
 from suchus.capture.walk import UNSURE, Walk
-from suchus.capture.wave import STANDING
 from suchus.design import LEGS, Layout, LimbPlace, Robot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.kinematics import limb as limb_kinematics

@@ -1,4 +1,4 @@
-"""Tracks: where the keypoints of a body are in every frame, and what they must be to be of use."""
+"""Tracks: where the keypoints of a body are in every frame, what they must be to be of use, and points that jump."""
 
 import re
 from collections.abc import Mapping
@@ -212,3 +212,87 @@ def _check_seen(tracks: Tracks) -> None:
                 f"in {tracks.source} the keypoint {name} is lost in {100 * lost:.0f} % of the frames; at most "
                 f"{100 * _LOST:.0f} % may be: track it again, or lower the confidence that is asked for."
             )
+
+
+_AROUND = 3  # frames before and after, whose median a point is held against
+_FAR = 0.2  # [trunk]; less is noise, which the fits take care of
+_USUAL, _SHARE = 3.0, 90.0  # times what is not exceeded in so many per cent of the frames
+
+
+def without_jumps(tracks: Tracks) -> Tracks:
+    """Return the tracks with points lost where they are far from where they were just before and just after.
+
+    Far is beyond a fifth of the trunk, and beyond three times what 90 % of the frames of that point stay below, so that
+    a fast foot in a slow film is none. This is Hampel's identifier with a window of seven frames and a quantile that
+    holds where a foot stands still most of the time. Longer mistakes, as two feet exchanged for a while, are no jumps.
+    """
+    position = tracks.position.copy()
+    padded = np.pad(position, ((_AROUND, _AROUND), (0, 0), (0, 0)), constant_values=np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _AROUND + 1, axis=0)
+    seen = np.isfinite(windows).all(axis=2).sum(axis=-1)  # (frame, point)
+    usual = np.full_like(position, np.nan)
+    known = seen >= _AROUND
+    usual[known] = np.nanmedian(windows[known], axis=-1)
+    apart = np.linalg.norm(position - usual, axis=-1)
+    for i in range(position.shape[1]):
+        far = apart[:, i]
+        if np.isfinite(far).any():
+            most = max(_FAR * tracks.trunk_length(), _USUAL * float(np.nanpercentile(far, _SHARE)))
+            position[far > most, i] = np.nan
+    return replace(tracks, position=position)
+
+
+_ALWAYS = 0.9  # share of the frames that counts as always
+_IN_A_ROW = 0.5  # share of these frames that follow each other, below which it is noise
+_OFTEN = 0.1  # share of the frames in which noise may do so
+_SOMETIMES = 0.02  # share that a point's noise does not explain
+
+
+def check_sides(tracks: Tracks) -> None:
+    """Refuse tracks in which a left foot lies right of its right neighbour, seen along the body.
+
+    Raises:
+        UnusableTracks: it names the pair, or says that the whole picture is mirrored, and gives the frames.
+    """
+    front, hind = _crossed(tracks, "LF", "RF", *tracks.thorax), _crossed(tracks, "LH", "RH", "hip", "tail_base")
+    shares = float(np.nanmean(front)), float(np.nanmean(hind))
+    if min(shares) > _ALWAYS:
+        raise UnusableTracks(
+            f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
+            "swapped in both pairs, or y points the other way; rename the feet, or give --y-axis up or down "
+            "(images have it down)."
+        )
+    for (left, right), crossed, share in zip((("LF", "RF"), ("LH", "RH")), (front, hind), shares, strict=True):
+        if share > _ALWAYS:
+            raise UnusableTracks(
+                f"in {tracks.source} {left} lies on the right of the body and {right} on the left, in "
+                f"{100 * share:.0f} % of the frames: left and right of this pair are swapped; give --names "
+                f"{left}={right} {right}={left}."
+            )
+        if share > _SOMETIMES:
+            frames = np.flatnonzero(crossed == 1)
+            if np.mean(np.diff(frames) == 1) < _IN_A_ROW:
+                _check_noise(tracks, left, right, share)
+                continue
+            raise UnusableTracks(
+                f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
+                f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
+                "them there."
+            )
+
+
+def _check_noise(tracks: Tracks, left: str, right: str, share: float) -> None:
+    """Refuse feet that change sides from frame to frame, if they do so often."""
+    if share > _OFTEN:
+        raise UnusableTracks(
+            f"in {tracks.source} {left} lies right of {right} in {100 * share:.0f} % of the frames, now here and now "
+            f"there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; track them again, or film nearer."
+        )
+
+
+def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:
+    """Return 1 in frames in which the left foot lies right of the right one, 0 where it does not, NaN where lost."""
+    look = tracks.at(ahead) - tracks.at(behind)
+    across = tracks.at(left) - tracks.at(right)
+    side = look[:, 0] * across[:, 1] - look[:, 1] * across[:, 0]
+    return np.where(np.isnan(side), np.nan, side < 0)

@@ -8,14 +8,11 @@ import numpy as np
 import xarray as xr
 from scipy.stats import t as student
 
-from suchus.capture.angles import bend_angles, joint_bends, wrapped
-from suchus.capture.clock import Clock, paced
+from suchus.capture.angles import bend_angles, joint_bends, standing_index, wrapped
 from suchus.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.capture.feet import GRID, FootContact, FootSweep, contact, forward_path, steps, sweep
-from suchus.capture.jumps import without_jumps
-from suchus.capture.sides import check_sides
-from suchus.capture.tracks import Tracks, UnusableTracks, check_tracks
-from suchus.capture.wave import standing_index
+from suchus.capture.swings import Clock, paced
+from suchus.capture.tracks import Tracks, UnusableTracks, check_sides, check_tracks, without_jumps
 from suchus.design import LEGS
 from suchus.design.checks import require
 

@@ -13,8 +13,7 @@ from suchus.atlas import CASES, LONGEST, FlowOutcome, chosen, compute_all
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import working
-from suchus.figures.atlas import write_atlas
-from suchus.figures.atlas_page import entries, summary
+from suchus.figures.atlas import entries, summary, write_atlas
 from suchus.jobs import at_scheduler
 from suchus.record import check_writable
 

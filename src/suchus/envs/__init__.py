@@ -1,12 +1,10 @@
 """Robots as Gymnasium environments; importing this room registers them. The extra ``gym`` installs gymnasium."""
 
 from suchus.envs.shelf import IDS, LONGER, STEPS, TASKS, register  # isort: skip  # says what is missing, if it is
-from suchus.envs.goals import AnyGoal, Goal, Landing, remaining
 from suchus.envs.policies import Anything, Controlled, Follow, Played, Policy, Still, SwimToGoal, play
-from suchus.envs.reward import Rewards
 from suchus.envs.senses import SENSES, part, senses
 from suchus.envs.single import CrocodileEnv, action_space, observation_space
-from suchus.envs.task import Breaks, Pushes, Task
+from suchus.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task, remaining
 from suchus.envs.vector import CrocodileVectorEnv
 
 register()

@@ -7,9 +7,7 @@ from types import MappingProxyType
 from typing import Any, get_args
 
 from suchus.design import Robot
-from suchus.envs.goals import AnyGoal, Goal, Landing
-from suchus.envs.reward import Rewards
-from suchus.envs.task import Breaks, Pushes, Task
+from suchus.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task
 from suchus.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake

@@ -1,19 +1,19 @@
-"""A task as a frozen value: the robot, the ground and the water, faults and pushes, and the weights of the reward."""
+"""A task as a frozen value: robot, ground, water, goal, faults and pushes, and what the reward is made of."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
+from math import pi
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 import numpy as np
+from jaxtyping import Bool, Float
 
 from suchus.control import Swimming
 from suchus.design import ARTICLE_BODY, Robot, check_needs, front_segment, layout, with_speed_lines, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
-from suchus.envs.goals import AnyGoal
-from suchus.envs.reward import Rewards
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.faults import FAULTS
@@ -24,6 +24,192 @@ from suchus.land.lake import check_lake
 from suchus.motion import LIMBS_BACK, Gait, Swim
 from suchus.robots import ROBOTS
 from suchus.water import fit, printed_wave
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Goal:
+    """A point on the ground or the water, drawn anew for each episode; reached by the centre of mass."""
+
+    distance: float = 1.2
+    """Distance of the goal from the centre of mass at the beginning, 0.01 to 1000 [m]."""
+    bearing: float = 0.5
+    """Greatest bearing of the goal to either side of straight ahead, from which it is drawn evenly, 0 to pi [rad]."""
+    within: float = 0.1
+    """Horizontal distance at which the goal is reached, 0.001 to 100, less than ``distance`` [m]."""
+
+    def __post_init__(self) -> None:
+        with Checks("goal", self) as check:
+            check.number("distance", 0.01, 1000.0, "m")
+            check.number("bearing", 0.0, pi, "rad")
+            check.number("within", 1e-3, 100.0, "m")
+            check.that(
+                not self.within >= self.distance,
+                f"goal.within is {self.within:g} m and goal.distance {self.distance:g} m; within must be less, or the "
+                "episode ends where it begins",
+            )
+
+    def check(self, ground: Ground, lake: Lake | None) -> None:
+        """Accept every ground and lake."""
+
+    def draw(self, random: np.random.Generator) -> float:
+        """Return the bearing of the goal of one episode, left positive [rad]."""
+        return float(random.uniform(-self.bearing, self.bearing))
+
+    def place(
+        self, begin: Float[np.ndarray, "2"], bearing: float, ground: Ground, lake: Lake | None
+    ) -> Float[np.ndarray, "2"]:
+        """Return where the goal of one episode is, forward and left in the world [m].
+
+        Args:
+            begin: the centre of mass at the beginning [m].
+            bearing: as drawn [rad].
+            ground: not looked at.
+            lake: not looked at.
+        """
+        del ground, lake
+        return begin + self.distance * np.array([np.cos(bearing), np.sin(bearing)])
+
+    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+        """Return the vectors from centres of mass to their goals [m]."""
+        return goal - place
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Landing:
+    """Land beyond the water line of a shore that rises ahead; reached by the centre of mass, wherever along it."""
+
+    beyond: float = 1.0
+    """Distance beyond the water line, up the slope, 0 to 1000 [m]."""
+
+    def __post_init__(self) -> None:
+        with Checks("landing", self) as check:
+            check.number("beyond", 0.0, 1000.0, "m")
+
+    @property
+    def within(self) -> float:
+        """Distance from the goal at which it is reached: none [m]."""
+        return 0.0
+
+    def check(self, ground: Ground, lake: Lake | None) -> None:
+        """Refuse a world without a shore ahead.
+
+        Raises:
+            InvalidDesign: there is no lake, or the ground does not rise ahead.
+        """
+        if lake is None or not ground.uphill > 0.0:
+            raise InvalidDesign(
+                f"task.goal is a Landing, task.lake is {'None' if lake is None else 'a lake'} and task.ground.uphill "
+                f"{ground.uphill:g} rad; it needs a lake and ground that rises ahead: give both, or another goal."
+            )
+
+    def draw(self, random: np.random.Generator) -> float:
+        """Return straight ahead, without a draw [rad]."""
+        del random
+        return 0.0
+
+    def place(
+        self, begin: Float[np.ndarray, "2"], bearing: float, ground: Ground, lake: Lake | None
+    ) -> Float[np.ndarray, "2"]:
+        """Return a point on the line that has to be reached, forward and left in the world [m].
+
+        Args:
+            begin: the centre of mass at the beginning [m].
+            bearing: not looked at.
+            ground: whose slope is the shore.
+            lake: whose level at the beginning makes the water line.
+        """
+        del bearing
+        assert lake is not None  # see ``check``
+        return np.array([lake.shore(ground.uphill) + self.beyond, begin[1]])
+
+    def offset(self, place: Float[np.ndarray, "run 2"], goal: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, "run 2"]:
+        """Return the vectors from centres of mass straight up the shore to the line, zero beyond it [m]."""
+        ahead = np.maximum(goal[:, 0] - place[:, 0], 0.0)
+        return np.stack([ahead, np.zeros_like(ahead)], axis=1)
+
+
+AnyGoal = Goal | Landing
+
+
+def remaining(goal: AnyGoal, offset: Float[np.ndarray, "run 2"]) -> Float[np.ndarray, " run"]:
+    """Return the distance that remains until a goal is reached, 0 from then on [m].
+
+    Args:
+        goal: the goal.
+        offset: from the centres of mass to it [m].
+    """
+    return np.asarray(np.maximum(np.hypot(offset[:, 0], offset[:, 1]) - goal.within, 0.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rewards:
+    """Weights of the terms of the reward; each term is a quantity of one step in SI units, see ``Terms``.
+
+    None of them is from the article. They were chosen so that a whole episode of the shelf's own motion is worth about
+    ten, almost all of it from the one term that the task is about.
+    """
+
+    forward: float
+    """Weight of the displacement of the centre of mass along the world's x axis, the robot's first heading [1/m]."""
+    lateral_drift: float
+    """Weight of the increase of the distance of the centre of mass from that axis; negative, a penalty [1/m]."""
+    upright: float
+    """Weight of the time with the snout above ``Task.least_height`` [1/s]."""
+    work: float
+    """Weight of the work of all servos, braking counted as much as driving; negative, a penalty [1/J]."""
+    action_rate: float
+    """Weight of the sum of the squared changes of all commanded angles between two steps; negative, a penalty
+    [1/rad2]."""
+    fall: float
+    """Added once, when the episode ends by a fall or because the simulation diverged; negative, a penalty [-]."""
+    approach: float = 0.0
+    """Weight of the decrease of the distance that remains to ``Task.goal`` [1/m]."""
+    goal: float = 0.0
+    """Added once, when the goal is reached [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("rewards", self) as check:
+            for f in fields(self):
+                check.number(f.name, -1e4, 1e4, "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terms:
+    """Terms of the reward of one step, for each robot; the weights of the same names are in ``Rewards``."""
+
+    forward: Float[np.ndarray, " run"]
+    """Displacement of the centre of mass along the world's x axis [m]."""
+    lateral_drift: Float[np.ndarray, " run"]
+    """Increase of the distance of the centre of mass from that axis, on either side [m]."""
+    upright: Float[np.ndarray, " run"]
+    """Time with the snout high enough at the end of the step: the whole step or nothing [s]."""
+    work: Float[np.ndarray, " run"]
+    """Sum of torque times speed over all servos, braking counted as much as driving [J]."""
+    action_rate: Float[np.ndarray, " run"]
+    """Sum of the squares of the changes of all commanded angles [rad2]."""
+    approach: Float[np.ndarray, " run"]
+    """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
+    goal: Bool[np.ndarray, " run"]
+    """Whether the goal is reached [-]."""
+    fall: Bool[np.ndarray, " run"]
+    """Whether it fell, or the simulation diverged [-]."""
+
+    @property
+    def over(self) -> Bool[np.ndarray, " run"]:
+        """Whether the episode ends here: by a fall, or at the goal [-]."""
+        return np.asarray(self.fall | self.goal)
+
+    def reward(self, weights: Rewards) -> Float[np.ndarray, " run"]:
+        """Return the weighted sum [-]."""
+        total = np.zeros(len(self.fall))
+        for name in TERMS:
+            total += getattr(weights, name) * getattr(self, name)
+        return total
+
+
+TERMS = tuple(f.name for f in fields(Terms))
+"""Names of the terms, in the order in which they are summed."""
+
 
 Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(

@@ -3,12 +3,10 @@
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.clearance import clearance
 from suchus.optimise.conduct import optimise
-from suchus.optimise.page import read_optimisation
 from suchus.optimise.ready import READY
 from suchus.optimise.results import write_results
-from suchus.optimise.search import NoOptimiser
-from suchus.optimise.search_result import SearchResult
-from suchus.optimise.spec import Aim, Limit, Optimisation
+from suchus.optimise.search import NoOptimiser, SearchResult
+from suchus.optimise.spec import Aim, Limit, Optimisation, read_optimisation
 
 __all__ = [
     "AIMS",

@@ -15,8 +15,8 @@ from suchus.figures.posture import draw_posture, draw_strip
 from suchus.land import Run
 from suchus.motion import START
 from suchus.optimise.aims import AIMS, Kind
-from suchus.optimise.score import allowed
-from suchus.optimise.search_result import SearchResult
+from suchus.optimise.evaluate import allowed
+from suchus.optimise.search import SearchResult
 from suchus.optimise.spec import at_share
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")

@@ -16,7 +16,7 @@ from suchus.land import Run, simulate
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.optimise.conduct import write_runs
 from suchus.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
-from suchus.optimise.search_result import SearchResult
+from suchus.optimise.search import SearchResult
 from suchus.optimise.spec import Optimisation
 from suchus.replay import replay
 from suchus.study.result_table import ResultTable, Section, write_tables

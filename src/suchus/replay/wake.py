@@ -12,8 +12,8 @@ from PIL import Image
 
 from suchus.figures import vortices
 from suchus.record import versions
-from suchus.replay.pack import PackedArrays, quantised
 from suchus.replay.page import environment
+from suchus.replay.scene import PackedArrays, quantised
 
 LARGEST = 3_500_000
 """Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""

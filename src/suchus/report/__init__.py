@@ -1,8 +1,8 @@
 """Outcomes become files, and files become one page."""
 
 from suchus.report.comparison import Comparison, compare, render_comparison, write_comparison
-from suchus.report.numbers import number, quantity
 from suchus.report.page import render_page, write_page
+from suchus.report.rendering import number, quantity
 from suchus.report.result import Failure, Picture, Result, load_result, whole
 from suchus.report.saving import check_place, save_outcome
 

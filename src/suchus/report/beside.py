@@ -7,7 +7,7 @@ from types import MappingProxyType
 from suchus.design import LEGS, Robot, crocodile_like
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
 from suchus.paper.animals import ANIMALS, Animal
-from suchus.report.numbers import number, quantity
+from suchus.report.rendering import number, quantity
 from suchus.report.result import Result
 
 

@@ -3,23 +3,25 @@
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from suchus import figures
-from suchus.design import Robot, tables_of
+from suchus.blueprint import described_robot
+from suchus.design import Chosen, Robot, tables_of, unit_at, value_at
+from suchus.design.meaning import meanings, unit
+from suchus.errors import SuchusError
 from suchus.gaits import GAITS
+from suchus.metrics.energy import METRES
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
 from suchus.report.beside import beside
-from suchus.report.embedding import embedded
-from suchus.report.metres import metres
-from suchus.report.numbers import number, quantity, tied
-from suchus.report.rendering import render
+from suchus.report.rendering import embedded, number, quantity, render, tied
 from suchus.report.result import Failure, Result
-from suchus.report.robot import ARTICLES, robot_of
-from suchus.report.tables import choices, parts
 from suchus.robots import ROBOTS
 
 _ENOUGH = 60
@@ -168,3 +170,141 @@ def _drawing(robot: Robot) -> dict[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         svg, png = figures.save(figure, Path(folder), "robot")
         return {"source": embedded(svg, png), "caption": figures.caption(figure)}
+
+
+_MEASURES = ("speed", "work_per_metre", "cost_of_transport")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metre:
+    """A row of the table."""
+
+    where: str
+    """Place, in words."""
+    experiment: str
+    """Name of the experiment that measured them."""
+    speed: str
+    """Speed, with its unit."""
+    work: str
+    """Work of the servos over the distance, with its unit."""
+    cost: str
+    """Cost of transport: that work over the weight; empty where it was not measured."""
+
+
+def metres(results: Mapping[str, Result]) -> list[Metre]:
+    """Return the rows that the outcomes allow, in the order from land to depth."""
+    rows = []
+    for ending, where in METRES.items():
+        for name, result in results.items():
+            outcome = result.outcome["measures"]
+            speed, work, cost = (_with_unit(outcome.get(f"{what}_{ending}")) for what in _MEASURES)
+            if speed and work:
+                rows.append(Metre(where=where, experiment=name, speed=speed, work=work, cost=cost))
+    return rows
+
+
+def _with_unit(measure: Mapping[str, object] | None) -> str:
+    """Return a measure with its unit; empty where there is none, or no number."""
+    if measure is None or not isinstance(measure["value"], (int, float)):
+        return ""
+    return quantity(float(measure["value"]), str(measure["unit"]), 3)
+
+
+ARTICLES = "caiman"
+"""Name of the article's robot, shown where no result names one; verdicts are shown of no other."""
+
+
+def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
+    """Return the robot of most results, and how many results each other robot has, by name.
+
+    A robot that this version of suchus cannot build any more does not count.
+    """
+    found = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
+    if not found:
+        return ROBOTS[ARTICLES], {}
+    (most, _), *others = Counter(found).most_common()
+    return most, {robot.name: count for robot, count in others}
+
+
+def _robot(settings: Any) -> Robot | None:
+    values = settings.get("robot") if isinstance(settings, Mapping) else None
+    try:
+        return described_robot(values) if isinstance(values, Mapping) else None
+    except (ValidationError, SuchusError):
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One field of a robot or gait."""
+
+    field: str
+    """Dotted path."""
+    value: str
+    """Its value with its unit."""
+    meaning: str
+    """Meaning of the number, from the docstring of its field."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChosenNumber:
+    """One number that the article does not give."""
+
+    field: str
+    """Dotted path."""
+    value: str
+    """Our value with its unit."""
+    low: str
+    """Least plausible value."""
+    high: str
+    """Greatest plausible value."""
+    why: str
+    """The reason."""
+
+
+def parts(design: Any) -> dict[str, tuple[Row, ...]]:
+    """Return the rows of each part of a robot, by the part's name."""
+    about = meanings(type(design))
+    found: dict[str, tuple[Row, ...]] = {}
+    for f in fields(design):
+        part = getattr(design, f.name)
+        if is_dataclass(part):
+            meaning = about.get(f.name, "")
+            title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
+            found[title] = tuple(rows(part, f.name))
+    return found
+
+
+def rows(design: Any, path: str = "") -> Iterator[Row]:
+    """Yield a row for every number below a frozen value."""
+    about = meanings(type(design))
+    for f in fields(design):
+        value, meaning = getattr(design, f.name), about.get(f.name, "")
+        below = f"{path}.{f.name}".lstrip(".")
+        if is_dataclass(value):
+            yield from rows(value, below)
+        else:
+            yield Row(field=below, value=_shown(value, unit(meaning)), meaning=_plain(meaning))
+
+
+def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
+    """Return a row for every number that the article does not give."""
+    return tuple(_choice(design, one) for one in chosen)
+
+
+def _choice(design: Any, one: Chosen) -> ChosenNumber:
+    value, own = value_at(design, one.field), unit_at(design, one.field)
+    return ChosenNumber(
+        field=one.field, value=_shown(value, own), low=number(one.low), high=number(one.high), why=one.why
+    )
+
+
+def _shown(value: Any, unit: str) -> str:
+    if isinstance(value, tuple):
+        return " to ".join(_shown(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+    return quantity(value, unit) if isinstance(value, (int, float)) else str(value)
+
+
+def _plain(meaning: str) -> str:
+    """A meaning without the brackets of its unit and the marks of its code words."""
+    return re.sub(r"\s*\[[^\]]*\]", "", " ".join(meaning.split())).replace("``", "").removeprefix(".")

@@ -1,4 +1,4 @@
-"""A saved outcome, read back for the page: the page is made of files and simulates nothing."""
+"""A saved outcome, checked and read back for the page: the page is made of files and simulates nothing."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -7,13 +7,93 @@ from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
+from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
-from suchus.report.described import check_described
-from suchus.report.embedding import embedded
+from suchus.report.rendering import embedded
 from suchus.report.saving import OUTCOME, RECORD
+
+
+class _Described(BaseModel):
+    model_config = ConfigDict(strict=True, extra="allow")
+
+
+class _Measure(_Described):
+    value: FiniteFloat | None
+    unit: str
+
+
+class _Share(_Described):
+    share: FiniteFloat
+    low: FiniteFloat
+    high: FiniteFloat
+    designs: int
+    turned_by: str = ""
+    at: FiniteFloat | None = None
+    above: bool = False
+
+
+class _Verdict(_Described):
+    claim: str
+    quantity: str
+    statement: str
+    where: str
+    printed: FiniteFloat | None
+    measured: FiniteFloat | None
+    unit: str
+    verdict: str
+    why: str
+    low: FiniteFloat | None = None
+    high: FiniteFloat | None = None
+    repeats: str = ""
+    quote: str = ""
+    rule: list[str] = []
+    fragile: bool = False
+    share: _Share | None = None
+    unswept: str = ""
+
+
+class _Provenance(_Described):
+    config_hash: str
+    seed: Any
+    seconds: FiniteFloat
+
+
+class _Outcome(_Described):
+    experiment: str
+    title: str
+    shows: str
+    decides: str
+    command: str
+    measures: dict[str, _Measure]
+    verdicts: list[_Verdict]
+    provenance: _Provenance
+    unjudged: str = ""
+
+
+def check_described(outcome: Any, file: Path) -> None:
+    """Refuse what no outcome says.
+
+    Args:
+        outcome: what a file says, as JSON is read.
+        file: which, for the message.
+
+    Raises:
+        IncompatibleRecord: naming the place and what is wrong there.
+    """
+    try:
+        _Outcome.model_validate(outcome)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        if first["type"] == "missing":
+            raise IncompatibleRecord(f"{file} lacks {place}.") from error
+        raise IncompatibleRecord(
+            f"{file} is no outcome of suchus: {place or 'it'} is of another kind ({first['msg'].lower()})."
+        ) from error
+
 
 _COLUMN = 1.15 * 72 * WIDTH
 """Width of a drawing beyond which it takes both columns of the page [pt]."""

@@ -18,8 +18,8 @@ from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 
 from suchus.atlas import sections
+from suchus.atlas.case import published
 from suchus.atlas.outcome import FlowOutcome
-from suchus.atlas.published import published
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.flow import morison

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.capture.wave import STANDING, standing_index
+from suchus.capture.angles import STANDING, standing_index
 from suchus.control import Oscillators, PatternGenerator, oscillate
 from suchus.control.pattern_posture import axis_segments
 from suchus.design import Robot, layout

@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from tests.flow.validation_rows import ROOT, SOURCES, is_whole
 
 from suchus.errors import IncompatibleRecord
-from suchus.figures.validation import DRAWN, kept_rows, write_table, write_validation
-from suchus.figures.validation_page import GROUPS, page
+from validation_page import DRAWN, GROUPS, kept_rows, page, write_table, write_validation
 
 
 def row(case, quantity="Cd", theirs=2.0, source="Someone 1990", **curves):
