@@ -178,7 +178,7 @@ def test_our_own_errors_in_a_file_of_the_user_are_told_with_its_line(lab):
             r"there are two robots named 'caiman': suchus/robots/caiman.py and robots/caiman.toml",
         ),
         ("robots/caiman.py", "", "there are two modules named 'caiman'"),
-        ("faults/_table.py", "", "there are two modules named '_table'"),
+        ("robots/_plans.py", "", "there are two modules named '_plans'"),
         ("robots/short.py", "", "there are two robots named 'short'"),
         ("measures/progress.py", "", "there are two modules named 'progress'"),
     ],

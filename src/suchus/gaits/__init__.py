@@ -4,12 +4,10 @@ from operator import attrgetter
 from pathlib import Path
 
 from suchus.catalog import Catalog
-from suchus.design import Robot
-from suchus.errors import UnreadableFile
-from suchus.gaits._animal_swim import ANIMAL_SWIM
-from suchus.gaits._conditions import CONDITIONS, conditions_of
-from suchus.gaits._own import gait_of
-from suchus.motion import Gait, form_of, suits
+from suchus.design import Robot, layout
+from suchus.errors import UnreadableFile, UnsuitedRobot
+from suchus.gaits.limbs_tail_lifted import LIFTED
+from suchus.motion import Gait, divided, form_of, suits
 from suchus.record import read_toml
 from suchus.robots import ROBOTS
 
@@ -32,14 +30,65 @@ def _read(path: Path) -> Gait:
 GAITS: Catalog[Gait] = Catalog("gait", "suchus.gaits", "suchus.motion:Gait", named=attrgetter("name"), read=_read)
 """The gaits of the shelf."""
 
+CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")
+"""With spine and tail; with limbs only, the tail lying still; with limbs only, the tail in the air; with the trunk and
+a tail dragged still; with the trunk and the tail in the air; with a straight trunk and a tail that swings."""
+
 
 def own_gait(robot: Robot) -> Gait:
-    """Return the gait in which a robot walks unless another one is asked for; see ``made_for`` in the gaits' files.
+    """Return the gait in which a robot walks unless another one is asked for.
+
+    A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move: of a robot
+    that pitches its tail those first that lay it down, of any other robot those that leave it alone. For which robots a
+    gait was made its module says by ``made_for``, and nothing else does.
+
+    Args:
+        robot: on the shelf or not.
 
     Raises:
         UnsuitedRobot: no gait of the shelf suits it.
     """
-    return gait_of(GAITS, robot)
+    made = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
+    named = [name for name, robots in made.items() if robot.name in robots]
+    pitches = bool(layout(robot).tail_pitch)
+    others = [name for name, robots in made.items() if robots and name not in named]
+    others.sort(key=lambda name: GAITS[name].has("tail pitch") != pitches)
+    for name in named + others:
+        if suits(robot, GAITS[name]):
+            return GAITS[name]
+    limbs = ", ".join(layout(robot).limb_names) or "no limbs"
+    raise UnsuitedRobot(
+        f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}: give one of its own, as a TOML file."
+    )
 
 
-__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]
+def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
+    """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
+
+    Without a servo that pitches the tail nothing lifts it; without one that bends the tail, or the trunk, that part
+    has no swing to be taken away.
+
+    Args:
+        robot: the design.
+        gait: with all of the axis.
+        control: with limbs only.
+    """
+    place, gait = layout(robot), divided(robot, gait)
+    behind = {*place.tail_yaw, *place.tail_pitch, *place.cables}
+    ahead = set(place.axial_yaw) - behind
+    lifts = place.tail_pitch and gait.has("steering")
+    found = {"coordinated": gait}
+    if behind or ahead:
+        found["limbs_only"] = control
+        if lifts:
+            found["limbs_tail_lifted"] = control.lifted(LIFTED, name="limbs_tail_lifted")
+    if behind and ahead:
+        still = gait.without("tail", name="tail_still")
+        found["tail_still"] = still
+        if lifts:
+            found["spine_only"] = still.lifted(LIFTED, name="spine_only")
+        found["tail_drag"] = gait.straightened("neck", "trunk", name="tail_drag")
+    return found
+
+
+__all__ = ["CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]

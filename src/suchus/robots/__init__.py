@@ -2,11 +2,19 @@
 
 from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from suchus.catalog import Catalog
 from suchus.design import Robot
-from suchus.robots._size import RelativeSize, beside
+
+
+class RelativeSize(NamedTuple):
+    """A robot's size over that of the article's robot, for which much was chosen that others take in proportion."""
+
+    length: float
+    """Length of the body [-]."""
+    weight: float
+    """Of the body [-]."""
 
 
 def _read(path: Path) -> Robot:
@@ -22,7 +30,8 @@ ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robots", "suchus.design:Robot", 
 
 def beside_article(robot: Robot) -> RelativeSize:
     """Return the size of a robot over that of the article's robot."""
-    return beside(ROBOTS, robot)
+    article = ROBOTS["caiman"]
+    return RelativeSize(robot.length / article.length, robot.mass / article.mass)
 
 
 __all__ = ["ROBOTS", "RelativeSize", "beside_article"]

@@ -13,7 +13,6 @@ from suchus.figures.style import limb_colours
 from suchus.metrics.gait import LOADED_SHARE
 
 _POINTS = 400  # of a line; more are not seen
-_PALE = "#c9ccd1"
 _LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
 AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
 """Style of the axes, in the terms of uPlot."""
