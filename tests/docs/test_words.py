@@ -54,7 +54,7 @@ MEANT = {
     "src/suchus/experiments/shore/figure.py": (_GRIP,),
     "tools/validation_page.py": (_HELD,),
     "src/suchus/paper/claims_land.py": (_LOST,),
-    "src/suchus/paper/errata_words.py": (_LOST,),
+    "src/suchus/paper/errata.py": (_LOST,),
     "src/suchus/record/ground.py": (_GRIP,),
     "src/suchus/study/claims.py": (_APART,),
 }

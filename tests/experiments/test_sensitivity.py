@@ -13,7 +13,7 @@ from suchus.experiments.sensitivity import experiment as sensitivity
 from suchus.gaits import GAITS
 from suchus.study import Claims, Plan
 from suchus.study.claim_measures import RUNS, asked_rules
-from suchus.verdict.shares import Share
+from suchus.verdict.judging import Share
 
 FULL = EXPERIMENTS["sensitivity"]
 

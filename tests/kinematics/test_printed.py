@@ -8,7 +8,7 @@ import pytest
 
 from suchus.kinematics import dh, leg, printed, spine, tail, wave
 from suchus.paper import ERRATA, LEG_CHAIN, SPINE_CHAIN, TABLE_I, TABLE_II
-from suchus.paper.errata_formulas import FORMULAS
+from suchus.paper.errata import FORMULAS
 from suchus.paper.tables import Chain
 
 LEG = SimpleNamespace(hip_offset=0.070, femur=0.086, tibia=0.089)

@@ -17,7 +17,7 @@ from suchus.study.claim_measures import RUNS, asked_rules
 from suchus.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
 from suchus.study.claims_table import claim_row, deciders, turned
 from suchus.study.claims_table import shares as shares_of
-from suchus.verdict.shares import Share, digest
+from suchus.verdict.judging import Share, digest
 
 EVERY = Catalog.beside
 

@@ -10,7 +10,7 @@ import pytest
 import suchus.experiments
 from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.verdict import RULES, Clause, Share, examples_of, judge, rules_of
-from suchus.verdict.shares import ROBUST
+from suchus.verdict.judging import ROBUST
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)

@@ -9,7 +9,7 @@ from suchus.design import value_at
 from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 from suchus.verdict import RULES, SHARES
-from suchus.verdict.shares import digest
+from suchus.verdict.judging import digest
 
 FILE = resources.files("suchus.verdict") / "claims.json"
 TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}

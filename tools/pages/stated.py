@@ -30,7 +30,7 @@ from suchus import experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import AUTHORS, CLAIMS, TITLE
 from suchus.verdict import SHARES
-from suchus.verdict.shares import ROBUST
+from suchus.verdict.judging import ROBUST
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

@@ -13,7 +13,7 @@ from scipy import stats
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.metrics.decisive import SURE
 from suchus.paper import CLAIMS
-from suchus.verdict.shares import ROBUST
+from suchus.verdict.judging import ROBUST
 
 _TRUE, _FALSE = "#0072B2", "#D55E00"
 _SHOWN = 8

@@ -1,7 +1,6 @@
 """From a gait to the servos of a robot that stands on a table: angles, pulses, limits, files."""
 
-from suchus.hardware.commands import Commands, commands
-from suchus.hardware.files import csv_text, trajectory_text
+from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text
 from suchus.hardware.limits import (
     ServoLoad,
     check_commands,

@@ -19,7 +19,7 @@ from suchus.errors import InvalidDesign, UnknownName
 from suchus.kinds import show
 from suchus.kinematics.given import number, numbers, together
 from suchus.kinematics.links import Numbers
-from suchus.paper.wave_constants import C1, C2, K
+from suchus.paper.tables import C1, C2, K
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
 _MOST = 1e12  # of a wave's numbers in SI units

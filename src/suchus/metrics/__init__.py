@@ -25,9 +25,7 @@ from suchus.metrics.gait import (
     two_feet_share,
 )
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
-from suchus.metrics.loss import loss
-from suchus.metrics.mean_cycle import each_cycle, first_harmonic, mean_cycle
-from suchus.metrics.progress import displacement, heading, heading_change, path_length, slip, speed
+from suchus.metrics.progress import displacement, heading, heading_change, loss, path_length, slip, speed
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
 from suchus.metrics.stability import (
@@ -41,7 +39,7 @@ from suchus.metrics.stability import (
     tilt,
 )
 from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
-from suchus.metrics.window import between, whole
+from suchus.metrics.window import between, each_cycle, first_harmonic, mean_cycle, whole
 
 __all__ = [
     "bend_swings",

@@ -1,4 +1,4 @@
-"""Displacement, speed, heading and slip."""
+"""Displacement, speed, heading and slip, and what of a displacement a fault takes away."""
 
 import numpy as np
 import xarray as xr
@@ -70,3 +70,8 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
 
 
 measures = (displacement, heading_change, path_length, slip, speed)
+
+
+def loss(distance: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:
+    """Return the change of displacement against an intact run, negative where the fault costs displacement [-]."""
+    return distance / intact - 1.0

@@ -1,15 +1,18 @@
 """The article as data: its tables, claims, misprints and signs; imports the standard library only."""
 
-from suchus.paper.article import AUTHORS, TITLE
 from suchus.paper.claim import Claim
 from suchus.paper.claims import CLAIMS
-from suchus.paper.errata import ERRATA
-from suchus.paper.misprint import Misprint
+from suchus.paper.errata import ERRATA, Misprint
 from suchus.paper.signs import BendAngles, JointSums, to_bend_angles, to_joint_sums
 from suchus.paper.tables import (
+    CRAWL_END,
+    CRAWL_START,
+    CYCLE_PERIOD,
+    CYCLES,
     FEMUR,
     HIP_OFFSET,
     LEG_CHAIN,
+    SNAPSHOT_TIMES,
     SPINE_BASE,
     SPINE_CHAIN,
     SPINE_LINK,
@@ -18,7 +21,9 @@ from suchus.paper.tables import (
     TAIL_JOINTS,
     TIBIA,
 )
-from suchus.paper.timing import CRAWL_END, CRAWL_START, CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
+
+TITLE = "Structure design and coordinated motion analysis of bionic crocodile robot"
+AUTHORS = ("Jun Wang", "Jingya Zheng", "Yuhang Zhao", "Kai Yang")
 
 __all__ = [
     "AUTHORS",

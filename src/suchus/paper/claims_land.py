@@ -1,7 +1,7 @@
 """What the article says about its robot on land (sections IV.A to IV.D)."""
 
 from suchus.paper.claim import Claim, said
-from suchus.paper.timing import CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
+from suchus.paper.tables import CYCLE_PERIOD, CYCLES, SNAPSHOT_TIMES
 
 DISPLACEMENT_COORDINATED = 0.73
 DISPLACEMENT_LIMBS_ONLY = 0.16

@@ -1,7 +1,7 @@
 """What the article says about its robot in water (sections II.A and IV.B)."""
 
 from suchus.paper.claim import Claim, said
-from suchus.paper.wave_constants import C1, C2, K
+from suchus.paper.tables import C1, C2, K
 
 
 def _constant(key: str, name: str, value: float, digit: float) -> Claim:

@@ -2,10 +2,30 @@
 
 The tables head their columns ``a_i`` and ``alpha_i``, but equations (2) to (7) use row ``i`` as ``a_(i-1)``
 and ``alpha_(i-1)`` of the modified Denavit-Hartenberg convention (Craig). The SI chains follow the equations.
+
+Before them stand the times of its experiments, and the constants of its body wave, for which it gives no units.
 """
 
 from dataclasses import dataclass
 from math import pi
+
+CYCLE_PERIOD = 4.0
+"""Duration of one crawling cycle in the experiments of section IV.A [s]: seconds 1 to 5, then 5 to 9."""
+CYCLES = 2
+"""Number of cycles in an experiment [-]."""
+CRAWL_START = 1.0
+"""Time at which the first cycle begins [s]."""
+CRAWL_END = CRAWL_START + CYCLES * CYCLE_PERIOD
+"""Time at which the last cycle ends [s]."""
+SNAPSHOT_TIMES = (1.2, 1.5, 1.8)
+"""Times at which Fig. 14 shows the robot [s]."""
+
+C1 = 0.027
+"""Linear coefficient of the envelope of the body wave, equation (20), printed without a unit."""
+C2 = 0.30
+"""Quadratic coefficient of the envelope, printed without a unit."""
+K = 0.023
+"""Wave number, printed without a unit."""
 
 COLUMNS = ("i", "theta_i /rad", "d_i /mm", "a_i /mm", "alpha_i /rad")
 """The heads of the columns, as printed."""

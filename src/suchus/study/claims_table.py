@@ -13,7 +13,7 @@ import xarray as xr
 from suchus.figures.sensitivity import spoken
 from suchus.record import code_digest
 from suchus.study.answers import Index, first_order, share_interval
-from suchus.verdict.shares import ROBUST, digest
+from suchus.verdict.judging import ROBUST, digest
 
 _NAMED = 3  # parameters that a row names
 _TOGETHER = 0.1  # of the variance of one parameter; another that explains more could pass for it [-]

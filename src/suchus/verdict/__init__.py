@@ -1,9 +1,7 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
-from suchus.verdict.judging import Examples, Verdict, Word, judge
-from suchus.verdict.reading import Reading, compared, listed
-from suchus.verdict.rule import Band, Clause, Kind, Rule
-from suchus.verdict.shares import SHARES, Share
+from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
+from suchus.verdict.rule import Band, Clause, Kind, Reading, Rule, compared, listed
 from suchus.verdict.table import RULES, examples_of, rules_of
 
 __all__ = [

@@ -23,7 +23,7 @@ from suchus.study import Claims, conducted
 from suchus.study.answers import share_interval
 from suchus.study.claims_table import claim_row, table, turned
 from suchus.verdict import SHARES
-from suchus.verdict.shares import ROBUST, Share
+from suchus.verdict.judging import ROBUST, Share
 
 _ALARM = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
 _COUNTS = {

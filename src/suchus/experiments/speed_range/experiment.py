@@ -15,7 +15,7 @@ from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.speed_range.figure import draw_speed_range
-from suchus.figures.gait_lines import gait_lines
+from suchus.figures.gait_diagram import gait_lines
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
 from suchus.kinematics.tree import frames

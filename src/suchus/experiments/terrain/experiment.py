@@ -20,7 +20,7 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments.terrain import findings
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.terrain.findings import FALLEN
-from suchus.figures.gait_lines import GAIT_LINES
+from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE

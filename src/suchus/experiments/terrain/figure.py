@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus.design import Robot
-from suchus.figures.gait_lines import GAIT_LINES
+from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
 

@@ -13,7 +13,7 @@ from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.turning.figure import draw_turning
-from suchus.figures.gait_lines import gait_lines
+from suchus.figures.gait_diagram import gait_lines
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
