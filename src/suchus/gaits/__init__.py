@@ -6,6 +6,7 @@ from pathlib import Path
 from suchus.catalog import Catalog
 from suchus.design import Robot, layout
 from suchus.errors import UnreadableFile, UnsuitedRobot
+from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.motion import Gait, divided, form_of, suits
 from suchus.record import read_toml
@@ -91,4 +92,4 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     return found
 
 
-__all__ = ["CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]
+__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]

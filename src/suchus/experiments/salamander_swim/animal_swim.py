@@ -8,25 +8,10 @@ from jaxtyping import Float
 
 from suchus import rotation
 from suchus.design import Robot, layout
+from suchus.gaits import ANIMAL_SWIM
 from suchus.kinematics.tree import frames, landmarks
 from suchus.motion import Curve, Gait, servo_parts
 
-# fmt: off
-ANIMAL_SWIM = {
-    "neck_yaw_1": (-0.133, -0.187, -0.183, -0.14, -0.073, 0.022, 0.118, 0.173, 0.197, 0.183, 0.13, 0.051, -0.024),
-    "spine_yaw_2": (0.092, -0.05, -0.135, -0.203, -0.224, -0.226, -0.136, -0.046, 0.042, 0.12, 0.197, 0.202, 0.199),
-    "spine_yaw_1": (0.175, 0.072, -0.03, -0.108, -0.164, -0.215, -0.219, -0.168, -0.065, 0.047, 0.13, 0.177, 0.203),
-    "tail_yaw_1": (-0.217, -0.198, -0.108, 0.009, 0.109, 0.184, 0.222, 0.213, 0.162, 0.07, -0.037, -0.118, -0.18),
-    "tail_yaw_2": (-0.309, -0.39, -0.339, -0.249, -0.087, 0.109, 0.274, 0.368, 0.401, 0.325, 0.196, 0.017, -0.123),
-    "tail_yaw_3": (0.004, -0.327, -0.487, -0.549, -0.52, -0.378, -0.118, 0.152, 0.384, 0.498, 0.559, 0.484, 0.324),
-    "tail_yaw_4": (0.404, 0.136, -0.095, -0.319, -0.427, -0.525, -0.535, -0.355, -0.077, 0.154, 0.346, 0.441, 0.489),
-    "tail_yaw_5": (0.567, 0.507, 0.289, 0.03, -0.252, -0.428, -0.483, -0.54, -0.484, -0.274, 0.023, 0.268, 0.414),
-}
-# fmt: on
-"""Joint angles over one cycle, six harmonics of the mean cycle [rad].
-
-Source: Pleurodeles waltl; Karakasiliotis et al. 2013, Biol. Cybern. 107, 529, public data of Pleurobot.
-"""
 FOLDED = np.radians(-85.0)
 """How far the limbs lie back along the body; the animal holds them so, and was not filmed closer [rad]."""
 STRIDE = 0.225
