@@ -6,8 +6,8 @@ import xarray as xr
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments.bipedal_reach.experiment import least_lead
 from suchus.experiments.bipedal_reach.figure import draw_limits, draw_side_views
-from suchus.experiments.bipedal_reach.findings import least_lead
 from suchus.kinematics.mass import cantilever_torque
 from suchus.motion.rising import stretched
 from suchus.robots import ROBOTS

@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
-from suchus.experiments.feedback.experiment import ARMS, STARTS, experiment
-from suchus.experiments.feedback.findings import _loop_measures
+from suchus.experiments.feedback.experiment import ARMS, STARTS, _loop_measures, experiment
 from suchus.land import Limp, Locked, Run, simulate
 from suchus.metrics import displacement, heading
 from suchus.metrics.coordination import cycles_until, phase_error

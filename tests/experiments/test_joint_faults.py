@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.design import servo_names, value_at
 from suchus.errors import Diverged
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.joint_faults.findings import tolerance
+from suchus.experiments.joint_faults.experiment import tolerance
 from suchus.gaits import GAITS
 from suchus.land import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
 from suchus.metrics import displacement, loss, swing_lift, swing_loads, whole

@@ -9,8 +9,7 @@ import xarray as xr
 from suchus.design.relief import Bumps, Step, Stone
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.speed_range.experiment import _UNITS
-from suchus.experiments.terrain import findings
-from suchus.experiments.terrain.experiment import _met
+from suchus.experiments.terrain.experiment import SINGLE, _met
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import STONE
@@ -138,7 +137,7 @@ def test_an_obstacle_is_met_where_the_robot_came_to_it(robot):
 
 def rough_record(*, ahead=(True, True, False), met=1.0):
     """Return what three rough grounds and an even one came to: where the erect walk gets ahead, and who met them."""
-    arms, seeds = [*findings.SINGLE, "switching"], 2
+    arms, seeds = [*SINGLE, "switching"], 2
     forward = np.ones((4, len(arms), seeds))
     for ground, erect in enumerate(ahead, start=1):
         forward[ground, arms.index("high_walk_level")] = 1.2 if erect else 0.8
@@ -156,15 +155,15 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
 
 
 def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
-    found = {name: m.value for name, m in findings.measures(rough_record()).items()}
+    found = {name: m.value for name, m in EXPERIMENTS["terrain"].measure(rough_record()).items()}
     assert found["erect_ahead_share"] == pytest.approx(2 / 3)
     assert found["met_judged"] == 1.0
     assert (found["flat_cost_ratio"], found["flat_cost_ratio_high"]) == (0.5, 0.6)
     assert found["transitions_upright"] == 0.5  # 1.1 rad are more than 60 degrees
     assert found["transition_after_least"] == 0.3
-    behind = findings.measures(rough_record(ahead=(False, False, True)))
+    behind = EXPERIMENTS["terrain"].measure(rough_record(ahead=(False, False, True)))
     assert behind["erect_ahead_share"].value == pytest.approx(1 / 3)
-    missed = findings.measures(rough_record(met=0.0))
+    missed = EXPERIMENTS["terrain"].measure(rough_record(met=0.0))
     assert np.isnan(missed["erect_ahead_share"].value)
     assert missed["met_step_low_crawl"].value == 0.5
     assert "met 100% of the bumps, 50% of the steps" in EXPERIMENTS["terrain"].explain(

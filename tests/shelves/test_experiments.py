@@ -90,7 +90,7 @@ def test_its_figures_have_captions(quick):
 
 def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):
     experiment, outcome = quick
-    if hasattr(sys.modules[type(experiment).__module__], "replay"):  # it makes such pages
+    if hasattr(sys.modules[type(experiment).__module__], "replayed"):  # it makes such pages
         assert outcome.replays
     for name, replay in outcome.replays.items():
         page = replay.html

@@ -25,7 +25,6 @@ NOT_JOINTS = {
 }
 WHERE = {
     "tail_pitch": {
-        "experiments/feedback/findings.py",
         "experiments/death_roll/experiment.py",
         "experiments/feedback/experiment.py",
         "experiments/displacement/experiment.py",

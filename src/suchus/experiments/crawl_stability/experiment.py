@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import xarray as xr
 from suchus.design import layout
 from suchus.design.scale import coarse_step
 from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
 from suchus.experiments.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
 from suchus.gaits import conditions_of
@@ -30,7 +30,6 @@ from suchus.metrics import (
 )
 from suchus.motion import START, FootPath, longest_strokes
 from suchus.paper import SNAPSHOT_TIMES
-from suchus.replay import replay
 
 _EQUAL = "limbs_only_equal_displacement"
 _SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
@@ -44,20 +43,6 @@ _CHANGES = (
     ("spine_swing_pp_change", "coordinated", "tail_drag"),
 )
 """Relative changes of the height's fluctuation: name, condition, what it is compared with."""
-_PARTS = (
-    (
-        "laying the tail on the ground",
-        "tail_contact_pp_change",
-        " with the trunk swinging and {} with the trunk straight",
-        "tail_contact_pp_change_limbs_only",
-    ),
-    ("wagging it", "wagging_pp_change", "", ""),
-    ("the swing of the trunk", "spine_swing_pp_change", "", ""),
-)
-"""How the parts are called, their change, and what is said further of one more."""
-
-
-_LONG = 0.5  # [m]; of a body whose strokes are told to a millimetre
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,17 +77,15 @@ class CrawlStability(TwoGroups):
         return Simulated(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far."
-        page = partial(
-            replay,
+        return replayed(
+            "stability_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=-1),
             labels=("spine and tail", "legs alone, as far"),
             title="Two ways to get as far",
-            caption=caption,
+            caption="With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far.",
         )
-        return {"stability_replay.html": Replay(caption=caption, make=page)}
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
         """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.

@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
-from math import degrees, radians
 from typing import Any
 
 import numpy as np
@@ -13,20 +11,19 @@ from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
 from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
-from suchus.experiments.displacement.figure import draw_crawls, draw_map
-from suchus.figures import COLOURS, LINES, captioned, panels, styled
-from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
-from suchus.gaits import CONDITIONS, conditions_of
+from suchus.experiments.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
+from suchus.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.land import Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
 from suchus.motion import START, FootPath, suits
 from suchus.paper import CLAIMS, CYCLES
-from suchus.replay import replay
 
 _GROUPS = CONDITIONS[:2]
-_LONG = 0.5  # [m]; of a body whose displacement is told to a centimetre
+_CRAWL = belly_crawl.metres
+"""The crawl for which strokes and bends of the map are chosen."""
 _LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
 
 
@@ -44,9 +41,11 @@ class Displacement(TwoGroups):
     shows = "Section IV.B, Fig. 16"
     needs = ("limbs", "axis")
 
-    strokes: tuple[float, ...] = tuple(metres / 0.027 for metres in (0.01, 0.02, 0.027, 0.04, 0.055, 0.07, 0.085))
+    strokes: tuple[float, ...] = tuple(
+        stroke / _CRAWL.stroke for stroke in (0.01, 0.02, _CRAWL.stroke, 0.04, 0.055, 0.07, 0.085)
+    )
     """Strokes of the limbs on the map, over those of the gait [-]; of the crawl from 10 to 85 mm."""
-    bends: tuple[float, ...] = tuple(angle / radians(70) for angle in (0.0, 0.3, 0.6, 0.9, radians(70), 1.5))
+    bends: tuple[float, ...] = tuple(bend / _CRAWL.trunk_bend for bend in (0.0, 0.3, 0.6, 0.9, _CRAWL.trunk_bend, 1.5))
     """Bends of the axis on the map, over those of the gait [-]; of the crawl's trunk up to 1.5 rad."""
     pitches: tuple[float, ...] = (0.1, 0.15, 0.2, 0.25, 0.3)
     """Steady angles of the tail's pitch joint, down positive, over its plausible range [rad]."""
@@ -62,7 +61,8 @@ class Displacement(TwoGroups):
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
-        strokes, bends = (0.02 / 0.027, 0.06 / 0.027), (0.6 / radians(70), 1.2 / radians(70))
+        strokes = tuple(stroke / _CRAWL.stroke for stroke in (0.02, 0.06))
+        bends = tuple(bend / _CRAWL.trunk_bend for bend in (0.6, 1.2))
         corners = replace(self, strokes=strokes, bends=bends, pitches=(0.1, 0.3))
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
@@ -82,17 +82,15 @@ class Displacement(TwoGroups):
         return Simulated(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "The same legs twice: with spine and tail, and, half transparent, with limbs only."
-        page = partial(
-            replay,
+        return replayed(
+            "crawl_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
             labels=("spine and tail", "limbs only"),
             title="Crawling with spine and tail, and without",
-            caption=caption,
+            caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
         )
-        return {"crawl_replay.html": Replay(caption=caption, make=page)}
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
@@ -185,73 +183,15 @@ class Displacement(TwoGroups):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the crawls, what each part adds, the displacement over time and what decides it."""
-        record = outcome.record
+        record, printed = outcome.record, {arm: CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _GROUPS}
+        article = self._article()
+        full = self.cycles == CYCLES and not self.unjudged()
         return {
             "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
-            "parts": self._drawn_parts(record),
-            "displacement_over_time": self._drawn_course(record),
-            "displacement_map": self._drawn_map(record),
+            "parts": draw_parts(record, _forward(record), printed if article else {}, self.friction_spread),
+            "displacement_over_time": draw_course(record, _GROUPS, printed if full else {}, self.friction_spread),
+            "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=article),
         }
-
-    def _drawn_parts(self, record: xr.Dataset) -> Any:
-        forward = _forward(record)
-        arms = [str(arm) for arm in record.condition.values]
-        with styled():
-            figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
-            ax = axes[0, 0]
-            for i, arm in enumerate(arms):
-                repeats, here = record.spread_forward.sel(condition=arm), len(arms) - i
-                ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
-                        alpha=0.35, solid_capstyle="butt")  # fmt: skip
-                ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
-                if i == 0:
-                    ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
-                    ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
-                ax.annotate(f"{float(forward[i]):.3g} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
-                            textcoords="offset points")  # fmt: skip
-            for arm in _GROUPS if self._article() else ():
-                printed = CLAIMS[f"displacement_{arm}"].value
-                label = "article" if arm == _GROUPS[0] else None
-                ax.plot(printed, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
-                        markeredgecolor="black", label=label)  # fmt: skip
-            ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
-            ax.set_ylim(0.4, len(arms) + 0.8)
-            ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
-            ax.set_xlabel("displacement forward [m]")
-            ax.legend(loc="lower right")
-        return captioned(
-            figure,
-            "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
-            f"{record.sizes['repeat']} repeats with noise on the servos and {self.friction_spread:.0%} of spread in "
-            "the friction. All conditions command the same legs.",
-        )
-
-    def _drawn_course(self, record: xr.Dataset) -> Any:
-        with styled():
-            figure, axes = panels(1, 1, height=4.2)
-            ax = axes[0, 0]
-            x = record.centre_of_mass.isel(run=[0, 1]).sel(xyz="x")
-            x = x - x.sel(time=START, method="nearest")
-            for arm in _GROUPS:
-                spread = record.spread_over_time.sel(condition=arm)
-                band = spread.rename(repeat="run", spread_time="time")
-                draw_band(ax, band, arm, label=f"repeats, {LINES[arm]['label']}")
-            draw_lines(ax, x, _GROUPS)
-            end = float(record.time[-1])
-            cycles = (end - START) / float(record.period[0])
-            printed = {arm: CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _GROUPS}
-            mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
-            shown = cycles == CYCLES and not self.unjudged()
-            if shown:
-                mark_printed(ax, printed, end)
-            ax.set_ylabel("displacement forward [m]")
-            ax.legend(loc="upper left")
-        diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if shown else ""
-        return captioned(
-            figure,
-            f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} "
-            f"Bands: repeats with noise on the servos and {self.friction_spread:.0%} of spread in the friction.",
-        )
 
     def _stroke(self) -> float:
         """Return half the distance that a front foot moves back in stance [m]."""
@@ -262,66 +202,6 @@ class Displacement(TwoGroups):
         """Whether the article's numbers are for this robot and its gaits."""
         shelf = type(self)()
         return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control"))
-
-    def _drawn_map(self, record: xr.Dataset) -> Any:
-        pitched, absolute = (
-            record.sizes["pitch"] > 0,
-            self.gait.has("foot paths") and self.gait.number("trunk_bend") > 0,
-        )
-        with styled(axes__grid=False):
-            ratios = [1.35, 1, 1] if pitched else [1.35, 1]
-            figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
-            ratio, star = _ratio(record), (1.0, 1.0)
-            if absolute:
-                star = 1000 * self._stroke(), degrees(self.gait.number("trunk_bend"))
-                ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
-                ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
-                ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
-            printed = CLAIMS["displacement_ratio"].value if self._article() else None
-            ax = axes[0, 0]
-            if min(ratio.shape) > 1:
-                draw_map(
-                    ax,
-                    ratio.T,
-                    levels=(1, 1.5, 2, 3, 6, 12),
-                    label="ratio of displacements [-]",
-                    emphasised=printed,
-                    form="%.3g",
-                )
-            ax.plot(
-                *star, "*", markersize=15, color="white", markeredgecolor="black", label="crawl of the other figures"
-            )
-            ax.legend(loc="upper right", fontsize=10)
-            ax.set_title("spine and tail over limbs only")
-            if pitched:
-                ax = axes[0, 1]
-                for arm in _GROUPS:
-                    ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[arm])
-                ours = degrees(self.gait.number("tail_pitch"))
-                ax.axvline(ours, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
-                ax.set_xlabel("pitch of the tail, down [deg]")
-                ax.set_ylabel("displacement forward [m]")
-                ax.set_ylim(bottom=0.0)
-                ax.legend(loc="center right")
-                ax.set_title("pitch of the tail")
-            ax = axes[0, -1]
-            ax.axhline(0.0, color="#999999", linewidth=0.8)
-            ax.plot(record.late, record.late_coordinated, marker="o", **(dict(LINES["coordinated"]) | {"label": None}))
-            ax.set_xlabel("phase lag of the trunk [cycle]")
-            ax.set_ylabel("displacement forward [m]")
-            ax.set_title("phase lag of the trunk")
-        line = ", the orange line the article's ratio" if self._article() else ""
-        what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
-        middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
-        return captioned(
-            figure,
-            f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
-            f"star is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
-            "the legs, with spine and tail.",
-        )
-
-
-_SHOWN = "crawl of the other figures"
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:
@@ -360,8 +240,6 @@ _GAINS = (
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
 )
 """What two conditions differ in, by which one gets farther than the other."""
-_AXIS = {True: "spine and tail", False: "a bending trunk"}
-"""How what bends is called, by whether trunk and tail can be told apart."""
 
 
 def _ratio(record: xr.Dataset) -> xr.DataArray:

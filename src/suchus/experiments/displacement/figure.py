@@ -1,6 +1,7 @@
-"""Crawls side by side from above, as far as each gets in the same time, and the displacement over two parameters."""
+"""Crawls side by side from above, what each part of the axis adds to the displacement, and what decides it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import degrees
 
 import numpy as np
 import xarray as xr
@@ -12,9 +13,14 @@ from suchus.design import Robot
 from suchus.figures.data import carry
 from suchus.figures.posture import draw_strip
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
-from suchus.motion import START
+from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
+from suchus.motion import START, Gait
+from suchus.paper import CLAIMS
+from suchus.robots import ROBOTS
 
-_USUAL = 1.01  # [m]; length of the article's robot, for which distances between the strips are
+_USUAL = ROBOTS["caiman"].length
+"""Length of the robot for which distances between the strips are [m]."""
+_SHOWN = "crawl of the other figures"
 
 
 def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
@@ -55,6 +61,136 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
         f"Two crawls from above with identical leg commands, at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with "
         "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet "
         "stand.",
+    )
+
+
+def draw_parts(record: xr.Dataset, forward: xr.DataArray, printed: Mapping[str, float], spread: float) -> Figure:
+    """Draw how far each condition gets, without noise and in repeats.
+
+    Args:
+        record: of the experiment.
+        forward: displacement of each condition without noise [m].
+        printed: the article's displacements by condition [m]; empty for another robot or gait.
+        spread: of the friction in the repeats, as a fraction of it [-].
+    """
+    arms = [str(arm) for arm in record.condition.values]
+    with styled():
+        figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
+        ax = axes[0, 0]
+        for i, arm in enumerate(arms):
+            repeats, here = record.spread_forward.sel(condition=arm), len(arms) - i
+            ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
+                    alpha=0.35, solid_capstyle="butt")  # fmt: skip
+            ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
+            if i == 0:
+                ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
+                ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
+            ax.annotate(f"{float(forward[i]):.3g} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
+                        textcoords="offset points")  # fmt: skip
+        for i, (arm, metres) in enumerate(printed.items()):
+            ax.plot(metres, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
+                    markeredgecolor="black", label=None if i else "article")  # fmt: skip
+        ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
+        ax.set_ylim(0.4, len(arms) + 0.8)
+        ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
+        ax.set_xlabel("displacement forward [m]")
+        ax.legend(loc="lower right")
+    return captioned(
+        figure,
+        "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
+        f"{record.sizes['repeat']} repeats with noise on the servos and {spread:.0%} of spread in "
+        "the friction. All conditions command the same legs.",
+    )
+
+
+def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, float], spread: float) -> Figure:
+    """Draw the displacement over time with all of the axis and without, and the range of the repeats.
+
+    Args:
+        record: of the experiment, the two conditions first.
+        arms: names of the two conditions.
+        printed: the article's displacements by condition [m]; empty where they are not for this run.
+        spread: of the friction in the repeats, as a fraction of it [-].
+    """
+    with styled():
+        figure, axes = panels(1, 1, height=4.2)
+        ax = axes[0, 0]
+        x = record.centre_of_mass.isel(run=[0, 1]).sel(xyz="x")
+        x = x - x.sel(time=START, method="nearest")
+        for arm in arms:
+            repeats = record.spread_over_time.sel(condition=arm)
+            band = repeats.rename(repeat="run", spread_time="time")
+            draw_band(ax, band, arm, label=f"repeats, {LINES[arm]['label']}")
+        draw_lines(ax, x, arms)
+        end = float(record.time[-1])
+        cycles = (end - START) / float(record.period[0])
+        mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
+        if printed:
+            mark_printed(ax, printed, end)
+        ax.set_ylabel("displacement forward [m]")
+        ax.legend(loc="upper left")
+    diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if printed else ""
+    return captioned(
+        figure,
+        f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} "
+        f"Bands: repeats with noise on the servos and {spread:.0%} of spread in the friction.",
+    )
+
+
+def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: float, *, article: bool) -> Figure:
+    """Draw the ratio over stroke and bend, and the displacement over the tail's pitch and the trunk's phase lag.
+
+    Args:
+        record: of the experiment.
+        ratio: of the displacements with all of the axis and without, shape (stroke, bend) [-].
+        gait: the crawl of the other figures.
+        stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
+        article: whether the article's numbers are for this robot and its gaits.
+    """
+    pitched = record.sizes["pitch"] > 0
+    absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
+    with styled(axes__grid=False):
+        ratios = [1.35, 1, 1] if pitched else [1.35, 1]
+        figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
+        star = (1.0, 1.0)
+        if absolute:
+            star = 1000 * stroke, degrees(gait.number("trunk_bend"))
+            ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
+            ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
+            ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
+        printed = CLAIMS["displacement_ratio"].value if article else None
+        ax = axes[0, 0]
+        if min(ratio.shape) > 1:
+            label = "ratio of displacements [-]"
+            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed, form="%.3g")
+        ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_SHOWN)
+        ax.legend(loc="upper right", fontsize=10)
+        ax.set_title("spine and tail over limbs only")
+        if pitched:
+            ax = axes[0, 1]
+            for arm in record.group.values:
+                ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[str(arm)])
+            ours = degrees(gait.number("tail_pitch"))
+            ax.axvline(ours, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
+            ax.set_xlabel("pitch of the tail, down [deg]")
+            ax.set_ylabel("displacement forward [m]")
+            ax.set_ylim(bottom=0.0)
+            ax.legend(loc="center right")
+            ax.set_title("pitch of the tail")
+        ax = axes[0, -1]
+        ax.axhline(0.0, color="#999999", linewidth=0.8)
+        ax.plot(record.late, record.late_coordinated, marker="o", **(dict(LINES["coordinated"]) | {"label": None}))
+        ax.set_xlabel("phase lag of the trunk [cycle]")
+        ax.set_ylabel("displacement forward [m]")
+        ax.set_title("phase lag of the trunk")
+    line = ", the orange line the article's ratio" if article else ""
+    what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
+    middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
+    return captioned(
+        figure,
+        f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
+        f"star is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
+        "the legs, with spine and tail.",
     )
 
 

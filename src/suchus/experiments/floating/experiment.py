@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from math import pi, radians
 from typing import Any
 
@@ -14,13 +13,13 @@ from suchus.control import Swimming
 from suchus.design import Robot, crocodile_like
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.floating import cases
 from suchus.experiments.floating.figure import draw_checks, draw_righting
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Lake, Run, simulate
 from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import Swim
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
@@ -168,9 +167,13 @@ class Floating(Experiment):
         return simulate(runs, duration=self.duration, progress=progress)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out."
-        page = partial(replay, record.isel(run=-1), self.robot, title="A robot rights itself", caption=caption)
-        return {"righting_replay.html": Replay(caption=caption, make=page)}
+        return replayed(
+            "righting_replay.html",
+            record.isel(run=-1),
+            self.robot,
+            title="A robot rights itself",
+            caption=f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out.",
+        )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return how far off the exact answers are, and how the robot floats."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,8 @@ import xarray as xr
 from suchus import blueprint
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.figures import captioned
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.gaits import GAITS
@@ -27,7 +27,6 @@ from suchus.metrics import (
 )
 from suchus.motion import START, Gait, as_table
 from suchus.paper import CYCLES
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _PARTS = ("spine", "tail")
@@ -77,11 +76,10 @@ class GaitDiagram(Experiment):
         sensed = _sensed(self.robot, record)
         for part in commanded:
             record[f"sensed_{part}"] = ("time", sensed[part], {"units": "rad", "long_name": f"bend of the {part}"})
-        page = partial(replay, record, self.robot, caption=_CAPTION)
         return Simulated(
             record=record,
             tables={"gait_table.toml": blueprint.render(as_table(self.robot, self.gait))},
-            replays={"gait_replay.html": Replay(caption=_CAPTION, make=page)},
+            replays=replayed("gait_replay.html", record, self.robot, caption=_CAPTION),
         )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:

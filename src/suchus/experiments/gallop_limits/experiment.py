@@ -2,25 +2,25 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, ClassVar
 
+import matplotlib
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from suchus.design import Robot, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.servos import with_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments.gallop_limits.figure import draw_gallop_limits
-from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS
-from suchus.experiments.gallop_limits.searched import Searched
+from suchus.experiments._replayed import replayed
+from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
 from suchus.figures import captioned
+from suchus.figures.style import COLOURS, panels, styled
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, displacement, flight_share
 from suchus.motion import START, Gait
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _RUN_UP = 1.0  # [s]; before anything is measured
@@ -152,17 +152,15 @@ class GallopLimits(Experiment):
         )
         said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, own)]
         runs = [i * found.sizes["gait"] + int(np.argmax(bound[i])) for i in (best, own)]
-        caption = f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}."
-        page = partial(
-            replay,
+        return replayed(
+            "gallop_replay.html",
             record.isel(run=runs[0]),
             self.robot,
             ghost=record.isel(run=runs[1]),
             labels=tuple(said),
             title="Could it gallop?",
-            caption=caption,
+            caption=f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}.",
         )
-        return {"gallop_replay.html": Replay(caption=caption, make=page)}
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
@@ -220,6 +218,35 @@ def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
     """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
     from_here = np.flip(np.logical_and.accumulate(np.flip(pays)))
     return float(speeds[from_here][0]) if from_here.any() else float("inf")
+
+
+def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figure:
+    """Draw speed [m/s] and share of flight of a bound over the servos' no-load speed [rad/s].
+
+    Args:
+        bound: the fastest bound, with ``speed`` and ``flight`` (torque, servo_speed).
+        walk: the fastest trot or walk, the same.
+        own: no-load speed of the robot's own servos [rad/s].
+    """
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.8, 0.1, bound.sizes["torque"]))
+    with styled():
+        figure, axes = panels(1, 2, width=11.0, height=4.6)
+        for shade, torque in zip(shades, bound.torque.values, strict=True):
+            one, other = bound.sel(torque=torque), walk.sel(torque=torque)
+            axes[0, 0].plot(one.servo_speed, one.speed, marker="o", color=shade, label=f"bound, {torque:g} N m")
+            axes[0, 0].plot(one.servo_speed, other.speed, color=shade, linestyle=(0, (4, 2)))
+            axes[0, 1].plot(one.servo_speed, 100 * one.flight, marker="o", color=shade)
+        for ax in axes.flat:
+            ax.set_xscale("log")
+            ax.set_xticks(bound.servo_speed.values, [f"{speed:g}" for speed in bound.servo_speed.values])
+            ax.minorticks_off()
+            ax.axvline(own, color=COLOURS["neutral"], linewidth=1.0)
+            ax.set_xlabel("no-load speed of the servos [rad/s]")
+        axes[0, 0].plot([], [], color="#333333", linestyle=(0, (4, 2)), label="fastest trot or walk")
+        axes[0, 0].set_ylabel("speed forward [m/s]")
+        axes[0, 1].set_ylabel("in flight [% of the time]")
+        figure.legend(loc="outside upper center", ncols=bound.sizes["torque"] + 1)
+    return figure
 
 
 experiment = GallopLimits()

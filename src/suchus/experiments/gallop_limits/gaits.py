@@ -1,9 +1,28 @@
 """Gaits that a search found for the limit study of galloping; none of them stands on the shelf."""
 
+from dataclasses import dataclass, replace
 from typing import Any
 
-from suchus.experiments.gallop_limits.searched import Searched, galloping
-from suchus.motion import GaitInMetres
+from suchus.design.checks import Checks
+from suchus.gaits.belly_crawl import LIMBS
+from suchus.motion import Bend, Gait, GaitInMetres, as_table
+from suchus.robots import ROBOTS
+
+_SAMPLES = 32  # of a cycle, with which the gaits were searched
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Searched:
+    """A gait that a search found for one kind of servo."""
+
+    servo_speed: float
+    """No-load speed of the servos with which it was searched [rad/s]."""
+    gait: Gait
+    """The gait."""
+
+    def __post_init__(self) -> None:
+        with Checks("searched", self) as check:
+            check.number("servo_speed", 0.1, 1e3, "rad/s")
 
 
 def _searched(
@@ -15,6 +34,17 @@ def _searched(
     yaw: tuple[float, float],
     **feet: Any,
 ) -> Searched:
+    """Return a gait whose trunk bends up and down besides, the other joints as smooth curves as in the search.
+
+    Args:
+        servo_speed: no-load speed of the servos with which it was searched [rad/s].
+        name: of the gait.
+        ahead: places of the front and the hind feet ahead of their hips [m].
+        trunk: mean [rad] and amplitude [rad] of the trunk's vertical bend, down positive, and when in the cycle it is
+            bent down most [cycle].
+        yaw: amplitude [rad] and phase [cycle] of its lateral bend.
+        **feet: what else ``GaitInMetres`` is told of the feet and the tail.
+    """
     metres = GaitInMetres(
         name=name,
         front_reach=0.0,
@@ -28,7 +58,12 @@ def _searched(
         tail_phase=0.0,
         **feet,
     )
-    gait = galloping(metres, mean=trunk[0], amplitude=trunk[1], down=trunk[2])
+    mean, amplitude, down = trunk
+    lag = down + 0.5 - (0.75 - metres.duty_factor / 2)  # the phase of the axis counts from before mid-stance
+    vertical = Bend(part="trunk", turn="pitch", amplitude=(amplitude,), lag=(lag,), offset=mean)
+    # in a bound the pulls of left and right cancel in the article's law, and the trunk follows the gait's own phases
+    curves = as_table(ROBOTS["caiman"], metres.gait(LIMBS), _SAMPLES)
+    gait = replace(curves, axis=(vertical,), coupling=() if amplitude else curves.coupling)
     return Searched(servo_speed=servo_speed, gait=gait)
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from math import radians
 from typing import Any
 
@@ -16,13 +15,13 @@ from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.pattern_generator import one_drive
 from suchus.experiments.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _NUMBERS = Oscillators()
@@ -266,13 +265,14 @@ class PatternGeneratorExperiment(Experiment):
         return found, simulate([ramped], duration=end, every=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
-        caption = (
-            "The drive rises and falls again: limbs and a standing wave first, then folded limbs and a faster wave."
+        return replayed(
+            "drive_ramp_replay.html",
+            ramped.isel(run=0),
+            self.robot,
+            title="Walking under a rising and falling drive",
+            caption="The drive rises and falls again: limbs and a standing wave first, then folded limbs and a faster "
+            "wave.",
         )
-        page = partial(
-            replay, ramped.isel(run=0), self.robot, title="Walking under a rising and falling drive", caption=caption
-        )
-        return {"drive_ramp_replay.html": Replay(caption=caption, make=page)}
 
 
 def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.salamander.animal_walk import (
     ANIMAL,
     PAIRS,
@@ -29,7 +29,6 @@ from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
@@ -106,17 +105,15 @@ class Salamander(Experiment):
         return Simulated(record=record, tables=tables, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "Joint angles of a walking salamander on its model; half transparent, with the axis held straight."
-        page = partial(
-            replay,
+        return replayed(
+            "animal_walk_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
             labels=(_WALK, _STRAIGHT),
             title="The walk of a salamander, played joint by joint",
-            caption=caption,
+            caption="Joint angles of a walking salamander on its model; half transparent, with the axis held straight.",
         )
-        return {"animal_walk_replay.html": Replay(caption=caption, make=page)}
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return wave, stride, foot forces and slip of the walk, and what axis and friction change."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,10 +12,10 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.salamander_swim import animal_swim as animal
 from suchus.experiments.salamander_swim.figure import draw_envelope, draw_strides
 from suchus.land import Lake, Run, simulate
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 
@@ -120,12 +119,13 @@ class SalamanderSwim(Experiment):
         return float(np.copysign(distance, (way[1] - way[0]) @ facing[:, :2].mean(axis=0)))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = f"Joint angles of a swimming salamander on its model, at {self.frequencies[-1]:g} cycles a second."
-        page = partial(
-            replay, record.isel(run=0), self.robot, title="The swim of a salamander, played joint by joint",
-            caption=caption,
-        )  # fmt: skip
-        return {"animal_swim_replay.html": Replay(caption=caption, make=page)}
+        return replayed(
+            "animal_swim_replay.html",
+            record.isel(run=0),
+            self.robot,
+            title="The swim of a salamander, played joint by joint",
+            caption=f"Joint angles of a swimming salamander on its model, at {self.frequencies[-1]:g} cycles a second.",
+        )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return stride, Strouhal number and envelope of the swims, and how far off the animal's stride they are."""

@@ -13,6 +13,7 @@ from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingR
 from suchus.design import Robot, with_values
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.shore import findings
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
 from suchus.gaits import GAITS
@@ -21,7 +22,6 @@ from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
 from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, Swim
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.water import fit, printed_wave
 
@@ -229,9 +229,13 @@ class Shore(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         end = findings.ending(record)
-        caption = f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore."
-        page = partial(replay, record.isel(run=0), self.robot, title="From the water onto the shore", caption=caption)
-        return {"shore_replay.html": Replay(caption=caption, make=page)}
+        return replayed(
+            "shore_replay.html",
+            record.isel(run=0),
+            self.robot,
+            title="From the water onto the shore",
+            caption=f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore.",
+        )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""

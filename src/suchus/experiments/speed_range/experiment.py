@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from suchus import rotation
 from suchus.design import Robot, Rod, Segment, Servo, layout
@@ -14,8 +15,9 @@ from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments.speed_range.figure import draw_speed_range
+from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
+from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.kinematics.mass import GRAVITY
 from suchus.kinematics.tree import frames
@@ -23,11 +25,13 @@ from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
 from suchus.motion import START, Gait, hip_height
 from suchus.paper.animals import ANIMAL
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
+_THICK, _THIN = 2.0, 0.9
+_SERVOS = ("servos of equal torque at any speed", "servos whose torque falls with speed")
+_WALKING = ANIMAL["high_walk_speed"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,9 +84,15 @@ class SpeedRange(Experiment):
         until = min(float(one.time[-1]) for one in fastest)
         pair = [one.sel(time=slice(None, until)) for one in (fastest[0], fastest[-1])]
         names = [str(one.gait.item()).replace("_", " ") for one in pair]
-        caption = f"At the shortest cycle that was tried: {names[0]}, and, half transparent, {names[1]}."
-        page = partial(replay, pair[0], self.robot, ghost=pair[1], labels=names, title="In a hurry", caption=caption)
-        return {"speed_replay.html": Replay(caption=caption, make=page)}
+        return replayed(
+            "speed_replay.html",
+            pair[0],
+            self.robot,
+            ghost=pair[1],
+            labels=names,
+            title="In a hurry",
+            caption=f"At the shortest cycle that was tried: {names[0]}, and, half transparent, {names[1]}.",
+        )
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
         """Return what was measured, and the fastest walk of each gait as a record."""
@@ -252,6 +262,45 @@ def _radii(segments: Sequence[Segment], along: np.ndarray) -> np.ndarray:
         found[0] = thick[0] + (thick[1] - thick[0]) * (along[0] - middles[0]) / (middles[1] - middles[0])
         found[-1] = thick[-1] + (thick[-1] - thick[-2]) * (along[-1] - middles[-1]) / (middles[-1] - middles[-2])
     return np.maximum(found, 0.0)
+
+
+def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw speed, cost, duty factor and Froude number over cycle time, the servos with a speed line thinly."""
+    with styled():
+        figure, axes = panels(2, 2, width=9.6, height=8.0, sharex=True)
+        rows = (
+            ("speed", "speed [m/s]", 1.0),
+            ("cost", "cost of transport [-]", 1.0),
+            ("duty", "duty factor [-]", 1.0),
+            ("froude", "Froude number [-]", 1.0),
+        )
+        for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
+            for gait in record.gait.values:
+                for model, width in (("line", _THIN), ("slew", _THICK)):
+                    one = record.sel(gait=gait, servo_model=model)
+                    style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
+                    if model == "line":
+                        style |= {"label": f"_{style['label']}, {_SERVOS[1]}", "alpha": 0.7}
+                    ax.plot(one.period, scale * one[name], **style)
+            ax.set_xscale("log")
+            ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
+            ax.minorticks_off()
+            ax.set_ylabel(label)
+        band = axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
+        axes[0, 0].set_ylim(0.0, max(0.75, 1.1 * float(record.speed.max())))
+        axes[0, 1].set_ylim(0.0, None)
+        axes[1, 1].set_yscale("log")
+        for ax in axes[1]:
+            ax.set_xlabel("cycle time [s]")
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        models = [Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_THICK, _THIN)]
+        handles, labels = [*handles, *models, band], [*labels, *_SERVOS, f"{_WALKING.who}, high walk"]
+        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=11)
+    return captioned(
+        figure,
+        "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
+        f"motor loses. Band: what {_WALKING.who} do in the high walk.",
+    )
 
 
 experiment = SpeedRange()

@@ -15,13 +15,13 @@ from suchus.design import GRAVITY, Robot, cable_joints, with_spring, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.motion import LIMBS_BACK, Swim
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 from suchus.water import Outline, fit, printed_wave, swim
 from suchus.water.sections import likely
@@ -191,17 +191,16 @@ class SwimFree(Experiment):
         )
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        caption = "Swimming at the surface by the wave of (20), limbs held back; half transparent, with stiffer joints."
-        page = partial(
-            replay,
+        return replayed(
+            "swim_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=len(MOTIONS)),
             labels=("joints as designed", "stiffer joints"),
             title="Swimming in six degrees of freedom",
-            caption=caption,
+            caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with stiffer "
+            "joints.",
         )
-        return {"swim_replay.html": Replay(caption=caption, make=page)}
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""

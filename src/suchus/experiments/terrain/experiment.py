@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import permutations
 from math import isfinite, nan
 from typing import Any, ClassVar, Literal
@@ -17,16 +16,14 @@ from suchus.design.relief import Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments.terrain import findings
+from suchus.experiments._replayed import replayed
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
-from suchus.experiments.terrain.findings import FALLEN
 from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Run, simulate
 from suchus.land.arenas import BEFORE, STONE
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.motion import START, Gait, suits
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _TOUCH = 0.01447965898  # of the weight on the belly, 0.5 N of the article's robot
@@ -35,6 +32,15 @@ _LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
 """Heights of the three postures of a body of its own, over that of its gait [-]."""
 _STEPS = 1.75  # by which a body of its own walks more cycles: they are shorter
 Surface = Literal["even", "bumps"]
+FALLEN = np.radians(60)
+"""Roll or pitch beyond which nothing on the robot brings it back [rad]."""
+ROUGH = 0.03
+"""Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
+sprawled crawl is less. For others it is in proportion to their length."""
+_EVEN = 1e-9  # [m]; heights that differ by less are equal
+SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
+"""Arms that keep one posture."""
+_COMPARED = ("low_crawl", "high_walk_level")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,7 +141,35 @@ class Terrain(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
-        return findings.measures(record)
+        rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
+        found: dict[str, Measure] = {}
+        for arm in record.arm.values:
+            one = record.sel(arm=arm)
+            flat = one.isel(ground=0, seed=0)
+            found |= {
+                f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
+                f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
+                f"falls_{arm}": Measure(float(one.fell.sum()), "-"),
+                f"falls_rough_{arm}": Measure(float(rough.fell.sel(arm=arm).sum()), "-"),
+                f"belly_{arm}": Measure(float(one.belly.mean()), "-"),
+                f"aside_{arm}": Measure(float(abs(one.aside).mean()), "m"),
+            }
+            for kind in dict.fromkeys(record.kind.values):
+                covered = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
+                found[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
+                found[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
+        low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
+        share = _share_of_best(record)
+        return found | {
+            **_flat(record),
+            **_rough(rough),
+            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
+            "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
+            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
+            "grounds": Measure(float(record.sizes["ground"]), "-"),
+            "switching_falls_up_to_40_mm": Measure(float(low.fell.sel(arm="switching").sum()), "-"),
+            **_transitions(record),
+        }
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each posture keeps of its displacement on rough ground, and what switching is worth."""
@@ -144,17 +178,15 @@ class Terrain(Experiment):
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         height = f"{1000 * self._shown_height:.3g}"
-        caption = f"Semi-erect with the IMU, and, half transparent, low, over one field of {height} mm bumps."
-        page = partial(
-            replay,
+        return replayed(
+            "terrain_replay.html",
             record.isel(run=1),
             self.robot,
             ghost=record.isel(run=0),
             labels=("semi-erect", "low crawl"),
             title="Over bumps, semi-erect and low",
-            caption=caption,
+            caption=f"Semi-erect with the IMU, and, half transparent, low, over one field of {height} mm bumps.",
         )
-        return {"terrain_replay.html": Replay(caption=caption, make=page)}
 
     def _shown_relief(self) -> Bumps:
         return self._bumps(self._shown_height, self.correlations[-1], 2)
@@ -348,6 +380,56 @@ def _met(one: xr.Dataset, run: Run) -> bool:
 def _most_tilt(record: xr.Dataset) -> np.ndarray:
     angles = tilt(between(record))
     return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
+
+
+def _flat(record: xr.Dataset) -> dict[str, Measure]:
+    """Return what the crawl costs on even ground, of what the high walk costs, over the repeats with noise."""
+    cost = record.isel(ground=0).cost
+    ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
+    return {
+        "flat_cost_ratio": Measure(float(ratio[0]), "-"),
+        "flat_cost_ratio_low": Measure(float(ratio.min()), "-"),
+        "flat_cost_ratio_high": Measure(float(ratio.max()), "-"),
+    }
+
+
+def _rough(rough: xr.Dataset) -> dict[str, Measure]:
+    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little."""
+    met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
+    ahead = (rough.forward.sel(arm="high_walk_level") > rough.forward.sel(arm="low_crawl")).mean("ground")
+    distance = rough.forward.mean("seed")
+    crawl, semi, erect, level = (distance.sel(arm=arm) for arm in SINGLE)
+    met_enough = met >= 1.0
+    return {
+        "met_judged": Measure(met, "-"),
+        "rough_grounds": Measure(float(rough.sizes["ground"]), "-"),
+        "rough_runs": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
+        "erect_ahead_share": Measure(float((level > crawl).mean()) if met_enough else float("nan"), "-"),
+        "erect_ahead_share_low": Measure(float(ahead.min()) if met_enough else float("nan"), "-"),
+        "erect_ahead_share_high": Measure(float(ahead.max()) if met_enough else float("nan"), "-"),
+        "erect_open_loop_ahead_share": Measure(float((erect > crawl).mean()), "-"),
+        "semi_erect_ahead_of_both_share": Measure(float(((semi > level) & (semi > crawl)).mean()), "-"),
+    }
+
+
+def _transitions(record: xr.Dataset) -> dict[str, Measure]:
+    """Return how many transitions stay upright, and how far the robot walks after them at least."""
+    return {
+        "transitions": Measure(float(record.change_tilt.size), "-"),
+        "transitions_upright": Measure(float((record.change_tilt < FALLEN).mean()), "-"),
+        "transition_after_least": Measure(float(record.change_after.min()), "m"),
+        **{
+            f"transition_tilt_{surface}": Measure(float(record.change_tilt.sel(surface=surface).max()), "rad")
+            for surface in record.surface.values
+        },
+        "transition_tilt": Measure(float(record.change_tilt.max()), "rad"),
+    }
+
+
+def _share_of_best(record: xr.Dataset) -> xr.DataArray:
+    """Return the displacement of the switching robot over that of the best single posture, by ground [-]."""
+    distance = record.forward.mean("seed")
+    return distance.sel(arm="switching", drop=True) / distance.sel(arm=list(SINGLE)).max("arm")
 
 
 experiment = Terrain()

@@ -12,9 +12,11 @@ from suchus.design import Robot
 from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.figures.posture import draw_posture
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.robots import ROBOTS
 
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
-_USUAL = 1.01  # [m]; length of the article's robot, for which the pictures' sizes are
+_USUAL = ROBOTS["caiman"].length
+"""Length of the robot for which the pictures' sizes are [m]."""
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:

@@ -2,23 +2,23 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments.turning.figure import draw_turning
+from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
+from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import between, heading_change
 from suchus.motion import START, Gait, trunk_amplitude
-from suchus.replay import replay
 from suchus.robots import ROBOTS
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
@@ -92,18 +92,16 @@ class Turning(Experiment):
     def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the gait that turns tightest, and of its first circle."""
         asked = f"on a circle of {self.asked[0]:.3g} m, or the tightest it can walk on command"
-        caption = f"Turning as tightly as it can, and, half transparent, {asked}."
-        page = partial(
-            replay,
+        return replayed(
+            "turning_replay.html",
             pair[0],
             self.robot,
             ghost=pair[1],
             labels=("as tightly as it can", "on a circle"),
             title=f"Turning, {str(pair[0].gait.item()).replace('_', ' ')}",
-            caption=caption,
             overlaid=True,
+            caption=f"Turning as tightly as it can, and, half transparent, {asked}.",
         )
-        return {"turning_replay.html": Replay(caption=caption, make=page)}
 
     def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
         """Return the curvatures of one gait, and its tightest turn and first circle as records."""
@@ -213,6 +211,37 @@ def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.
 
 def _radius(curvature: xr.DataArray) -> float:
     return float(1.0 / max(float(curvature.max()), _STRAIGHT))
+
+
+def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw curvature against bend and asymmetry, and asked against measured radius."""
+    with styled():
+        figure, axes = panels(1, 3, width=11.5, height=4.0)
+        for ax, name, label, scale in (
+            (axes[0, 0], "bend", "curvature offset of the trunk [deg]", 180 / np.pi),
+            (axes[0, 1], "asymmetry", "asymmetry of strokes [-]", 1.0),
+        ):
+            for gait in record.gait.values:
+                ax.plot(scale * record[name], record[f"curvature_{name}"].sel(gait=gait), **lines[str(gait)])
+            ax.set_xlabel(label)
+            ax.set_ylabel("curvature of the path [1/m]")
+            ax.set_ylim(-0.1, max(2.8, 1.05 * float(record.curvature_mixture.max())))
+        axes[0, 0].legend(loc="upper left")
+        ax = axes[0, 2]
+        asked = record.asked.values
+        ax.fill_between(asked, 0.9 * asked, 1.1 * asked, color="#E3E3E3", zorder=0, label="within 10 %")
+        ax.plot(asked, asked, color=COLOURS["neutral"], linewidth=0.9)
+        for gait in record.gait.values:
+            style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
+            ax.plot(asked, record.radius.sel(gait=gait), **style)
+        ax.set_xlabel("commanded radius [m]")
+        ax.set_ylabel("measured radius [m]")
+        ax.legend(loc="upper left")
+    return captioned(
+        figure,
+        "How the robot turns: left and middle, curvature of its path with a bent trunk and with unequal strokes; "
+        "right, a turn command that mixes both.",
+    )
 
 
 experiment = Turning()
