@@ -27,7 +27,7 @@ WHERE = {
     "tail_pitch": {
         "experiments/death_roll/experiment.py",
         "experiments/feedback/experiment.py",
-        "experiments/displacement/experiment.py",
+        "experiments/displacement/figure.py",
         "experiments/death_roll/figure.py",
         "experiments/joint_loops/figure.py",
         "control/tail.py",
