@@ -37,3 +37,13 @@ def test_what_walks_loads_no_flow_solver(walking):
 
 def test_a_swim_by_cfd_would_be_noticed():
     assert "suchus.flow" in flow_modules_after("suchus.experiments.swimming.experiment")
+
+
+def test_to_save_a_record_loads_no_cluster(tmp_path):
+    code = "import sys, xarray, suchus.record; suchus.record.save(xarray.Dataset({'a': 1.0}), sys.argv[1])"
+    code += "; print('distributed' in sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "r.nc")], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"
+    assert (tmp_path / "r.nc").is_file()

@@ -51,6 +51,14 @@ def test_equal_records_give_equal_bytes(record, tmp_path):
     assert save(record.copy(deep=True), tmp_path / "b.nc").read_bytes() == first
 
 
+def test_a_file_is_what_xarray_itself_writes_and_a_seal(record, tmp_path):
+    written = save(record.drop_attrs(), tmp_path / "a.nc").read_bytes()
+    marked = record.drop_attrs().assign_attrs(suchus_record=1, suchus_attributes="{}")
+    packed = {"zlib": True, "complevel": 4, "shuffle": True}
+    numbers = [name for name, v in marked.variables.items() if v.dtype.kind in "biuf" and v.size > 1]
+    assert written.startswith(bytes(marked.to_netcdf(engine="h5netcdf", encoding=dict.fromkeys(numbers, packed))))
+
+
 def test_records_are_compressed(tmp_path):
     zeros = xr.Dataset({"x": ("time", np.zeros(100_000))})
     assert save(zeros, tmp_path / "r.nc").stat().st_size < zeros.nbytes / 20
@@ -80,7 +88,7 @@ def test_a_failed_save_leaves_the_old_file(record, tmp_path, monkeypatch):
     def fails(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", fails)
+    monkeypatch.setattr(xr.Dataset, "dump_to_store", fails)
     with pytest.raises(Unwritable, match="no space left"):
         save(record, tmp_path / "r.nc")
     assert [f.name for f in tmp_path.iterdir()] == ["r.nc"]

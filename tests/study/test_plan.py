@@ -10,6 +10,7 @@ from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Limp, Run, Weak
 from suchus.study import MEASURES, Plan, Study, Vary
+from suchus.study.arm import Arm
 from suchus.study.chunk import called
 from suchus.study.plan import value_of
 
@@ -104,6 +105,25 @@ def test_values_taken_with_each_pair_every_sample(base):
     strokes = column(plan, "gait.stroke")
     assert strokes[::2] == strokes[1::2]
     assert [g.name for g in column(plan, "gait")[:2]] == ["belly_crawl", "limbs_only"]
+
+
+def test_arms_and_seeds_of_a_point_share_its_robot_and_no_run_depends_on_those_asked_before(base):
+    varied = study(
+        base,
+        Vary(field="robot.spine.link", low=0.04, high=0.06),
+        Vary(field="ground.friction_scale", values=(1, 1.0), each=True),
+        design="sobol",
+        samples=3,
+        seeds=2,
+        arms=(Arm(name="calm", values={}), Arm(name="shaken", values={"noise": 0.01})),
+    )
+    plan = Plan(varied)
+    runs = [plan.run(i) for i in range(len(plan))]
+    assert [repr(plan.run(i)) for i in reversed(range(len(plan)))] == [repr(run) for run in reversed(runs)]
+    assert [repr(Plan(varied).run(i)) for i in range(len(plan))] == [repr(run) for run in runs]
+    assert len({run.robot for run in runs}) == 3
+    assert len({id(run.robot) for run in runs}) == 3 * 2  # each combination of a sample has its own
+    assert [type(run.ground.friction_scale) for run in runs[:3]] == [int, int, float]
 
 
 def test_a_whole_gait_and_its_fields_can_vary_together(base):

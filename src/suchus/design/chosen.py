@@ -1,8 +1,9 @@
 """A number that the article does not give, with the reason for ours; and the same design with other numbers."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 from suchus.design.article import crocodile, tables_of
@@ -120,7 +121,7 @@ def _steps(path: str) -> list[str | int]:
 
 def _numbers(design: Any) -> Mapping[str, str]:
     """Return the names and units of the numbers that a value has besides its fields."""
-    if not isinstance(design, Numbered):
+    if not _numbered(type(design)):
         return {}
     return {name: unit for name, unit in design.numbers().items() if not hasattr(design, name)}
 
@@ -133,12 +134,23 @@ def _holder(design: Any, step: str | int) -> Any:
 
 
 def _step(design: Any, step: str | int) -> Any:
-    if isinstance(design, Numbered) and step in _numbers(design):
-        return design.number(str(step))
+    names: Sequence[str | int] = _field_names(type(design))
     if isinstance(step, int):
-        there: tuple[Any, ...] = tuple(range(len(design))) if isinstance(design, tuple) else ()
-    else:
-        there = tuple(f.name for f in fields(design)) if is_dataclass(design) else ()
-    if step not in there:
-        raise UnknownName("field", str(step), [*(str(name) for name in there), *_numbers(design)])
-    return design[step] if isinstance(step, int) else getattr(design, step)
+        names = range(len(design)) if isinstance(design, tuple) else ()
+    if step in names:
+        return design[step] if isinstance(step, int) else getattr(design, step)
+    if step in _numbers(design):
+        return design.number(str(step))
+    raise UnknownName("field", str(step), [*(str(name) for name in names), *_numbers(design)])
+
+
+@cache
+def _field_names(kind: type) -> tuple[str, ...]:
+    """Return the names of the fields of a class; none where it is no dataclass."""
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
+
+
+@cache
+def _numbered(kind: type) -> bool:
+    """Return whether the values of a class are ``Numbered``: to ask each value takes longer than to change it."""
+    return issubclass(kind, Numbered)

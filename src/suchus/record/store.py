@@ -8,6 +8,8 @@ from typing import Any
 import h5py
 import numpy as np
 import xarray as xr
+from xarray.backends import H5NetCDFStore
+from xarray.backends.locks import HDF5_LOCK
 
 from suchus.errors import IncompatibleRecord
 from suchus.reading import check_file, unreadable
@@ -84,8 +86,12 @@ def save(record: xr.Dataset, path: str | Path) -> Path:
     marked.attrs = {_MARK: _VERSION, _ATTRIBUTES: attributes}
     packed = {"zlib": True, "complevel": 4, "shuffle": True}
     encoding = {str(k): packed for k, v in marked.variables.items() if v.dtype.kind in "biuf" and v.size > 1}
-    with new_file(path) as draft:  # through memory: HDF5 itself dies when the disk is full
-        draft.write_bytes(sealed(bytes(marked.to_netcdf(engine="h5netcdf", encoding=encoding))))
+    with new_file(path) as draft:
+        memory = io.BytesIO()  # HDF5 itself dies when the disk is full
+        store = H5NetCDFStore.open(memory, mode="w", lock=HDF5_LOCK)  # for a lock ``to_netcdf`` imports a cluster
+        marked.dump_to_store(store, encoding=encoding)
+        store.close()
+        draft.write_bytes(sealed(memory.getvalue()))
     return path
 
 

@@ -44,7 +44,8 @@ class Plan(Sequence[Point]):
         factorial = study.design == "factorial"
         self._each = [v for v in study.vary if factorial or v.each]
         self._sampled = [v for v in study.vary if not (factorial or v.each)]
-        self._levels = [levels(v, whole=study.whole(v.field)) for v in self._each]
+        self._whole = {v.field: study.whole(v.field) for v in study.vary}
+        self._levels = [levels(v, whole=self._whole[v.field]) for v in self._each]
         self._combinations = prod(len(v) for v in self._levels)
         count = (study.samples or 1) if self._sampled else 1
         self._arms = study.arms or (None,)
@@ -52,6 +53,7 @@ class Plan(Sequence[Point]):
         if self._length > _MOST:
             raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
         self._shares = _shares(study.design, count, len(self._sampled), study.seed)
+        self._varied: dict[tuple[int, int], Run] = {}
 
     def __len__(self) -> int:
         return self._length
@@ -61,16 +63,20 @@ class Plan(Sequence[Point]):
             return [self[i] for i in range(*index.indices(len(self)))]
         if not 0 <= index < len(self):
             raise IndexError(index)
-        rest, repeat = divmod(index, self.study.seeds)
-        rest, combination = divmod(rest, self._combinations)
-        sample, arm = divmod(rest, len(self._arms))
+        sample, arm, combination, repeat = self._place(index)
         chosen: dict[str, Any] = {}
         for vary, levels_ in zip(reversed(self._each), reversed(self._levels), strict=True):
             combination, level = divmod(combination, len(levels_))
             chosen[vary.field] = levels_[level]
         for vary, share in zip(self._sampled, self._shares[sample], strict=True):
-            chosen[vary.field] = value_of(vary, float(share), whole=self.study.whole(vary.field))
+            chosen[vary.field] = value_of(vary, float(share), whole=self._whole[vary.field])
         return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
+
+    def _place(self, index: int) -> tuple[int, int, int, int]:
+        """Return the numbers of a run's sample, arm, combination and seed."""
+        rest, repeat = divmod(index, self.study.seeds)
+        rest, combination = divmod(rest, self._combinations)
+        return *divmod(rest, len(self._arms)), combination, repeat
 
     @property
     def chunks(self) -> int:
@@ -89,11 +95,20 @@ class Plan(Sequence[Point]):
         Raises:
             InvalidDesign: its values cannot be together.
         """
-        point = self[index]
-        run = with_values(self.study.run, {"seed": point.seed, "label": str(index)})
-        for depth in sorted({_depth(path) for path in point.values}):  # a whole gait first, then its fields
-            run = with_values(run, {path: v for path, v in point.values.items() if _depth(path) == depth})
+        point, (sample, _, combination, _) = self[index], self._place(index)
+        if (sample, combination) not in self._varied:  # arms and seeds of a point share robot and gait
+            varied = self._vary(point.values)
+            self._varied = {key: run for key, run in self._varied.items() if key[0] == sample}
+            self._varied[sample, combination] = varied
+        run = with_values(self._varied[sample, combination], {"seed": point.seed, "label": str(index)})
         return run if point.arm is None else with_values(run, point.arm.values)
+
+    def _vary(self, values: Mapping[str, Any]) -> Run:
+        """Return the run from which all differ, with the values of a point."""
+        run = self.study.run
+        for depth in sorted({_depth(path) for path in values}):  # a whole gait first, then its fields
+            run = with_values(run, {path: v for path, v in values.items() if _depth(path) == depth})
+        return run
 
 
 def _depth(path: str) -> int:
