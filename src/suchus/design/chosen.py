@@ -121,7 +121,7 @@ def _steps(path: str) -> list[str | int]:
 
 def _numbers(design: Any) -> Mapping[str, str]:
     """Return the names and units of the numbers that a value has besides its fields."""
-    if not _numbered(type(design)):
+    if not _numbered(design.__class__):
         return {}
     return {name: unit for name, unit in design.numbers().items() if not hasattr(design, name)}
 
@@ -134,7 +134,7 @@ def _holder(design: Any, step: str | int) -> Any:
 
 
 def _step(design: Any, step: str | int) -> Any:
-    names: Sequence[str | int] = _field_names(type(design))
+    names: Sequence[str | int] = _field_names(design.__class__)
     if isinstance(step, int):
         names = range(len(design)) if isinstance(design, tuple) else ()
     if step in names:

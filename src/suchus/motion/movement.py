@@ -187,7 +187,10 @@ class Movement:
         self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
         self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
         self._signs, self._behind = _references(gaits)
-        self._paths = [_path_numbers(robot, gaits, limb.number) for limb in self.place.limbs]
+        servos, cables = self.yaw.hinges.servos, self.place.cables
+        self._direct = [k for k, servo in enumerate(servos) if servo not in cables]
+        self._girdles = _girdles(self.place)
+        self._paths = [_path_numbers(robot, gaits, self.place.limbs[limbs[0]].number) for limbs in self._girdles]
         self._harmonics = [np.array([gait.curves[i].harmonics for gait in gaits]) for i in range(len(gaits[0].curves))]
         self._low, self._high = servo_ranges(robot).T
 
@@ -237,9 +240,12 @@ class Movement:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
         targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.place.servos)))
-        for i, limb in enumerate(self.place.limbs):
-            if self._paths[i] is not None:
-                targets[..., limb.servos] = self._limb(i, limbs[..., i], steer, draw=draw or steer is not None)
+        for among, numbers in zip(self._girdles, self._paths, strict=True):
+            if numbers is not None:
+                phase = _limbs_first(limbs, among)
+                angles = self._limbs(among, numbers, phase, steer, draw=draw or steer is not None)
+                for i, of_limb in zip(among, angles, strict=True):
+                    targets[..., self.place.limbs[i].servos] = of_limb
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
         return np.clip(targets, self._low, self._high) if steer is not None else targets
@@ -251,11 +257,12 @@ class Movement:
     def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
         """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
         away = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
-        for i, (limb, numbers) in enumerate(zip(self.place.limbs, self._paths, strict=True)):
+        for among, numbers in zip(self._girdles, self._paths, strict=True):
             if isinstance(numbers, _Path):
-                far = np.linalg.norm(np.stack(self._foot(i, numbers, limbs[..., i], None), axis=-1), axis=-1)
-                near, most = limb_kinematics.reach(limb.girdle.limb)
-                away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
+                foot = np.stack(self._foot(among, numbers, _limbs_first(limbs, among), None), axis=-1)
+                near, most = limb_kinematics.reach(self.place.limbs[among[0]].girdle.limb)
+                for i, far in zip(among, np.linalg.norm(foot, axis=-1), strict=True):
+                    away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
         return away
 
     def foot_places(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
@@ -267,38 +274,48 @@ class Movement:
         Raises:
             OutsideLimits: a gait has limbs without a foot path.
         """
-        places = []
-        for i, (limb, numbers) in enumerate(zip(self.place.limbs, self._paths, strict=True)):
+        places: dict[int, np.ndarray] = {}
+        for among, numbers in zip(self._girdles, self._paths, strict=True):
+            limb = self.place.limbs[among[0]]
             if not isinstance(numbers, _Path):
                 raise OutsideLimits(
                     f"gait {self.gaits[0].name!r} has no path for the foot of {limb.name}: choose a gait of foot paths."
                 )
-            ahead, outward, down = self._foot(i, numbers, limbs[..., i], None)
-            places.append(np.stack([limb.girdle.aside + outward, ahead, down], axis=-1))
-        return np.stack(places, axis=-2)
+            ahead, outward, down = self._foot(among, numbers, _limbs_first(limbs, among), None)
+            places |= zip(among, np.stack([limb.girdle.aside + outward, ahead, down], axis=-1), strict=True)
+        return np.stack([places[i] for i in range(len(places))], axis=-2)
 
     def _foot(
-        self, i: int, numbers: "_Path", phase: np.ndarray, steer: Steer | None
+        self, among: Sequence[int], numbers: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how far a foot is ahead of its hip, outside it and below it [m]."""
+        """Return how far feet are ahead of their hips, outside them and below them, shape (limb, *batch) [m]."""
         forward, lifted = foot_path(phase, self._duty)
         stroke, lower = numbers.stroke, np.zeros(())
         if steer is not None:
-            stroke, lower = stroke * np.asarray(steer.size) * _of_limb(steer.stroke, i), _of_limb(steer.lower, i)
+            stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, among)
+            lower = _of_limbs(steer.lower, among)
         ahead = numbers.ahead + stroke * forward
         return ahead, np.broadcast_to(numbers.outward, ahead.shape), numbers.down + lower - numbers.lift * lifted
 
-    def _limb(self, i: int, phase: np.ndarray, steer: Steer | None, *, draw: bool) -> np.ndarray:
-        limb, numbers = self.place.limbs[i], self._paths[i]
+    def _limbs(
+        self,
+        among: Sequence[int],
+        numbers: "_Path | _Crank | np.ndarray",
+        phase: np.ndarray,
+        steer: Steer | None,
+        *,
+        draw: bool,
+    ) -> np.ndarray:
+        """Return the servo angles of some limbs of a girdle, shape (limb, *batch, servo) [rad]."""
         if isinstance(numbers, np.ndarray):  # held
-            return numbers
+            return np.broadcast_to(numbers, (len(among), *numbers.shape))
         if isinstance(numbers, _Crank):
             stance = numbers.stance
             if steer is not None:
-                stance = np.clip(np.asarray(steer.size) * _of_limb(steer.stroke, i) * stance, _LEAST, _MOST)
+                stance = np.clip(np.asarray(steer.size) * _of_limbs(steer.stroke, among) * stance, _LEAST, _MOST)
             return self._turned(phase, stance, numbers.down)[..., None]
-        assert numbers is not None
-        ahead, outward, down = self._foot(i, numbers, phase, steer)
+        limb = self.place.limbs[among[0]]
+        ahead, outward, down = self._foot(among, numbers, phase, steer)
         try:
             if numbers.leg is not None:
                 foot = np.stack([numbers.leg.hip_offset + outward, ahead, down], axis=-1)
@@ -310,6 +327,9 @@ class Movement:
             swivel = np.broadcast_to(numbers.swivel, ahead.shape)
             return limb_kinematics.inverse(limb.girdle.limb, foot, plane=swivel)
         except Unreachable as error:
+            if len(among) > 1:  # say it of the first limb that it is true of
+                for i, of_limb in zip(among, phase, strict=True):
+                    self._limbs([i], numbers, of_limb[None], steer, draw=draw)
             names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
             raise OutsideLimits(
                 f"gait {names} asks {limb.name} of robot {self.robot.name!r} for a foot path outside its reach: "
@@ -328,10 +348,9 @@ class Movement:
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
         size = None if steer is None else steer.size
         if self.yaw.moves:
-            hinges, bends = self.yaw.hinges, self.yaw.bends(axis, size)
-            for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
-                if servo not in self.place.cables:
-                    targets[..., servo] = sign * bends[..., k] / self.yaw.share[:, k]
+            hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
+            turned = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
+            targets[..., np.array(hinges.servos, dtype=int)[direct]] = turned
             for servo in self.place.cables:
                 among = [k for k, mine in enumerate(hinges.servos) if mine == servo]
                 most = self.place.cable(servo).bend_limit
@@ -340,12 +359,9 @@ class Movement:
                     whole = np.clip(whole, -most, most)
                 targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), whole)
         if self.pitch.moves:
-            bends = self.pitch.bends(axis, size)
-            for k, servo in enumerate(self.pitch.hinges.servos):
-                targets[..., servo] = bends[..., k] / self.pitch.share[:, k]
-        if steer is not None:
-            for servo in self.place.trunk_yaw:
-                targets[..., servo] += np.asarray(steer.bend) / len(self.place.trunk_yaw)
+            targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.share
+        if steer is not None and self.place.trunk_yaw:
+            targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
 
     def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
         if not self._harmonics:
@@ -596,9 +612,23 @@ def _of_runs(field: np.ndarray | float, runs: np.ndarray) -> np.ndarray:
     return np.asarray(field)[runs] if np.ndim(field) else np.asarray(field)
 
 
-def _of_limb(field: np.ndarray | float, i: int) -> np.ndarray:
-    """Return what a field of a ``Steer`` says of one limb."""
-    return np.asarray(field)[..., i] if np.ndim(field) else np.asarray(field)
+def _girdles(place: Layout) -> list[list[int]]:
+    """Return the limbs that are worked out together: those of a girdle, where its chain has a closed form."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for i, limb in enumerate(place.limbs):
+        alone = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
+        groups.setdefault((limb.number, alone), []).append(i)
+    return list(groups.values())
+
+
+def _limbs_first(values: Float[np.ndarray, "*batch limb"], among: Sequence[int]) -> np.ndarray:
+    """Return what is said of some limbs, shape (limb, *batch)."""
+    return np.stack([values[..., i] for i in among])
+
+
+def _of_limbs(field: np.ndarray | float, among: Sequence[int]) -> np.ndarray:
+    """Return what a field of a ``Steer`` says of some limbs, shape (limb, *batch), or () where it is one number."""
+    return _limbs_first(np.asarray(field), among) if np.ndim(field) else np.asarray(field)
 
 
 def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:

@@ -134,7 +134,7 @@ class Terrain(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Walk on every ground, and turn every posture into every other."""
-        rough = self._rough(progress)
+        rough = self._rough(staged(progress, "grounds", 0.0, 0.9))
         changed = self._changes(staged(progress, "transitions", 0.9, 0.97))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
         return Simulated(record=record, replays=self._replays(record))
@@ -246,28 +246,23 @@ class Terrain(Experiment):
 
     def _rough(self, progress: Progress) -> xr.Dataset:
         grounds, arms = self.grounds(), self.arms()
-        found = []
-        for i, (kind, height, reliefs) in enumerate(grounds):
-            runs = [
-                Run(
-                    robot=self.robot,
-                    gait=gait,
-                    control=control,
-                    ground=Ground(relief=relief),
-                    label=arm,
-                    seed=seed,
-                    noise=self.noise if relief is None and seed else 0.0,
-                )
-                for arm, (gait, control) in arms.items()
-                for seed, relief in enumerate(reliefs)
-            ]
-            stage = staged(
-                progress, f"{kind} {1000 * height:.3g} mm", 0.9 * i / len(grounds), 0.9 * (i + 1) / len(grounds)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gait,
+                control=control,
+                ground=Ground(relief=relief),
+                label=arm,
+                seed=seed,
+                noise=self.noise if relief is None and seed else 0.0,
             )
-            record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=stage)
-            met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
-            found.append(_look(record, met).reshape(len(arms), -1, len(_UNITS)))
-        table = np.array(found)
+            for _, _, reliefs in grounds
+            for arm, (gait, control) in arms.items()
+            for seed, relief in enumerate(reliefs)
+        ]
+        record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=progress)
+        met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
+        table = _look(record, met).reshape(len(grounds), len(arms), -1, len(_UNITS))
         data = xr.Dataset(
             {
                 name: (("ground", "arm", "seed"), table[..., i], {"units": unit})
