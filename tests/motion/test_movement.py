@@ -339,7 +339,7 @@ def test_with_nothing_asked_it_is_the_gait_itself(name):
 def test_controllers_without_a_rule_command_the_open_loop_on_every_body(name, control):
     robot, gait = ROBOTS[name], own_gait(ROBOTS[name])
     runs, period = Runs.alike(control, robot, gait, ticks=400), control_period(robot)
-    ours, theirs = control.start(runs, period), OpenLoop.start(runs, period)
+    ours, theirs = control.start(runs, period), OpenLoop.start(Runs.alike(OpenLoop(), robot, gait, ticks=400), period)
     first, moved = ours.rest().copy(), 0.0
     for tick in (0, 200, 237, 399):
         now, open_loop = ours.command(tick, None), theirs.command(tick, None)
