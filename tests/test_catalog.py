@@ -52,7 +52,9 @@ def test_a_folder_declares_in_modules_of_their_names_and_each_is_read_alone(shel
     (folder / "__init__.py").write_text("SIZES = (9,)\n")
     (folder / "thing.py").write_text("thing = 8\n")
     (folder / "parts.py").write_text("PARTS = (1, 2)\n")
-    assert shelf.beside("large", "PARTS", ()) == (1, 2)
+    assert shelf.beside("large", "PARTS", (), module="parts") == (1, 2)
+    assert shelf.beside("large", "PARTS", ()) == ()
+    assert shelf.beside("large", "SIZES", (), module="of_no_file") == (9,)
     assert shelf.beside("large", "SIZES", ()) == (9,)
     assert shelf.beside("large", "NOTHING", ()) == ()
     assert "shelf_under_test.large.thing" not in sys.modules

@@ -160,11 +160,16 @@ class Catalog(Mapping[str, T], Generic[T]):
             raise InvalidDesign(f"{show(value)} is no {self.kind}; a {_name(wanted)} or a name of one is needed.")
         return value
 
-    def beside(self, name: str, attribute: str, default: Any) -> Any:
+    def beside(self, name: str, attribute: str, default: Any, *, module: str = "") -> Any:
         """Return what else a module declares, such as the reasons for its numbers, or ``default``.
 
-        In a folder it is looked for in the module of its name, RULES in ``rules``, and the others are not imported. A
-        TOML file declares nothing else, nor does a module of the user's that cannot be loaded.
+        A TOML file declares nothing else, nor does a module of the user's that cannot be loaded.
+
+        Args:
+            name: on the shelf.
+            attribute: by which it is declared.
+            default: what is returned where nothing is declared.
+            module: of a folder in which it is looked for, if there is one; the others are then not imported.
 
         Raises:
             UnknownName: a name that is not on the shelf.
@@ -174,7 +179,7 @@ class Catalog(Mapping[str, T], Generic[T]):
             raise UnknownName(self.kind, name, sources)
         source = sources[name]
         try:
-            return getattr(_imported(source, attribute.lower()), attribute, default) if source.module else default
+            return getattr(_imported(source, module), attribute, default) if source.module else default
         except BrokenFile:
             return default
 

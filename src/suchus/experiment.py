@@ -12,6 +12,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
+import numpy as np
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 from jinja2.ext import Extension
@@ -25,8 +26,8 @@ from suchus.progress import Progress, silent, staged
 from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
 
 __all__ = [
-    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "silent", "staged", "stopwatch", "templates",
-    "write",
+    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "ends", "ranged", "silent", "staged",
+    "stopwatch", "templates", "write",
 ]  # fmt: skip
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
@@ -40,6 +41,16 @@ class Measure:
     value: float
     unit: str
     """SI unit, ``-`` for none."""
+
+
+def ranged(name: str, value: Any, repeats: Any, unit: str) -> dict[str, Measure]:
+    """Return a number as ``NAME``, and the least and the greatest of its repeats as ``NAME_low`` and ``NAME_high``."""
+    return {name: Measure(float(value), unit)} | ends(name, repeats, unit)
+
+
+def ends(name: str, values: Any, unit: str) -> dict[str, Measure]:
+    """Return the least and the greatest of some values as ``NAME_low`` and ``NAME_high``."""
+    return {f"{name}_low": Measure(float(np.min(values)), unit), f"{name}_high": Measure(float(np.max(values)), unit)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,7 +18,7 @@ def rules_of(experiment: str) -> tuple[Rule, ...]:
     Raises:
         InvalidDesign: what is declared are no rules of this experiment.
     """
-    rules = EXPERIMENTS.beside(experiment, "RULES", ()) if experiment in EXPERIMENTS else ()
+    rules = EXPERIMENTS.beside(experiment, "RULES", (), module="rules") if experiment in EXPERIMENTS else ()
     for rule in rules:
         if not isinstance(rule, Rule) or rule.experiment != experiment:
             raise InvalidDesign(f"RULES of {experiment} hold {rule!r}, which is no Rule of this experiment.")
@@ -27,7 +27,7 @@ def rules_of(experiment: str) -> tuple[Rule, ...]:
 
 def examples_of(experiment: str) -> Examples:
     """Return measures by which the rules of an experiment are tested, from the ``EXAMPLES`` beside its rules."""
-    examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {})
+    examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {}, module="rules")
     return examples
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus.design import layout
 from suchus.design.scale import coarse_step
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
 from suchus.experiments.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
@@ -133,12 +133,8 @@ class CrawlStability(TwoGroups):
             if not {one, other} <= set(arms):
                 continue
             here, there = (record.repeated_pp.sel(condition=c, drop=True) for c in (one, other))
-            change, repeats = float(pp[arms.index(one)] / pp[arms.index(other)] - 1), here / there - 1
-            measures |= {
-                name: Measure(change, "-"),
-                f"{name}_low": Measure(float(repeats.min()), "-"),
-                f"{name}_high": Measure(float(repeats.max()), "-"),
-            }
+            change, repeats = pp[arms.index(one)] / pp[arms.index(other)] - 1, here / there - 1
+            measures |= ranged(name, change, repeats, "-")
         equal = float(pp[0] / pp[len(arms)] - 1)
         measures |= {
             "com_height_pp_change_equal_displacement": Measure(equal, "-"),

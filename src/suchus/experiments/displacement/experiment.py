@@ -10,7 +10,7 @@ import xarray as xr
 from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
 from suchus.experiments.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
@@ -148,7 +148,7 @@ class Displacement(TwoGroups):
         for i, arm in enumerate(arms):
             repeats = record.spread_forward.sel(condition=arm)
             measures |= {
-                **_ranged(f"forward_{arm}", float(forward[i]), repeats, "m"),
+                **ranged(f"forward_{arm}", forward[i], repeats, "m"),
                 f"sideways_{arm}": Measure(float(aside[i]), "m"),
                 f"heading_drift_{arm}": Measure(float(turned[i]), "rad"),
                 f"slip_{arm}": Measure(float(slid[i]), "-"),
@@ -161,24 +161,17 @@ class Displacement(TwoGroups):
             if not {one, other} <= set(arms):
                 continue
             of = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in (one, other)}
-            gain = float(forward[arms.index(one)] - forward[arms.index(other)])
-            measures |= _ranged(f"gain_{name}", gain, of[one] - of[other], "m")
+            gain = forward[arms.index(one)] - forward[arms.index(other)]
+            measures |= ranged(f"gain_{name}", gain, of[one] - of[other], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
             if control not in arms:
                 continue
             apart = [record.spread_forward.sel(condition=arm, drop=True) for arm in ("coordinated", control)]
-            quotient = float(forward[0] / forward[arms.index(control)])
-            measures |= _ranged(name, quotient, apart[0] / apart[1], "-")
-        ratio = _ratio(record)
-        measures |= {
-            "ratio_on_map_low": Measure(float(ratio.min()), "-"),
-            "ratio_on_map_high": Measure(float(ratio.max()), "-"),
-            "forward_antiphase": Measure(float(record.late_coordinated.min()), "m"),
-        }
+            measures |= ranged(name, forward[0] / forward[arms.index(control)], apart[0] / apart[1], "-")
+        measures |= ends("ratio_on_map", _ratio(record), "-")
+        measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
         if record.sizes["pitch"]:
-            pitched = record.pitched.sel(group="coordinated")
-            measures["forward_over_tail_pitch_low"] = Measure(float(pitched.min()), "m")
-            measures["forward_over_tail_pitch_high"] = Measure(float(pitched.max()), "m")
+            measures |= ends("forward_over_tail_pitch", record.pitched.sel(group="coordinated"), "m")
         return measures
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -222,15 +215,6 @@ def _renamed(spread: xr.Dataset, arms: list[str], repeats: int) -> xr.Dataset:
     )
     data.spread_time.attrs["units"] = "s"
     return data
-
-
-def _ranged(name: str, value: float, repeats: xr.DataArray, unit: str) -> dict[str, Measure]:
-    """Return a number with the least and greatest of its repeats."""
-    return {
-        name: Measure(value, unit),
-        f"{name}_low": Measure(float(repeats.min()), unit),
-        f"{name}_high": Measure(float(repeats.max()), unit),
-    }
 
 
 _GAINS = (

@@ -13,7 +13,7 @@ from suchus.control.topology import topology
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.gaits import GAITS, own_gait
@@ -314,8 +314,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures["converged_open"] = measures["converged_off"]
     converged = np.isfinite(found.sel(law="cross_load").values)
     shares = [float(group.mean()) for group in np.array_split(converged, max(converged.size // _GROUP, 1))]
-    measures["converged_cross_load_low"] = Measure(min(shares), "-")
-    measures["converged_cross_load_high"] = Measure(max(shares), "-")
+    measures |= ends("converged_cross_load", shares, "-")
     distances = _ending(record.start_way.rename(start_time="time"), hold * period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
     for name, law in (("shared", "closed_noisy"), ("isolated", "isolated_noisy")):

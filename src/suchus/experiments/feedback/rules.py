@@ -1,5 +1,8 @@
 """When the claims on the three feedback rules and the shared variables count as what (section III.D)."""
 
+from math import nan
+
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Band, Clause, Rule
 
 _KEPT = "a rule must not spoil a walk that is right: 3 % and no more"
@@ -50,3 +53,68 @@ RULES = (
         unswept=_UNSWEPT,
     ),
 )
+
+_WHY = {
+    "converged_cross_load": 1.0,
+    "converged_cross_load_low": 1.0,
+    "converged_cross_load_high": 1.0,
+    "cycles_to_converge": 2.3,
+    "converged_off": 0.0,
+    "converged_own_load": 0.9,
+    "converged_wrong_sign": 0.0,
+    "distortion": 0.01,
+    "spine_lacking_spine": 0.2,
+    "spine_lacking_open": 0.5,
+    "spine_lacking_growth": 1.0,
+    "kept_undisturbed_spine": 1.0,
+    "tail_load_tail": 0.1,
+    "tail_load_open": 0.5,
+    "tail_pitch_drift": 0.01,
+    "kept_undisturbed_tail": 1.0,
+    "locked_spine_loss_closed": 0.15,
+    "locked_spine_loss_open": 0.3,
+    "heading_push_closed": 0.4,
+    "heading_push_open": 0.6,
+    "heading_limp_yaw_closed": 2.0,
+    "heading_limp_yaw_open": 2.0,
+    "way_shared": 0.36,
+    "way_shared_least": 0.33,
+    "way_shared_most": 0.37,
+    "way_isolated": 0.3,
+    "way_isolated_least": 0.1,
+}
+
+EXAMPLES: Examples = {
+    "feedback_rules": [
+        (_WHY, "reproduced"),
+        (_WHY | {"converged_cross_load": 0.951}, "reproduced"),
+        (_WHY | {"converged_cross_load": 0.949}, "contradicted"),
+        (_WHY | {"converged_wrong_sign": 0.0499}, "reproduced"),
+        (_WHY | {"converged_wrong_sign": 0.0501}, "contradicted"),
+        (_WHY | {"distortion": 0.0299}, "reproduced"),
+        (_WHY | {"distortion": 0.0301}, "contradicted"),
+        (_WHY | {"spine_lacking_spine": 0.495}, "reproduced"),
+        (_WHY | {"spine_lacking_spine": 0.505}, "contradicted"),
+        (_WHY | {"spine_lacking_growth": 1.049}, "reproduced"),
+        (_WHY | {"spine_lacking_growth": 1.051}, "contradicted"),
+        (_WHY | {"kept_undisturbed_spine": 0.971}, "reproduced"),
+        (_WHY | {"kept_undisturbed_spine": 0.969}, "contradicted"),
+        (_WHY | {"tail_load_tail": 0.495}, "reproduced"),
+        (_WHY | {"tail_load_tail": 0.505}, "contradicted"),
+        (_WHY | {"tail_pitch_drift": 0.0349}, "reproduced"),
+        (_WHY | {"tail_pitch_drift": 0.0351}, "contradicted"),
+        (_WHY | {"kept_undisturbed_tail": 0.971}, "reproduced"),
+        (_WHY | {"kept_undisturbed_tail": 0.969}, "contradicted"),
+        (_WHY | {"locked_spine_loss_closed": 0.298}, "reproduced"),
+        (_WHY | {"locked_spine_loss_closed": 0.302}, "contradicted"),
+        (_WHY | {"converged_cross_load": nan}, "not testable"),
+    ],
+    "shared_variables": [
+        (_WHY, "reproduced"),
+        (_WHY | {"way_isolated": 0.358}, "reproduced"),
+        (_WHY | {"way_isolated": 0.362}, "contradicted"),
+        (_WHY | {"way_isolated_least": 0.327}, "reproduced"),
+        (_WHY | {"way_isolated_least": 0.333}, "contradicted"),
+        (_WHY | {"way_shared": nan}, "not testable"),
+    ],
+}

@@ -1,5 +1,6 @@
 """When the claim on galloping counts as what (section II.A)."""
 
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Clause, Rule
 
 RULES = (
@@ -18,3 +19,19 @@ RULES = (
         unswept="Said of crocodiles; no design of a robot says how fast they are.",
     ),
 )
+
+_FAST = {
+    "bound_over_walk": 1.01,
+    "flight_bound": 0.101,
+    "speed_bound": 0.5,
+    "speed_walk": 0.4,
+    "speed_bound_best": 1.0,
+}
+
+EXAMPLES: Examples = {
+    "gallop_fastest": [
+        (_FAST, "same sense"),
+        (_FAST | {"bound_over_walk": 0.99}, "not testable"),
+        (_FAST | {"flight_bound": 0.099}, "not testable"),
+    ],
+}

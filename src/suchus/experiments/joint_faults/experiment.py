@@ -15,7 +15,7 @@ from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
 from suchus.design import Chosen, Robot, layout, unit_at, value_at, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS, conditions_of
@@ -156,21 +156,25 @@ class JointFaults(Experiment):
         lifts, steers = "lifted_forward" in record, "steered_forward" in record
         if lifts:
             found["forward_limbs_tail_lifted"] = Measure(float(record.lifted_intact_forward[0]), "m")
-        found |= _ranged("loss_intact_limbs_only", loss(record.intact_forward.sel(arm="limbs_only"), ours), "-")
+        found |= _over_variations(
+            "loss_intact_limbs_only", loss(record.intact_forward.sel(arm="limbs_only"), ours), "-"
+        )
         if lifts:
-            found |= _ranged("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
+            found |= _over_variations("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
         found |= _readings(record)
         for joint in record.lost.values:
             name = f"loss_{joint}_{reading}"
             if steers:
-                found |= _ranged(f"{name}_steered", loss(record.steered_forward, ours).sel(lost=joint), "-")
+                found |= _over_variations(f"{name}_steered", loss(record.steered_forward, ours).sel(lost=joint), "-")
                 turned = record.steered_turn.sel(lost=joint).median()
                 found[f"turn_{joint}_{reading}_steered"] = Measure(float(turned), "rad")
             if lifts:
-                found |= _ranged(f"{name}_limbs_tail_lifted", loss(record.lifted_forward, ours).sel(lost=joint), "-")
+                found |= _over_variations(
+                    f"{name}_limbs_tail_lifted", loss(record.lifted_forward, ours).sel(lost=joint), "-"
+                )
             for arm in ARMS:
                 losses = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
-                found |= _ends(f"{name}_{arm}_repeated", losses.sel(lost=joint), "-")
+                found |= ends(f"{name}_{arm}_repeated", losses.sel(lost=joint), "-")
         return found | _effects(record) | tolerance(record) | _support_measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -455,7 +459,7 @@ def _readings(record: xr.Dataset) -> dict[str, Measure]:
     found: dict[str, Measure] = {}
     for cell in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
         at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
-        found |= _ranged(f"loss_{name}", change["forward"].sel(at), "-")
+        found |= _over_variations(f"loss_{name}", change["forward"].sel(at), "-")
         found[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
         found[f"path_loss_{name}"] = Measure(float(change["path"].sel(at).median()), "-")
         found[f"turn_{name}"] = Measure(float(record.turn.sel(at).median()), "rad")
@@ -556,12 +560,8 @@ def _kept(record: xr.Dataset) -> xr.DataArray:
     return (record.forward / record.intact_forward).clip(min=0.0)
 
 
-def _ranged(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
-    return {name: Measure(float(values.median()), unit)} | _ends(name, values, unit)
-
-
-def _ends(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
-    return {f"{name}_low": Measure(float(values.min()), unit), f"{name}_high": Measure(float(values.max()), unit)}
+def _over_variations(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
+    return ranged(name, values.median(), values, unit)
 
 
 experiment = JointFaults()

@@ -2,6 +2,7 @@
 
 from math import radians
 
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Clause, Rule
 
 _DEAD = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
@@ -22,3 +23,14 @@ RULES = (
         unswept="one joint on a stand, loaded by one crawl; the designs of the study have no integral term",
     ),
 )
+
+_PID = {"step_error_pid": radians(0.396), "ripple_pid": radians(0.396), "droop_taken": 0.101, "load": 0.8}
+
+EXAMPLES: Examples = {
+    "joint_pid": [
+        (_PID, "reproduced"),
+        (_PID | {"step_error_pid": radians(0.404)}, "contradicted"),
+        (_PID | {"ripple_pid": radians(0.404)}, "contradicted"),
+        (_PID | {"droop_taken": 0.099}, "contradicted"),
+    ],
+}

@@ -1,5 +1,6 @@
 """When the claims on the leg's kinematics count as what (section III.A, eqs (1) to (14))."""
 
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Clause, Rule
 
 _BUILT = "A count of the robot that was built so; nothing is simulated."
@@ -41,3 +42,26 @@ RULES = (
         unswept=_BUILT,
     ),
 )
+
+_INVERSE = {
+    "printed_inverse_holds_crawl": 1.0,
+    "printed_inverse_holds_high_walk": 0.999,
+    "printed_inverse_holds": 0.25,
+}
+
+EXAMPLES: Examples = {
+    "leg_inverse": [
+        (_INVERSE, "reproduced"),
+        (_INVERSE | {"printed_inverse_holds_crawl": 0.999}, "contradicted"),
+        (_INVERSE | {"printed_inverse_holds": 1.0, "printed_inverse_holds_crawl": 0.98}, "contradicted"),
+    ],
+    "leg_servos": [
+        ({"leg_servos": 3.0}, "by construction"),
+        ({"leg_servos": 4.0}, "contradicted"),
+    ],
+    "actuator_count": [
+        ({"actuators": 19.0}, "by construction"),
+        ({"actuators": 18.0}, "contradicted"),
+        ({"actuators": 23.0}, "contradicted"),
+    ],
+}

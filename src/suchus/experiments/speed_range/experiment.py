@@ -14,7 +14,7 @@ from suchus.design import Robot, Rod, Segment, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -169,8 +169,8 @@ class SpeedRange(Experiment):
             measures |= {
                 f"speed_{name}": Measure(float(at.speed), "m/s"),
                 f"speed_{name}_speed_line": Measure(float(line.isel(slower=usual).speed), "m/s"),
-                **_ranged(f"speed_{name}_slowest", one.speed.min(), both.speed.min("slower"), "m/s"),
-                **_ranged(f"speed_{name}_fastest", one.speed.max(), both.speed.max("slower"), "m/s"),
+                **ranged(f"speed_{name}_slowest", one.speed.min(), both.speed.min("slower"), "m/s"),
+                **ranged(f"speed_{name}_fastest", one.speed.max(), both.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(at.cost), "-"),
                 f"cost_{name}_least": Measure(float(one.cost.min()), "-"),
                 f"duty_{name}": Measure(float(at.duty), "-"),
@@ -184,7 +184,7 @@ class SpeedRange(Experiment):
         if "high_walk" in record.gait.values:
             high = record.sel(gait="high_walk", servo_model="slew")
             measures["tail_touches_high_walk"] = Measure(float(high.tail_touches.mean()), "-")
-            measures |= _ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
+            measures |= ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -214,15 +214,6 @@ _UNITS = {
     "tail_touches": "1",
     "tail_lies": "1",
 }
-
-
-def _ranged(name: str, value: Any, repeats: xr.DataArray, unit: str) -> dict[str, Measure]:
-    """Return a number with the least and the greatest of its repeats."""
-    return {
-        name: Measure(float(value), unit),
-        f"{name}_low": Measure(float(repeats.min()), unit),
-        f"{name}_high": Measure(float(repeats.max()), unit),
-    }
 
 
 def _limited(robot: Robot) -> Robot:

@@ -1,7 +1,8 @@
 """When the claims on swimming count as what (sections II.A and IV.B, equation (20), Fig. 17)."""
 
-from math import atan
+from math import atan, nan
 
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Band, Clause, Rule
 
 _DIAGONAL = 0.1
@@ -136,3 +137,116 @@ RULES = (
         unswept=_UNSWEPT,
     ),
 )
+
+_WHY = {
+    "tail_sine_share": 0.999,
+    "tail_sine_share_low": 0.999,
+    "tail_sine_share_high": 0.999,
+    "wave_share": 0.99,
+    "wave_waves_per_body": 1.0,
+    "wave_envelope_middle": 0.03,
+    "wave_envelope_tip": 0.1,
+    "envelope_dip": 0.1,
+    "convex_higher_share": 0.5,
+    "pressure_difference_1_quarter": 100.0,
+    "pressure_difference_1_quarter_low": 90.0,
+    "pressure_difference_1_quarter_high": 110.0,
+    "pressure_difference_2_quarter": 50.0,
+    "pressure_difference_3_quarter": 10.0,
+    "force_angle_1_quarter": 0.8,
+    "force_angle_1_quarter_low": 0.7,
+    "force_angle_1_quarter_high": 0.9,
+    "pressure_fall": 90.0,
+    "pressure_fall_low": 80.0,
+    "pressure_fall_high": 95.0,
+    "thrust_asymmetry": 0.1,
+    "thrust_asymmetry_low": 0.05,
+    "thrust_asymmetry_high": 0.12,
+    "thrust_1_quarter": 50.0,
+    "thrust_3_quarter": 50.0,
+    "thrust_3_quarter_low": 45.0,
+    "aside_1_quarter": 40.0,
+    "aside_3_quarter": -40.0,
+    "track_sway": 0.02,
+    "track_sway_low": 0.018,
+    "track_sway_high": 0.022,
+    "track_noise": 0.001,
+    "track_cycles": 4.0,
+    "snout_sway": 0.02,
+    "speed_trunk_and_tail": 0.2,
+    "speed_trunk_only": 0.02,
+    "speed_tail_only": 0.15,
+    "gain_tail_swim": 0.18,
+    "gain_tail_swim_low": 0.17,
+    "gain_tail_swim_high": 0.18,
+    "gain_tail_swim_share": 0.9,
+    "gain_tail_swim_share_low": 0.88,
+    "gain_spine_swim": 0.05,
+    "gain_spine_swim_low": 0.04,
+    "gain_spine_swim_high": 0.05,
+}
+
+EXAMPLES: Examples = {
+    "swim_tail_sine": [
+        (_WHY, "same sense"),
+        (_WHY | {"tail_sine_share_low": 0.951}, "same sense"),
+        (_WHY | {"tail_sine_share_low": 0.949}, "not testable"),
+    ],
+    "swim_body_wave": [
+        (_WHY, "by construction"),
+        (_WHY | {"wave_share": 0.951}, "by construction"),
+        (_WHY | {"wave_share": 0.949}, "contradicted"),
+        (_WHY | {"wave_envelope_middle": 0.099}, "by construction"),
+        (_WHY | {"wave_envelope_middle": 0.101}, "contradicted"),
+        (_WHY | {"wave_waves_per_body": 1e-4}, "by construction"),
+        (_WHY | {"wave_waves_per_body": -1e-4}, "contradicted"),
+        (_WHY | {"wave_share": nan}, "not testable"),
+    ],
+    "swim_pressure_convex": [
+        (_WHY | {"pressure_difference_1_quarter_low": 1e-4}, "reproduced"),
+        (_WHY | {"pressure_difference_1_quarter_low": -1e-4}, "contradicted"),
+        (_WHY | {"pressure_difference_1_quarter": nan}, "not testable"),
+    ],
+    "swim_diagonal_force": [
+        (_WHY, "reproduced"),
+        (_WHY | {"force_angle_1_quarter_low": 0.1}, "reproduced"),  # the arc tangent of 0.1 is 0.0997
+        (_WHY | {"force_angle_1_quarter_low": 0.0992}, "contradicted"),
+        (_WHY | {"force_angle_1_quarter_high": 1.47}, "reproduced"),  # that of 10 is 1.4711
+        (_WHY | {"force_angle_1_quarter_high": 1.472}, "contradicted"),
+        (_WHY | {"force_angle_1_quarter": nan}, "not testable"),
+    ],
+    "swim_pressure_falls": [
+        (_WHY | {"pressure_fall_low": 1e-4}, "reproduced"),
+        (_WHY | {"pressure_fall_low": -1e-4}, "contradicted"),
+        (_WHY | {"pressure_fall": nan}, "not testable"),
+    ],
+    "swim_thrust_symmetric": [
+        (_WHY, "reproduced"),
+        (_WHY | {"thrust_asymmetry_high": 0.149}, "reproduced"),
+        (_WHY | {"thrust_asymmetry_high": 0.151}, "contradicted"),
+        (_WHY | {"thrust_3_quarter_low": 1e-4}, "reproduced"),
+        (_WHY | {"thrust_3_quarter_low": -1e-4}, "contradicted"),
+        (_WHY | {"thrust_asymmetry": nan}, "not testable"),
+    ],
+    "swim_s_shape": [
+        (_WHY, "reproduced"),
+        (_WHY | {"track_sway_low": 0.0101}, "reproduced"),
+        (_WHY | {"track_sway_low": 0.0099}, "contradicted"),
+        (_WHY | {"track_noise": 0.0198}, "reproduced"),
+        (_WHY | {"track_noise": 0.0202}, "contradicted"),
+        (_WHY | {"track_sway": nan}, "not testable"),
+    ],
+    "swim_tail_thrust": [
+        (_WHY, "reproduced"),
+        (_WHY | {"gain_tail_swim_low": 1e-4}, "reproduced"),
+        (_WHY | {"gain_tail_swim_low": -1e-4}, "contradicted"),
+        (_WHY | {"gain_tail_swim_share_low": 0.505}, "reproduced"),
+        (_WHY | {"gain_tail_swim_share_low": 0.495}, "contradicted"),
+        (_WHY | {"gain_tail_swim": nan}, "not testable"),
+    ],
+    "swim_spine_thrust": [
+        (_WHY | {"gain_spine_swim_low": 1e-4}, "reproduced"),
+        (_WHY | {"gain_spine_swim_low": -1e-4}, "contradicted"),
+        (_WHY | {"gain_spine_swim": nan}, "not testable"),
+    ],
+}

@@ -15,7 +15,7 @@ from suchus.design.checks import Checks
 from suchus.design.relief import Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.figures.gait_diagram import GAIT_LINES
@@ -381,11 +381,7 @@ def _flat(record: xr.Dataset) -> dict[str, Measure]:
     """Return what the crawl costs on even ground, of what the high walk costs, over the repeats with noise."""
     cost = record.isel(ground=0).cost
     ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
-    return {
-        "flat_cost_ratio": Measure(float(ratio[0]), "-"),
-        "flat_cost_ratio_low": Measure(float(ratio.min()), "-"),
-        "flat_cost_ratio_high": Measure(float(ratio.max()), "-"),
-    }
+    return ranged("flat_cost_ratio", ratio[0], ratio, "-")
 
 
 def _rough(rough: xr.Dataset) -> dict[str, Measure]:

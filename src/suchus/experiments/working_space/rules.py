@@ -1,5 +1,6 @@
 """When the claim on the working space counts as what (section IV.D)."""
 
+from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Band, Clause, Rule
 
 RULES = (
@@ -18,3 +19,21 @@ RULES = (
         unswept="kinematics alone, of one robot; the study walks",
     ),
 )
+
+_ROOM = {
+    "volume_ratio": 5.0,
+    "volume_ratio_low": 2.02,
+    "volume_ratio_high": 9.0,
+    "area_ratio": 3.0,
+    "area_ratio_low": 1.01,
+    "area_ratio_high": 4.0,
+}
+
+EXAMPLES: Examples = {
+    "working_space": [
+        (_ROOM, "reproduced"),
+        (_ROOM | {"volume_ratio_low": 1.98}, "contradicted"),
+        (_ROOM | {"area_ratio_low": 0.99}, "contradicted"),
+        (_ROOM | {"volume_ratio": float("nan")}, "not testable"),
+    ],
+}
