@@ -4,14 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from suchus import blueprint
-from suchus.capture import Walk, driven_share, film, film_animal, observe, to_gait, write_gait
-from suchus.design import LEGS
-from suchus.gaits import GAITS
+from suchus.capture import Camera, Walk, driven_share, film, film_animal, observe, to_gait, write_gait
+from suchus.capture.film import keypoints
+from suchus.design import LEGS, layout
+from suchus.design.scale import coarse_step
+from suchus.errors import UnsuitedRobot
+from suchus.gaits import GAITS, own_gait
 from suchus.land import crawl as let_crawl
 from suchus.metrics import displacement
 from suchus.motion import START, Gait, limb_reaches, movement
+from suchus.robots import ROBOTS
 
 PHASE = 0.02  # [cycle]
 AMPLITUDE = 0.05
@@ -52,6 +57,32 @@ def test_our_crawl_comes_back_as_commanded(caiman, crawl, noisy, seed):
     np.testing.assert_allclose(back.duty_factor, told.duty_factor, atol=0.04)
     np.testing.assert_allclose(metres(caiman, back, "outward"), metres(caiman, told, "outward"), atol=0.004)
     np.testing.assert_allclose(metres(caiman, back, "ahead"), metres(caiman, told, "ahead"), atol=0.006)
+
+
+@pytest.mark.parametrize(("name", "rate"), [("salamander", 200.0), ("pleurobot", 100.0)])
+def test_the_walk_of_another_body_comes_back_as_commanded(name, rate):
+    robot = ROBOTS[name]
+    told, step = own_gait(robot), coarse_step(robot)
+    walked = let_crawl(robot, told, duration=START + 5 * told.period, timestep=step)
+    camera = Camera(rate=rate, noise=2e-4 * robot.length, lost=0.02, heading=1.0, scale=500.0, heights=False, seed=0)
+    walk = observe(film(robot, walked, camera), tail_share=driven_share(robot))
+    back = to_gait(walk, robot, told, name="back").gait
+    assert back.period == pytest.approx(told.period, rel=0.005)
+    assert apart(back.limb_phases, told.limb_phases).max() < PHASE
+    assert back.duty_factor == pytest.approx(told.duty_factor, abs=0.04)
+    assert back.number("trunk_bend") == pytest.approx(told.number("trunk_bend"), rel=AMPLITUDE)
+    assert back.number("tail_bend") == pytest.approx(told.number("tail_bend"), rel=AMPLITUDE)
+    assert back.number("stroke") == pytest.approx(told.number("stroke"), rel=AMPLITUDE)
+
+
+@pytest.mark.parametrize(
+    ("name", "missing"), [("strider", "four limbs, and a tail that bends sideways"), ("swimmer", "four limbs")]
+)
+def test_who_has_not_the_points_of_the_tracks_cannot_be_filmed(name, missing):
+    robot = ROBOTS[name]
+    record = xr.Dataset({"joint_angle": (("time", "joint"), np.zeros((2, len(layout(robot).hinges))))})
+    with pytest.raises(UnsuitedRobot, match=f"a made-up film needs {missing}; robot '{name}' lacks that"):
+        keypoints(robot, record)
 
 
 def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):

@@ -1,16 +1,15 @@
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.bodies import hatchling, six
 from tests.felt import felt as feels
 from tests.metres import limb_phase, placed
 from tests.start_batch import start_batch
 
 import suchus
-from suchus import blueprint
 from suchus.control.standing import BALANCE, Standing
-from suchus.design import Robot, crocodile, with_values
+from suchus.design import with_values
 from suchus.design.scale import coarse_step, scaled
 from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.gaits import own_gait
@@ -161,9 +160,7 @@ def risen(robot, size):
 
 
 def test_a_body_of_the_article_in_another_size_stands_as_it_does():
-    size = 0.3 / CAIMAN.length
-    hatchling = crocodile(replace(scaled(CAIMAN.tables, length_factor=size), name="hatchling"))
-    height, line = risen(hatchling, size)
+    height, line = risen(hatchling(), 0.3 / CAIMAN.length)
     alike, whole = risen(CAIMAN, 1.0)
     assert height / line == pytest.approx(alike / whole, rel=2e-3)
     assert height > 0.95 * line
@@ -172,8 +169,7 @@ def test_a_body_of_the_article_in_another_size_stands_as_it_does():
 @pytest.mark.parametrize(("torque", "stands"), [(4.0, False), (9.0, True)])
 def test_a_longer_body_stands_where_its_trunk_can_lift_its_forebody(torque, stands):
     """Six spine joints and servos in the tail: it takes 4.09 N m to lift its level forebody off the ground."""
-    file = Path(__file__).parents[1] / "experiments" / "six.toml"
-    longer = with_values(blueprint.read(file, Robot, suchus.ROBOTS), {"spine.pitch_servo.torque": torque})
+    longer = with_values(six(), {"spine.pitch_servo.torque": torque})
     height, line = risen(longer, 1.0)
     assert (height > 0.9 * line) == stands
     assert stands or height < 0.3 * line

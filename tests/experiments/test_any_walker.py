@@ -1,15 +1,13 @@
 """Every experiment runs on every robot of the shelf, or says in a sentence what the robot lacks."""
 
 from dataclasses import replace
-from functools import lru_cache
 from math import isfinite
-from pathlib import Path
 
 import pytest
+from tests.bodies import six
 
-from suchus import blueprint
 from suchus.cli.options import choose
-from suchus.design import NEEDS, Robot, lacking, layout
+from suchus.design import NEEDS, lacking, layout
 from suchus.design.scale import coarse_step
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
@@ -35,13 +33,6 @@ LEAST = {
     "turning": {"bends": (0.0, 0.2), "asymmetries": (0.0, 0.5), "mixtures": (0.0, 1.0), "asked": (1.0,), "cycles": 1},
 }
 """The least with which the experiments on walkers answer at all."""
-
-
-@lru_cache(maxsize=1)
-def six():
-    """A crocodile with six spine joints and servos in its tail, as a file says it."""
-    file = Path(__file__).parent / "six.toml"
-    return blueprint.read(file, Robot, ROBOTS)
 
 
 def robot_of(name):

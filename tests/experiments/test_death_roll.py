@@ -1,14 +1,13 @@
 from dataclasses import replace
 from math import pi, radians
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from tests.bodies import eel, six
 
-from suchus import blueprint
 from suchus.control import OpenLoop
-from suchus.design import Robot, crocodile, layout
+from suchus.design import crocodile, layout
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
@@ -18,22 +17,6 @@ from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 BOTH = (radians(50), radians(50))
-SIX = blueprint.read(Path(__file__).parent / "six.toml", Robot, ROBOTS)
-
-
-def eel():
-    """A row of equal segments without limbs, every other joint of which bends up and down."""
-    swimmer = ROBOTS["swimmer"]
-    axis = [
-        replace(
-            segment,
-            hinges=tuple(replace(h, name=h.name.replace("yaw", "pitch"), turn="pitch") for h in segment.hinges)
-            if i % 2
-            else segment.hinges,
-        )
-        for i, segment in enumerate(swimmer.axis)
-    ]
-    return replace(swimmer, name="eel", axis=tuple(axis))
 
 
 def run_of(robot=CAIMAN, medium=VACUUM, period=0.5, **changes):
@@ -146,7 +129,7 @@ def test_a_pelvis_on_a_cone_that_comes_back_has_not_rolled():
     assert float(roll_rate(record_of(cone))) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("robot", [CAIMAN, SIX, eel()], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", [CAIMAN, six(), eel()], ids=lambda robot: robot.name)
 def test_targets_start_straight_repeat_after_the_first_cycle_and_are_two_perpendicular_waves(robot):
     run = run_of(robot, trunk=(0.3, 0.4), tail=(0.5, 0.2), tail_lag=0.5)
     time, place = np.linspace(0.0, 2.0, 201), layout(robot)
@@ -162,7 +145,7 @@ def test_targets_start_straight_repeat_after_the_first_cycle_and_are_two_perpend
         np.testing.assert_allclose(late[:, place.tail_yaw].sum(axis=1), 0.5 * np.cos(2 * pi * t), atol=1e-12)
 
 
-@pytest.mark.parametrize(("robot", "turns"), [(SIX, 0.9), (eel(), 0.05)], ids=["six", "eel"])
+@pytest.mark.parametrize(("robot", "turns"), [(six(), 0.9), (eel(), 0.05)], ids=["six", "eel"])
 def test_another_body_rolls_without_angular_momentum_either_way(robot, turns):
     record = afloat({"period": 1.0}, {"period": 1.0, "lag": -0.25}, robot=robot, timestep=0.001, duration=2.0)
     rates = [float(roll_rate(record.isel(run=i), 1.0)) / (2 * pi) for i in (0, 1)]

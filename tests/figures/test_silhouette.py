@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 from matplotlib.path import Path
+from tests.bodies import eight
 
 from suchus.design import joint_names
 from suchus.figures.silhouette import silhouette
+from suchus.robots import ROBOTS
 from suchus.skin import poses, skin
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
@@ -23,6 +25,7 @@ def bent(robot, sign=1.0):
 
 
 @pytest.mark.parametrize("axes", [(0, 1), (0, 2)], ids=["above", "side"])
+@pytest.mark.parametrize("robot", [ROBOTS["caiman"], ROBOTS["salamander"], eight()], ids=lambda robot: robot.name)
 def test_the_outline_covers_the_skin(robot, axes):
     vertices = bent(robot)
     seen = silhouette(robot, vertices, axes)
@@ -51,6 +54,7 @@ def test_each_leg_is_the_leg_of_its_name(robot):
     assert middles[2][1] > middles[3][1] + 0.1
     assert min(middles[0][0], middles[1][0]) > max(middles[2][0], middles[3][0])
     assert [len(leg) for leg in seen.legs] == [21, 21, 19, 19]
+    assert [len(leg) for leg in silhouette(eight(), bent(eight()), (0, 1)).legs] == 8 * [3]  # two links and a foot
     assert len(seen.eyes) == 2
 
 

@@ -5,6 +5,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
+from suchus.design import behind_hips
 from suchus.figures import (
     COLOURS,
     LINES,
@@ -78,6 +79,9 @@ def test_the_drawing_shows_the_length_of_the_robot(name):
     written = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert f"{1000 * robot.length:.0f}" in written
     assert name in caption(figure)
+    tailed = name not in ("strider", "swimmer")  # nothing behind the hips bends; no hips
+    assert (f"{1000 * behind_hips(robot):.0f} mm of it tail" in caption(figure)) == tailed
+    assert ("pale end of the tail" in caption(figure)) == (robot.tables is not None)
 
 
 def test_figures_do_without_pyplot():

@@ -12,7 +12,7 @@ import pytest
 from suchus import blueprint
 from suchus.design import Robot, crocodile, joint_names
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.kinematics.mass import GRAVITY
 from suchus.model import compile_model, joint_addresses
 from suchus.model import sites as sensed
@@ -214,6 +214,7 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     folder = export(robot, crawl_gait, tmp_path / "it", kind)
     assert blueprint.read(folder / "robot.toml", Robot, ROBOTS) == robot
     readme = (folder / "README.md").read_text()
+    assert "A crocodile-like robot of 3.52 kg and 1.01 m" in readme
     for file in folder.rglob("*"):
         if file.is_file() and file.name != "README.md":
             assert f"`{file.relative_to(folder)}`" in readme
@@ -230,6 +231,12 @@ def test_a_folder_says_whose_it_is_and_what_is_missing(kind, robot, crawl_gait, 
     for word in words[kind]:
         assert word in readme.partition("does not say")[2]
     assert (folder / "LICENSE").is_file()
+
+
+def test_a_body_that_no_tables_make_is_called_a_robot(tmp_path):
+    strider = ROBOTS["strider"]
+    folder = export(strider, own_gait(strider), tmp_path / "it", "mjcf")
+    assert "A robot of 3.00 kg and 0.60 m" in (folder / "README.md").read_text()
 
 
 def test_the_same_export_gives_the_same_bytes_and_replaces_only_its_own(robot, crawl_gait, tmp_path):

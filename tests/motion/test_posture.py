@@ -1,14 +1,12 @@
 from dataclasses import replace
-from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+from tests.bodies import eight, hatchling, six
 
 import suchus
-from suchus import blueprint
-from suchus.design import Robot, Spring, crocodile, layout
-from suchus.design.scale import scaled
+from suchus.design import Spring, crocodile, layout
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.kinematics import leg as leg_kinematics
 from suchus.model import compile_model, joint_addresses
@@ -16,18 +14,6 @@ from suchus.motion.posture import Keyed, hind_leg, plan
 from suchus.motion.rising import STRETCH, stand_up, stretched, tallest
 
 CAIMAN = suchus.ROBOTS["caiman"]
-SIX = blueprint.read(Path(__file__).parents[1] / "experiments" / "six.toml", Robot, suchus.ROBOTS)
-SMALL = replace(scaled(CAIMAN, length_factor=0.3 / CAIMAN.length), name="small")
-
-
-def eight() -> Robot:
-    """A body of eight legs, light ones in the middle, the hind ones not at the root's origin; no tables make it."""
-    front, hind = CAIMAN.girdles
-    light = replace(front.limb, links=tuple(replace(link, mass=0.01) for link in front.limb.links))
-    middle = [replace(front, name=name, segment=f"spine_{i}", at=0.0, limb=light) for name, i in (("M", 3), ("N", 2))]
-    return replace(CAIMAN, name="eight", girdles=(front, *middle, replace(hind, at=-0.02, above=-0.006)))
-
-
 RISE = stand_up(CAIMAN)
 TIME = np.linspace(0.0, RISE.duration, 76)
 
@@ -46,7 +32,7 @@ def in_mujoco(robot, targets, pitch, hip_height):
 
 
 @pytest.mark.parametrize("tick", [0, 15, 37, 50, 75])
-@pytest.mark.parametrize("robot", [CAIMAN, SIX, SMALL, eight()], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", [CAIMAN, six(), hatchling(), eight()], ids=lambda robot: robot.name)
 def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(robot, tick):
     planned = plan(robot, stand_up(robot), TIME)
     data = in_mujoco(robot, planned.targets[tick], planned.pitch[tick], planned.feet[tick, 2])
@@ -59,7 +45,7 @@ def test_mujoco_finds_feet_and_centre_of_mass_where_the_plan_puts_them(robot, ti
     assert com[1] == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("robot", [CAIMAN, SIX, SMALL, eight()], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", [CAIMAN, six(), hatchling(), eight()], ids=lambda robot: robot.name)
 def test_a_standing_body_touches_the_ground_with_the_tip_of_its_tail(robot):
     last = stand_up(robot).postures[-1]
     level = Keyed(name="level", times=(0.0,), postures=(replace(last, tail_press=0.0),))
@@ -70,9 +56,9 @@ def test_a_standing_body_touches_the_ground_with_the_tip_of_its_tail(robot):
 
 
 def test_a_scaled_body_takes_the_scaled_posture():
-    large, small = (plan(robot, stand_up(robot), TIME) for robot in (CAIMAN, SMALL))
+    large, small = (plan(robot, stand_up(robot), TIME) for robot in (CAIMAN, hatchling()))
     assert small.targets == pytest.approx(large.targets, abs=1e-6)
-    assert small.feet / SMALL.length == pytest.approx(large.feet / CAIMAN.length, abs=1e-6)
+    assert small.feet / hatchling().length == pytest.approx(large.feet / CAIMAN.length, abs=1e-6)
 
 
 def test_one_pitch_joint_bends_for_both_and_three_share():
@@ -85,7 +71,7 @@ def test_one_pitch_joint_bends_for_both_and_three_share():
         for segment in CAIMAN.axis
     ]
     single = replace(CAIMAN, name="single", axis=tuple(held))
-    for robot, angles in ((single, [-0.5]), (SIX, [-0.3, -0.1, -0.1])):
+    for robot, angles in ((single, [-0.5]), (six(), [-0.3, -0.1, -0.1])):
         planned = plan(robot, Keyed(name="up", times=(0.0,), postures=(bent,)), np.zeros(1))
         assert planned.targets[0, list(layout(robot).trunk_pitch)] == pytest.approx(angles)
 
@@ -159,7 +145,7 @@ def test_a_hind_leg_reaches_points_that_do_not_turn_with_the_pelvis():
 def test_nothing_reaches_higher_than_the_stretched_robot():
     parts = CAIMAN.hind_leg.femur + CAIMAN.hind_leg.tibia + CAIMAN.spine.length + CAIMAN.head.snout
     assert stretched(CAIMAN) == pytest.approx(parts, abs=1e-15)
-    assert stretched(SMALL) == pytest.approx(parts * 0.3 / CAIMAN.length)
+    assert stretched(hatchling()) == pytest.approx(parts * 0.3 / CAIMAN.length)
     heights = tallest(CAIMAN, np.array([0.0, 0.03, 0.06, 0.1]))
     assert heights.max() < stretched(CAIMAN) + CAIMAN.hind_leg.foot_radius
     assert heights.max() > stretched(CAIMAN)

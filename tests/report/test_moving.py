@@ -3,10 +3,12 @@
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from suchus.design import crocodile
+from suchus.design import crocodile, layout
 from suchus.figures import captioned, panels, save
+from suchus.kinematics import landmarks
 from suchus.paper.animals import ANIMALS
 from suchus.record import plain
 from suchus.report import load_result, render_page, write_page
@@ -118,6 +120,22 @@ def test_article_ours_and_animal_stand_side_by_side(make):
     page = render_page(list(results.values()), [])
     for row in rows.values():
         assert row.animal.source.split("&")[0] in page
+
+
+@pytest.mark.parametrize("name", ["caiman", "salamander", "pleurobot"])
+def test_the_tail_of_any_body_stands_beside_the_animals(name):
+    robot = ROBOTS[name]
+    rows = {row.animal.key: row for row in beside(robot, {})}
+    marks = landmarks(robot, np.zeros(len(layout(robot).hinges)))
+    behind = marks.feet[-1, 0] - marks.tail[0]  # a leg stands straight out from its hip
+    mass = sum(shape.mass for part in robot.axis if part.name.startswith("tail") for shape in part.shapes)
+    told = [float(rows[key].ours.split()[0]) for key in ("tail_length", "tail_mass")]
+    assert told == pytest.approx([behind / robot.length, mass / robot.mass], abs=0.006)
+
+
+@pytest.mark.parametrize("name", ["strider", "swimmer"])
+def test_who_has_no_tail_or_no_hips_has_none_beside_the_animals(name):
+    assert not {"tail_length", "tail_mass"} & {row.animal.key for row in beside(ROBOTS[name], {})}
 
 
 def test_every_number_of_an_animal_has_a_source_and_a_range():

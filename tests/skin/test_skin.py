@@ -8,12 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
+from tests.bodies import eight, hatchling, six
 
 from suchus.design import LEGS, crocodile, joint_names, layout
 from suchus.errors import InvalidDesign, SuchusError
 from suchus.model import compile_model, joint_addresses
 from suchus.robots import ROBOTS
 from suchus.skin import bone_names, poses, skin
+from suchus.skin.ankles import ankles, footed
+from suchus.skin.bones import Poses
 from suchus.skin.surface import _blended
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
@@ -197,6 +200,26 @@ def test_wrong_numbers_are_refused(shelf):
         poses(shelf, np.zeros(3), STILL, np.zeros(3))
     with pytest.raises(InvalidDesign, match="bones"):
         skin(shelf).posed(np.zeros((2, 3)), np.zeros((2, 4)))
+
+
+@pytest.mark.parametrize(
+    ("robot", "plain"), [(six(), False), (hatchling(), False), (eight(), True)], ids=["six", "hatchling", "eight"]
+)
+def test_who_has_the_chains_wears_a_crocodiles_skin_and_any_other_body_a_hide(robot, plain):
+    found, still = skin(robot), poses(robot, np.zeros(3), STILL, np.zeros(len(joint_names(robot))))
+    check_closed(found)
+    assert found.plain == plain
+    hung = {found.bones[bone] for bone in np.unique(found.indices[found.weights > 0.5])}
+    assert {layout(robot).bodies[limb.tip].name for limb in layout(robot).limbs} <= hung
+    feet = np.zeros((1, len(layout(robot).limbs), 3))
+    turned = ankles(robot, Poses(*(part[None] for part in still)), feet)
+    more = 0 if plain else 4  # a round foot has no ankle
+    assert len(footed(robot).bones) == turned.positions.shape[1] == len(found.bones) + more
+
+
+def test_a_hatchling_looks_like_the_robot_that_it_is_made_after():
+    large, small = (np.ptp(skin(robot).vertices, axis=0) / robot.length for robot in (ROBOTS["caiman"], hatchling()))
+    assert small == pytest.approx(large, rel=0.02)
 
 
 @st.composite

@@ -8,12 +8,12 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.capture.tracks import Tracks
-from suchus.design import ARTICLE_BODY, LEGS, Robot, check_needs, leg_joints, spine_joints
+from suchus.design import Layout, Robot, check_needs, hips_ahead, layout
 from suchus.design.checks import Checks
-from suchus.kinematics import body, spine
+from suchus.kinematics.tree import BodyFrames, frames, landmarks
 from suchus.motion import START
 
-_NECK = 0.05  # [m]; ahead of the shoulders, on the front girdle
+_NECK = 0.05 / 0.3425  # [length from hips to shoulders]; of the neck ahead of the shoulders, on the front girdle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,39 +90,44 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     Args:
         robot: whose record it is.
         record: of one run, without the dimension ``run``.
+
+    Raises:
+        UnsuitedRobot: it has not the four limbs and the tail that ``Tracks`` are of.
     """
-    check_needs(robot, ARTICLE_BODY, "a made-up film")
+    check_needs(robot, ("four_limbs", "trunk", "tail_yaw"), "a made-up film")
     angles = record.joint_angle.values.astype(float)
-    legs, trunk = len(leg_joints()), len(leg_joints()) + len(spine_joints())
-    points = _midline(robot, angles[:, legs:trunk]) | _tail(robot, angles[:, trunk:])
-    feet = body.feet(robot, angles)
-    points |= {leg: feet[:, i] for i, leg in enumerate(LEGS)}
+    place, found, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
+    front, hind = place.limbs[0].girdle, place.limbs[-1].girdle
+    points = {
+        "snout": marks.snout,
+        "neck": _on(found, place, front.segment, front.at + _NECK * hips_ahead(robot, 0)),
+        "shoulder": _on(found, place, front.segment, front.at),
+    }
+    spine = [found.places[:, _moved_by(place, place.servos[servo])] for servo in place.trunk_yaw]
+    points |= {f"spine_{i}": spine[i - 1] for i in range(len(spine), 0, -1)}
+    points |= {"hip": _on(found, place, hind.segment, hind.at)} | _tail(place, found) | {"tail_tip": marks.tail}
+    points |= {limb.name: marks.feet[:, i] for i, limb in enumerate(place.limbs)}
     R, at = rotation.matrix(record.orientation.values.astype(float)), record.position.values.astype(float)
     return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}
 
 
-def _midline(robot: Robot, bends: np.ndarray) -> dict[str, np.ndarray]:
-    """Points of the trunk in the pelvis's frame: the yaw joints, and the front girdle."""
-    T = spine.forward(robot.spine, bends)
-    shoulder = T[:, :3, 3] + robot.thorax.shoulder * T[:, :3, 0]
-    points = {
-        "snout": T[:, :3, 3] + robot.head.snout * T[:, :3, 0],
-        "neck": shoulder + _NECK * T[:, :3, 0],
-        "shoulder": shoulder,
-    }
-    for number, joint in ((3, 4), (2, 2), (1, 0)):
-        before = bends.copy()
-        before[:, joint:] = 0.0  # what lies beyond the joint is straight, so that it can be measured back to it
-        T = spine.forward(robot.spine, before)
-        points[f"spine_{number}"] = T[:, :3, 3] - (4 - joint) * robot.spine.link * T[:, :3, 0]
-    return points | {"hip": np.zeros((len(bends), 3))}
+def _on(found: BodyFrames, place: Layout, segment: str, ahead: float) -> np.ndarray:
+    """Return a point on the midline of a segment, so far ahead of its origin, in the frame of the root [m]."""
+    body = [one.name for one in place.bodies].index(segment)
+    return np.asarray(found.places[:, body] + (place.bodies[body].shift + ahead) * found.turns[:, body, :, 0])
 
 
-def _tail(robot: Robot, angles: np.ndarray) -> dict[str, np.ndarray]:
-    """Points of the tail in the pelvis's frame: every other cable joint, both ends of the last plate, the tip."""
-    points = body.tail_points(robot, angles)
-    last = points.shape[1] - 1
-    plate = last - robot.tail.fin_segments  # where the cable section ends
-    marks = sorted({*range(1, plate - 1, 2), plate - 1, plate})
-    named = {f"tail_{i}": points[:, at] for i, at in enumerate(marks, 1)}
-    return {"tail_base": points[:, 0], **named, "tail_tip": points[:, last]}
+def _moved_by(place: Layout, hinge: str) -> int:
+    """Return which body a hinge turns; its frame stands at the hinge."""
+    return next(i for i, body in enumerate(place.bodies) if any(name == hinge for _, name, _ in body.hinges))
+
+
+def _tail(place: Layout, found: BodyFrames) -> dict[str, np.ndarray]:
+    """Return the tail's first joint, every other joint that is driven sideways, both ends of the last of them [m]."""
+    driven = [place.servos[servo] for servo in place.tail_yaw]
+    driven += [hinge for servo in place.cables for hinge in place.cable(servo).hinges]
+    bodies = [next(i for i, body in enumerate(place.bodies) if body.name == name) for name in place.tail]
+    turned = sorted({_moved_by(place, hinge) for hinge in driven} & set(bodies))
+    marks = {*turned[::2], turned[-1], *(body for body in bodies if body == turned[-1] + 1)} - {bodies[0]}
+    named = {f"tail_{i}": found.places[:, body] for i, body in enumerate(sorted(marks), 1)}
+    return {"tail_base": found.places[:, bodies[0]], **named}

@@ -16,9 +16,18 @@ from suchus.design.joints import (
     servo_names,
     spine_joints,
 )
-from suchus.design.layout import Layout, LimbPlace, front_segment, hips_ahead, hips_behind_snout, layout, servo_ranges
+from suchus.design.layout import (
+    Layout,
+    LimbPlace,
+    behind_hips,
+    front_segment,
+    hips_ahead,
+    hips_behind_snout,
+    layout,
+    servo_ranges,
+)
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import ARTICLE_BODY, NEEDS, STANDING, check_needs, crocodile_like, lacking
+from suchus.design.needs import ARTICLE_BODY, MEASURED, NEEDS, STANDING, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servo import Servo
@@ -29,6 +38,7 @@ __all__ = [
     "ARTICLE_BODY",
     "GRAVITY",
     "LEGS",
+    "MEASURED",
     "NEEDS",
     "STANDING",
     "WATER_DENSITY",
@@ -62,6 +72,7 @@ __all__ = [
     "Tail",
     "Thorax",
     "Turn",
+    "behind_hips",
     "cable_joints",
     "check_needs",
     "crocodile",

@@ -222,6 +222,11 @@ def hips_behind_snout(robot: Robot, girdle: int) -> float:
     raise UnknownName("segment", body.girdles[girdle].segment, [one.name for one in body.axis])
 
 
+def behind_hips(robot: Robot) -> float:
+    """Return how much of the straight body lies behind its hindmost hips [m]; 0 without limbs."""
+    return robot.length - hips_behind_snout(robot, len(robot.girdles) - 1) if robot.girdles else 0.0
+
+
 def hips_ahead(robot: Robot, girdle: int) -> float:
     """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
     body = robot

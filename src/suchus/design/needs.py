@@ -105,6 +105,9 @@ NEEDS: Mapping[str, Need] = MappingProxyType(
     }
 )
 """Everything that is asked of a robot anywhere, by name."""
+MEASURED = ("legs", "shells", "spine", "tail")
+"""The chains of whose measures the crocodile's skin and its dimension drawing are made; any other body is drawn by its
+shapes."""
 STANDING = ("hind_legs", "trunk_pitch", "tail_root")
 """What a body needs to stand up on hind legs and tail."""
 ARTICLE_BODY = ("legs", "shells", "article_spine", "cable_tail")

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 
-from suchus.design import Robot, crocodile_like, layout
+from suchus.design import MEASURED, Robot, behind_hips, lacking, layout
 from suchus.design.measures import LegMeasures
 from suchus.figures.plan import draw_plan
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -19,10 +19,10 @@ _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
 
 def dimension_drawing(robot: Robot) -> Figure:
     """Return a robot from above and from the side with its main dimensions [mm]."""
-    tables = crocodile_like(robot)
+    measured = not lacking(robot, MEASURED)
     with styled(axes__grid=False):
         figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
-        if crocodile_like(robot):
+        if measured:
             _from_above(axes[0, 0], robot)
             _from_the_side(axes[1, 0], robot)
         else:
@@ -32,12 +32,12 @@ def dimension_drawing(robot: Robot) -> Figure:
             ax.set_aspect("equal")
             ax.set_axis_off()
             ax.set_title(title, color=COLOURS["neutral"])
-    tail = f"{_mm(robot.tail.length)} mm of it tail, " if crocodile_like(robot) else ""
+    tail = "" if lacking(robot, ("limbs", "tail_yaw")) else f"{_mm(behind_hips(robot))} mm of it tail, "
     return captioned(
         figure,
         f"The robot {robot.name} from above and from the side: {_mm(robot.length)} mm long, "
         f"{tail}{robot.mass:.3g} kg, {len(layout(robot).servos)} servos. "
-        f"Circles are joints{'; the pale end of the tail is passive' if tables else ''}. Dimensions in mm.",
+        f"Circles are joints{'; the pale end of the tail is passive' if measured else ''}. Dimensions in mm.",
     )
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from suchus.design import LEGS, Layout, Robot, crocodile_like, layout
+from suchus.design import LEGS, Layout, Robot, layout
 from suchus.skin.head import JAW_AROUND
 from suchus.skin.legs import LEG_AROUND
 from suchus.skin.look import SKIN
@@ -41,7 +41,7 @@ def silhouette(robot: Robot, vertices: np.ndarray, axes: tuple[int, int]) -> Sil
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
     parts = np.split(flat, starts[1:])
     sizes = np.array([len(part) for part in parts])
-    if not crocodile_like(robot):
+    if surface.plain:
         return _plain(layout(robot), surface, starts, parts)
     legs: list[list[np.ndarray]] = [[], [], [], []]
     names = _owners(surface, starts)

@@ -152,7 +152,7 @@ def upright(robot: Robot) -> Upright:
     pitching = next(hinge for hinge in root.hinges if hinge.turn == "pitch" and hinge.servo is not None)
     behind = robot.axis[robot.root_place + 1 :]
     lengths = [segment.front + segment.rear for segment in behind]
-    radii = [max((_half_height(shape) for shape in segment.shapes), default=0.0) for segment in behind]
+    radii = [max(_half_height(shape) for shape in segment.shapes) for segment in behind]
     middles = [fsum(lengths[:i]) + length / 2 for i, length in enumerate(lengths)]
     taper = (radii[-1] - radii[0]) / (middles[-1] - middles[0]) if len(behind) > 1 else 0.0
     number = place.hinges.index(pitching.name)
@@ -176,8 +176,7 @@ def belly(robot: Robot) -> float:
     trunk = robot.axis[names.index(robot.girdles[0].segment) + 1 : robot.root_place + 1] or (
         robot.axis[robot.root_place],
     )
-    lowest = max(_half_height(shape) - shape.centre[2] for segment in trunk for shape in segment.shapes)
-    return lowest + robot.girdles[-1].above
+    return max(shape.bottom for segment in trunk for shape in segment.shapes) + robot.girdles[-1].above
 
 
 def _half_height(shape: Rod | Shell) -> float:

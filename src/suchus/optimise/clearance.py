@@ -1,23 +1,13 @@
 """How far the parts of a body stay clear of each other: the physics knows contacts with the ground only."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from suchus.design import ARTICLE_BODY, LEGS, Robot, check_needs, layout
-from suchus.kinematics import body, spine
-from suchus.kinematics import leg as leg_kinematics
-from suchus.kinematics.links import LegLinks
-
-_GIRDLE = {"F": ("thorax",), "H": ("pelvis",)}
-_SHANK = 0.8  # of the femur's radius, as the model builds it
-
-
-class _Bone(NamedTuple):
-    hip_offset: float
-    femur: float
-    tibia: float
+from suchus.design import Girdle, LimbPlace, Robot, Segment, Shell, check_needs, layout
+from suchus.kinematics.tree import BodyFrames, frames
 
 
 class _Capsule(NamedTuple):
@@ -30,9 +20,10 @@ class _Capsule(NamedTuple):
 def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArray:
     """Return the least distance between parts of the body that could touch each other, negative where they overlap [m].
 
-    The parts are capsules: femur and shank of each leg, pelvis, links of the trunk, thorax, head, segments of the
-    tail. Each leg is held against the other legs and against the body; its femur is not held against the girdle that
-    carries it, and no part of the body against its neighbour.
+    The parts are capsules: the links of each limb and the shapes of the axis. Each limb is held against the other limbs
+    and against the trunk, but its first link not against the shape that carries it or one that it overlaps on the
+    straight body. Hind limbs are held against the tail beyond its first segment, which lies between the hips.
+    Parts of the axis are not held against each other.
 
     Args:
         robot: whose record it is.
@@ -51,60 +42,80 @@ def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
         robot: the robot.
         angles: of every hinge in the order of ``joint_names(robot)``, shape (..., joint) [rad].
     """
-    check_needs(robot, ARTICLE_BODY, "the distance between parts")
-    trunk, tail = _trunk(robot, angles[..., layout(robot).ahead]), _tail(robot, angles[..., layout(robot).behind])
-    legs = {name: _leg(robot, name, angles) for name in LEGS}
-    pairs = [(a, b) for i, one in enumerate(LEGS) for two in LEGS[i + 1 :] for a in legs[one] for b in legs[two]]
-    for name, (femur, shank) in legs.items():
-        own = _GIRDLE[name[1]]
-        pairs += [(femur, part) for part in trunk if part.name not in own]
-        pairs += [(shank, part) for part in trunk]
-        if name.endswith("H"):
-            pairs += [(bone, part) for bone in (femur, shank) for part in tail]
-    gaps = [_apart(a, b) for a, b in pairs]
-    return np.asarray(np.minimum.reduce(gaps))
+    check_needs(robot, ("limbs",), "the distance between limbs and body")
+    parts = _parts(robot, angles)
+    return np.asarray(np.minimum.reduce([_apart(parts[a], parts[b]) for a, b in _pairs(robot)]))
 
 
-def _trunk(robot: Robot, bends: np.ndarray) -> list[_Capsule]:
-    """Return pelvis, links, thorax and head."""
-    T, joints = spine.forward(robot.spine, bends), spine.joints(robot.spine, bends)
-    end, ahead = T[..., :3, 3], T[..., :3, 0]
-    still = np.zeros_like(end)
-    behind = still - np.array([robot.tail.offset, 0.0, 0.0])
-    pelvis = _Capsule("pelvis", behind, joints[..., 0, :], robot.pelvis.height / 2)
-    links = [
-        _Capsule(f"link_{i}", joints[..., i, :], joints[..., i + 1, :], robot.spine.radius)
-        for i in range(joints.shape[-2] - 1)
-    ]
-    thorax = _Capsule("thorax", end, end + robot.thorax.shoulder * ahead, robot.thorax.height / 2)
-    half = robot.head.width / 2
-    from_neck = max(robot.thorax.shoulder + half, 0.0)
-    head = _Capsule("head", end + from_neck * ahead, end + (robot.head.snout - half) * ahead, half)
-    return [pelvis, *links, thorax, head]
+def _parts(robot: Robot, angles: np.ndarray) -> dict[str, _Capsule]:
+    """Return the shapes of the axis and the links of the limbs."""
+    place, found = layout(robot), frames(robot, angles)
+    parts = [capsule for segment in robot.axis for capsule in _segment(robot, segment, found)]
+    parts += [capsule for limb in place.limbs for capsule in _limb(limb, found)]
+    return {part.name: part for part in parts}
 
 
-def _tail(robot: Robot, angles: np.ndarray) -> list[_Capsule]:
-    points = body.tail_points(robot, angles)
-    radii = robot.tail.radii
-    return [
-        _Capsule(f"tail_{i}", points[..., i, :], points[..., i + 1, :], radii[i])
-        for i in range(1, points.shape[-2] - 1)  # the root lies between the hips
-    ]
-
-
-def _leg(robot: Robot, name: str, angles: np.ndarray) -> tuple[_Capsule, _Capsule]:
-    leg, i = robot.leg(name), LEGS.index(name)
-    own = angles[..., layout(robot).limbs[i].hinges]
-    bones: tuple[LegLinks, ...] = (_Bone(leg.hip_offset, 0.0, 0.0), _Bone(leg.hip_offset, leg.femur, 0.0), leg)
-    hip, knee, foot = (body.from_leg_frame(leg_kinematics.forward(bone, own), name) for bone in bones)
-    if name.endswith("F"):
-        T = spine.forward(robot.spine, angles[..., layout(robot).ahead])
-        shoulder = T[..., :3, 3] + robot.thorax.shoulder * T[..., :3, 0]
-        hip, knee, foot = (shoulder + np.einsum("...ij,...j->...i", T[..., :3, :3], p) for p in (hip, knee, foot))
-    return (
-        _Capsule(f"{name}_femur", hip, knee, leg.radius),
-        _Capsule(f"{name}_shank", knee, foot, max(_SHANK * leg.radius, leg.foot_radius)),
+@lru_cache(maxsize=64)
+def _pairs(robot: Robot) -> tuple[tuple[str, str], ...]:
+    """Return the names of the parts that are held against each other."""
+    place, straight = layout(robot), _parts(robot, np.zeros(len(layout(robot).hinges)))
+    limbs = [[f"{limb.name} {link.name}" for link in limb.girdle.limb.links] for limb in place.limbs]
+    trunk, tail = (
+        [shape.name for segment in segments for shape in segment.shapes]
+        for segments in (robot.axis[: robot.root_place + 1], robot.axis[robot.root_place + 2 :])
     )
+    pairs = [(a, b) for i, one in enumerate(limbs) for two in limbs[i + 1 :] for a in one for b in two]
+    for limb, (first, *others) in zip(place.limbs, limbs, strict=True):
+        axis = trunk + tail if limb.girdle is robot.girdles[-1] else trunk
+        near = {part for part in axis if _apart(straight[first], straight[part]) <= 0.0}
+        pairs += [(first, part) for part in axis if part not in {_carrier(robot, limb.girdle), *near}]
+        pairs += [(link, part) for link in others for part in axis]
+    return tuple(pairs)
+
+
+def _segment(robot: Robot, segment: Segment, found: BodyFrames) -> list[_Capsule]:
+    """Return the shapes of a segment: rods as they are, shells along the body.
+
+    A shell that carries limbs is as thick as it is high, since limbs leave it at its sides, and reaches from the joint
+    behind it to the girdle, or through its segment if it is the only shape. Any other shell is as thick as it is wide.
+    """
+    bodies = layout(robot).bodies
+    body = [one.name for one in bodies].index(segment.name)
+    place, ahead = found.places[..., body, :], found.turns[..., body, :, :]
+    carried = {_carrier(robot, girdle): girdle for girdle in robot.girdles if girdle.segment == segment.name}
+    capsules = []
+    for shape in segment.shapes:
+        if isinstance(shape, Shell):
+            if shape.name in carried:
+                radius = shape.half[2]
+                span = -segment.rear, segment.front if len(segment.shapes) == 1 else carried[shape.name].at
+            else:
+                radius = min(shape.half[0], shape.half[1])
+                span = shape.at[0] - (shape.half[0] - radius), shape.at[0] + (shape.half[0] - radius)
+            ends = [np.array([x, *shape.at[1:]]) for x in span]
+        else:
+            radius, ends = shape.radius, [np.array(shape.start), np.array(shape.end)]
+        start, end = (place + ahead @ (point + np.array([bodies[body].shift, 0.0, 0.0])) for point in ends)
+        capsules.append(_Capsule(shape.name, start, end, radius))
+    return capsules
+
+
+def _carrier(robot: Robot, girdle: Girdle) -> str:
+    """Return the name of the shape that carries the limbs of a girdle: the nearest along the body."""
+    segment = next(one for one in robot.axis if one.name == girdle.segment)
+    return min(segment.shapes, key=lambda shape: abs(shape.centre[0] - girdle.at)).name
+
+
+def _limb(limb: LimbPlace, found: BodyFrames) -> list[_Capsule]:
+    """Return the links of a limb, the last at least as thick as its foot."""
+    links, capsules = limb.girdle.limb.links, []
+    for number, link in enumerate(links):
+        body = limb.tip - len(links) + 1 + number
+        start = found.places[..., body, :]
+        end = start + found.turns[..., body, :, :] @ np.array([link.end[0], limb.side * link.end[1], link.end[2]])
+        radius = max(link.radius, limb.girdle.limb.foot.radius) if link is links[-1] else link.radius
+        capsules.append(_Capsule(f"{limb.name} {link.name}", start, end, radius))
+    return capsules
 
 
 def _apart(a: _Capsule, b: _Capsule) -> np.ndarray:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from suchus.design import LEGS, Robot, crocodile_like
+from suchus.design import LEGS, Robot, behind_hips, lacking
 from suchus.paper import CLAIMS, CRAWL_END, CRAWL_START
 from suchus.paper.animals import ANIMALS, Animal
 from suchus.report.rendering import number, quantity
@@ -28,6 +28,7 @@ class ComparisonRow:
 
 
 Results = Mapping[str, Result]
+_TAIL = ("limbs", "tail_yaw")  # a tail begins at the hips, and is no tail where it is stiff
 _DURATION = CRAWL_END - CRAWL_START
 _COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
 
@@ -73,11 +74,14 @@ def _measured(results: Results, experiment: str, *names: str) -> list[float] | N
 
 
 def _tail_length(robot: Robot, _: Results) -> float | None:
-    return robot.tail.length / robot.length if crocodile_like(robot) else None
+    return None if lacking(robot, _TAIL) else behind_hips(robot) / robot.length
 
 
 def _tail_mass(robot: Robot, _: Results) -> float | None:
-    return robot.tail.mass / robot.mass if crocodile_like(robot) else None
+    if lacking(robot, _TAIL):
+        return None
+    behind = robot.axis[robot.root_place + 1 :]
+    return sum(shape.mass for segment in behind for shape in segment.shapes) / robot.mass
 
 
 def _mass(robot: Robot, _: Results) -> float | None:

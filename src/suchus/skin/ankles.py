@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design import LEGS, Robot, crocodile_like
+from suchus.design import LEGS, Robot
 from suchus.design.relief import Relief, heights
 from suchus.rotation import about, multiply, rotate
 from suchus.skin.bones import Poses, bone_names
@@ -27,7 +27,7 @@ NEAR = (0.012, 0.06)
 def footed(robot: Robot) -> Skin:
     """Return the skin of a robot with its feet hung on ankles; the round feet of a plain body have none."""
     surface = skin(robot)
-    if not crocodile_like(robot):
+    if surface.plain:
         return surface
     indices, rest = surface.indices.copy(), [*surface.rest]
     starts = np.flatnonzero(np.diff(surface.part, prepend=-1))
@@ -50,7 +50,7 @@ def ankles(robot: Robot, bones: Poses, feet: np.ndarray, relief: Relief | None =
         feet: centres of the feet, (frame, 4, 3) [m].
         relief: what stands up from the ground; None where it is even.
     """
-    if not crocodile_like(robot):
+    if skin(robot).plain:
         return bones
     names, turned = bone_names(robot), []
     above = feet[..., 2] - heights(relief, feet[..., 0], feet[..., 1])

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.design import Layout, Robot, crocodile_like, layout
+from suchus.design import MEASURED, Layout, Robot, lacking, layout
 from suchus.errors import InvalidDesign
 from suchus.rotation import rotate
 from suchus.skin.body import body, shape
@@ -45,6 +45,8 @@ class Skin:
     """Bones that each vertex hangs on, (n, 4) int32."""
     weights: np.ndarray
     """How much of each, (n, 4) [-]; they sum to one."""
+    plain: bool
+    """Whether it is a plain hide with rods for limbs and balls for feet, and not the skin of a crocodile."""
 
     def posed(self, positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
         """Return the vertices in a posture, (n, 3) [m], by linear blend skinning.
@@ -77,10 +79,12 @@ def skin(robot: Robot, look: Look = SKIN) -> Skin:
     """Return the skin of a robot; the same robot gives the same skin again.
 
     Args:
-        robot: any robot; one of the article's tables is a crocodile, any other a plain hide with rods for limbs.
+        robot: any robot; one with the chains of ``design.MEASURED`` is a crocodile, any other a plain hide with
+            rods for limbs.
         look: proportions of the animal where the robot has none.
     """
-    parts = _crocodile(robot, look) if crocodile_like(robot) else _plain(layout(robot))
+    plain = bool(lacking(robot, MEASURED))
+    parts = _plain(layout(robot)) if plain else _crocodile(robot, look)
     hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
     whole = joined([mesh for mesh, _ in parts])
     found = Skin(
@@ -93,6 +97,7 @@ def skin(robot: Robot, look: Look = SKIN) -> Skin:
         rest=bone_rest(robot),
         indices=np.concatenate([indices for indices, _ in hung]),
         weights=np.concatenate([weights for _, weights in hung]),
+        plain=plain,
     )
     for array in (found.vertices, found.normals, found.faces, found.colours, found.part, found.rest, found.indices,
                   found.weights):  # fmt: skip
@@ -115,12 +120,12 @@ def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
 
 
 def _hung(robot: Robot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
-    """Hang vertices on one bone, on the axis or on a leg: return bones and weights."""
+    """Hang vertices on a bone, on the axis or on a leg of that name: return bones and weights."""
     if isinstance(on, int):
         indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
         weights[:, 0] = 1.0
         return indices, weights
-    return _on_leg(robot, vertices, on) if on and crocodile_like(robot) else _on_axis(robot, vertices)
+    return _on_leg(robot, vertices, on) if on else _on_axis(robot, vertices)
 
 
 def _axial(robot: Robot, look: Look) -> list[Mesh]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from suchus import blueprint
-from suchus.design import Robot, crocodile_like
+from suchus.design import Robot
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.model.build import TIMESTEP
@@ -123,7 +123,7 @@ def _readme(robot: Robot, files: Mapping[str, str], look: str, about: str, left_
         "LICENSE": "Apache-2.0",
         MARK: "which robot, which software",
     }
-    what = "A crocodile-like robot" if crocodile_like(robot) else "A robot"
+    what = "A robot" if robot.tables is None else "A crocodile-like robot"
     lines = [
         f"# {robot.name}",
         "",
