@@ -1,6 +1,6 @@
 """How far does the robot crawl, with spine and tail and without?"""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -72,12 +72,8 @@ class Displacement(TwoGroups):
         gaits = conditions_of(self.robot, self.gait, self.control)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        stage = staged(progress, "repeats", 0.1, 0.5)
-        spread = simulate(
-            self.repeated(runs), duration=duration, timestep=coarse_step(self.robot), every=10, progress=stage
-        )
-        found = self._mapped(duration, staged(progress, "map", 0.5, 1.0))
-        record = record.merge(_renamed(spread, list(gaits), self.repeats)).merge(found)
+        record = record.merge(self._repeats(runs, duration, staged(progress, "repeats", 0.1, 0.5)))
+        record = record.merge(self._mapped(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _LEAST * self.robot.length
         return Simulated(record=record, replays=self._replays(record))
 
@@ -91,6 +87,24 @@ class Displacement(TwoGroups):
             title="Crawling with spine and tail, and without",
             caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
         )
+
+    def _repeats(self, runs: Sequence[Run], duration: float, progress: Any) -> xr.Dataset:
+        """Return the displacement over time and at the end of repeats with noise and another friction [m]."""
+        record = simulate(
+            self.repeated(runs), duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress
+        )
+        x = record.centre_of_mass.sel(xyz="x", drop=True).transpose("run", "time")
+        x = x - x.sel(time=START, method="nearest", drop=True)
+        dims, shape = ("condition", "repeat"), (len(runs), self.repeats)
+        data = xr.Dataset(
+            {
+                "spread_over_time": ((*dims, "spread_time"), x.values.reshape(*shape, -1), {"units": "m"}),
+                "spread_forward": (dims, _forward(record).values.reshape(shape), {"units": "m"}),
+            },
+            coords={"condition": [run.label for run in runs], "spread_time": record.time.values},
+        )
+        data.spread_time.attrs["units"] = "s"
+        return data
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
@@ -145,10 +159,10 @@ class Displacement(TwoGroups):
         measures: dict[str, Measure] = {}
         arms = [str(arm) for arm in record.condition.values]
         hind = {"leg": record.leg.values[-2:]}
+        repeats = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in arms}
         for i, arm in enumerate(arms):
-            repeats = record.spread_forward.sel(condition=arm)
             measures |= {
-                **ranged(f"forward_{arm}", forward[i], repeats, "m"),
+                **ranged(f"forward_{arm}", forward[i], repeats[arm], "m"),
                 f"sideways_{arm}": Measure(float(aside[i]), "m"),
                 f"heading_drift_{arm}": Measure(float(turned[i]), "rad"),
                 f"slip_{arm}": Measure(float(slid[i]), "-"),
@@ -157,17 +171,14 @@ class Displacement(TwoGroups):
                 f"hind_clearance_{arm}": Measure(float(clear.isel(run=i).sel(hind).min()), "m"),
                 f"two_feet_share_{arm}": Measure(float(two[i]), "-"),
             }
-        for name, one, other in _GAINS:
-            if not {one, other} <= set(arms):
-                continue
-            of = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in (one, other)}
-            gain = forward[arms.index(one)] - forward[arms.index(other)]
-            measures |= ranged(f"gain_{name}", gain, of[one] - of[other], "m")
+        for name, arm, without in _GAINS:
+            if {arm, without} <= set(arms):
+                gain = forward[arms.index(arm)] - forward[arms.index(without)]
+                measures |= ranged(f"gain_{name}", gain, repeats[arm] - repeats[without], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
-            if control not in arms:
-                continue
-            apart = [record.spread_forward.sel(condition=arm, drop=True) for arm in ("coordinated", control)]
-            measures |= ranged(name, forward[0] / forward[arms.index(control)], apart[0] / apart[1], "-")
+            if control in arms:
+                ratio = forward[0] / forward[arms.index(control)]
+                measures |= ranged(name, ratio, repeats["coordinated"] / repeats[control], "-")
         measures |= ends("ratio_on_map", _ratio(record), "-")
         measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
         if record.sizes["pitch"]:
@@ -201,29 +212,13 @@ def _forward(record: xr.Dataset) -> xr.DataArray:
     return displacement_of(record).sel(xyz="x")
 
 
-def _renamed(spread: xr.Dataset, arms: list[str], repeats: int) -> xr.Dataset:
-    """Return the displacement over time of the repeats, by condition."""
-    x = spread.centre_of_mass.sel(xyz="x", drop=True).transpose("run", "time")
-    x = x - x.sel(time=START, method="nearest", drop=True)
-    dims, shape = ("condition", "repeat"), (len(arms), repeats)
-    data = xr.Dataset(
-        {
-            "spread_over_time": ((*dims, "spread_time"), x.values.reshape(*shape, -1), {"units": "m"}),
-            "spread_forward": (dims, _forward(spread).values.reshape(shape), {"units": "m"}),
-        },
-        coords={"condition": arms, "spread_time": spread.time.values},
-    )
-    data.spread_time.attrs["units"] = "s"
-    return data
-
-
 _GAINS = (
     ("spine_swing", "coordinated", "tail_drag"),
     ("tail_swing", "coordinated", "tail_still"),
     ("tail_contact", "tail_still", "spine_only"),
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
 )
-"""What two conditions differ in, by which one gets farther than the other."""
+"""What two conditions differ in: name, the condition with it, the one without it."""
 
 
 def _ratio(record: xr.Dataset) -> xr.DataArray:

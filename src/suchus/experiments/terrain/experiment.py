@@ -26,7 +26,7 @@ from suchus.metrics import between, cost_of_transport, displacement, heading_cha
 from suchus.motion import START, Gait, suits
 from suchus.robots import ROBOTS
 
-_TOUCH = 0.01447965898  # of the weight on the belly, 0.5 N of the article's robot
+_TOUCH = 0.5 / (ROBOTS["caiman"].mass * GRAVITY)  # of the weight on the belly, half a newton of that robot
 _AT = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it
 _LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
 """Heights of the three postures of a body of its own, over that of its gait [-]."""
