@@ -86,7 +86,7 @@ def pages() -> list[str]:
     """Return every source, example, tool and page, as a path from the root."""
     files = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     for folder in ("src/suchus", "examples", "tools"):
-        files += [path for ending in ("py", "html", "js") for path in (ROOT / folder).rglob(f"*.{ending}")]
+        files += [path for ending in ("py", "html", "js", "md") for path in (ROOT / folder).rglob(f"*.{ending}")]
     return sorted(str(path.relative_to(ROOT)) for path in files if "__pycache__" not in path.parts)
 
 
