@@ -362,10 +362,15 @@ def test_spine_and_tail_rules_act_on_it(robot, crawl_gait):
     ("fields", "message"),
     [
         ({"drive": 11.0}, "drive is 11"),
-        ({"drive": ((1.0, 2.0), (1.0, 3.0))}, "first number that increases"),
+        (
+            {"drive": ((1.0, 2.0), (1.0, 3.0))},
+            "pairs of a time and such a number are allowed, the times rising from 0 on",
+        ),
+        ({"drive": ((-1.0, 2.0), (1.0, 3.0))}, "the times rising from 0 on"),
+        ({"gradient": ((0.5, 1.0), (0.2, 1.0))}, "the places rising"),
         ({"drive": ()}, "drive is"),
         ({"drive": float("nan")}, "drive is nan"),
-        ({"steering": 1.1}, "steering is 1.1; a number of -1 to 1"),
+        ({"steering": 1.1}, "steering is 1.1; -1 to 1 is allowed"),
         ({"asymmetry": ((0.0, 9.0),)}, "asymmetry is"),
         ({"gradient": ((0.0, -1.0),)}, "gradient is"),
         ({"lag": 0.6}, "lag is 0.6 cycle"),
@@ -377,6 +382,10 @@ def test_spine_and_tail_rules_act_on_it(robot, crawl_gait):
 def test_impossible_settings_are_refused(fields, message):
     with pytest.raises(InvalidDesign, match=message):
         PatternGenerator(**fields)
+
+
+def test_tables_begin_at_once_or_later_and_may_hold_one_pair():
+    PatternGenerator(drive=((0.0, 2.0), (0.5, 3.0)), steering=((3.0, 1.0),), gradient=((0.0, 10.0), (1.0, 0.0)))
 
 
 def test_what_does_not_fit_the_robot_is_refused():

@@ -7,7 +7,7 @@ from tests.felt import felt as feels
 
 from suchus.control import AttitudeRule, Change, Control, OpenLoop, Runs, SwitchRule, Walking
 from suchus.control.switching import Switcher
-from suchus.design.relief import Bumps, Stone
+from suchus.design.ground import Bumps, Stone
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.design.relief import Bumps, Step, Stone
+from suchus.design.ground import Bumps, Step, Stone
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.speed_range.experiment import _UNITS
 from suchus.experiments.terrain.experiment import SINGLE, _met

@@ -150,6 +150,7 @@ def test_it_swims_forward_and_backward_with_the_wave():
         (lambda: Lake(level=nan), r"lake.level is nan m; -1000 to 1000 m is allowed"),
         (lambda: Lake(level=2e3), r"lake.level is 2000 m"),
         (lambda: Lake(level=((1.0, 0.0), (0.5, 0.1))), "the times rising"),
+        (lambda: Lake(level=((0.0, 0.0), (0.5, 2e3))), "a number of -1000 to 1000 m, or pairs of a time"),
         (lambda: Lake(level=0.0, air_fraction=1.5), r"lake.air_fraction is 1.5; 0 to 1 is allowed"),
         (lambda: Lake(level=0.0, current=(inf, 0.0)), r"current\[0\] is inf m/s; -5 to 5 m/s is allowed"),
         (lambda: Lake(level=0.0, wave=Wave(height=0.5, length=1.0)), "steeper than 0.142, where waves break"),

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from suchus.design.relief import Bumps, Step, Stone
+from suchus.design.ground import Bumps, Step, Stone
 from suchus.gaits import GAITS
 from suchus.land import ARENAS, Ground, Run, simulate
 from suchus.metrics import between, displacement, tilt

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
+from suchus.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
 from suchus.errors import InvalidDesign
 from suchus.model import compile_model
 

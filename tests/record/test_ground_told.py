@@ -7,8 +7,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design.ground import Ground
-from suchus.design.relief import ASIDE, CELL, REACH, Bumps, Step, Stone
+from suchus.design.ground import ASIDE, CELL, REACH, Bumps, Ground, Step, Stone
 from suchus.errors import IncompatibleRecord
 from suchus.land import VACUUM, Run, simulate
 from suchus.record import ground_of, ground_text, load, save

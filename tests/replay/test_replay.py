@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from suchus.design import LEGS
-from suchus.design.ground import Ground
-from suchus.design.relief import Bumps, Step, Stone, field
+from suchus.design.ground import Bumps, Ground, Step, Stone, field
 from suchus.errors import IncompatibleRecord
 from suchus.record import ground_text
 from suchus.replay import replay, save

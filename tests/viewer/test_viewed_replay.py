@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.design import LEGS
-from suchus.design.ground import Ground, slope
-from suchus.design.relief import Bumps, heights
+from suchus.design.ground import Bumps, Ground, heights, slope
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate

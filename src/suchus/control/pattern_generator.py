@@ -1,29 +1,108 @@
 """A central pattern generator: phase oscillators of axis and limbs that a single drive lets walk, then swim."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import radians
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
 from suchus.control.controller import Command, Runs
-from suchus.control.course import Course, Courses, members, mistake, number
 from suchus.control.limbs import LAWS, LimbLaw, Loads
 from suchus.control.oscillators import Oscillators, Rhythm, couple, cut
 from suchus.control.pattern_load import FeltDrive, LoadRule
 from suchus.control.pattern_posture import PatternPosture, initial_phases, waves
-from suchus.control.pattern_rules import Rules
 from suchus.control.sensed import Sensed
-from suchus.control.spine import SpineRule
-from suchus.control.tail import TailRule
+from suchus.control.spine import SpineController, SpineRule
+from suchus.control.tail import TailController, TailRule
 from suchus.design import Robot, layout
-from suchus.design.checks import Checks, require
+from suchus.design.checks import Checks, Course, require
 from suchus.design.scale import control_period
-from suchus.errors import InvalidDesign
+from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.motion import START, Gait, check_limits
 from suchus.progress import Progress, silent
+
+
+class Courses:
+    """What changes over time, for a batch; most of it is constant."""
+
+    def __init__(self, values: Sequence[Course]) -> None:
+        self._steady = np.array([0.0 if isinstance(one, tuple) else one for one in values], dtype=float)
+        tables = members([one if isinstance(one, tuple) else None for one in values])
+        self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
+
+    def at(self, time: float) -> Float[np.ndarray, " run"]:
+        """Return the values at a time [s]."""
+        found = self._steady.copy()
+        for (times, values), runs in self._tables:
+            found[runs] = np.interp(time, times, values)
+        return found
+
+
+def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
+    """Return each different key with the numbers of those that have it."""
+    found: dict[Any, list[int]] = {}
+    for i, key in enumerate(keys):
+        found.setdefault(key, []).append(i)
+    return [(key, np.array(runs)) for key, runs in found.items()]
+
+
+class Rules:
+    """The rules of spine and tail, for those runs of a batch that have them."""
+
+    def __init__(
+        self,
+        spines: Sequence[SpineRule | None],
+        tails: Sequence[TailRule | None],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        period: float,
+    ) -> None:
+        self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._spined = [i for i, one in enumerate(spines) if one is not None]
+        self._tailed = [i for i, one in enumerate(tails) if one is not None]
+        self._spine: SpineController | None = None
+        self._tail: TailController | None = None
+        if self._spined:
+            if not self._yaw:
+                raise UnsuitedRobot(
+                    f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
+                    "lacks them: leave spine out."
+                )
+            self._spine = SpineController([spines[i] for i in self._spined], [robots[i] for i in self._spined], period)
+        if self._tailed:
+            self._tail = TailController(
+                [tails[i] for i in self._tailed],
+                [robots[i] for i in self._tailed],
+                [_with_tail(robots[i], gaits[i]) for i in self._tailed],
+                period,
+            )
+
+    def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
+        """Return the targets as the rules change them."""
+        if self._spine is not None:
+            mine = targets[self._spined]
+            asked = mine[:, self._yaw].sum(axis=1)
+            targets[self._spined] = self._spine.correct(mine, asked, _felt(sensed, self._spined))
+        if self._tail is not None:
+            targets[self._tailed] = self._tail.correct(targets[self._tailed], _felt(sensed, self._tailed))
+        return targets
+
+
+def _with_tail(robot: Robot, gait: Gait) -> Gait:
+    if not (gait.has("tail pitch") and layout(robot).tail_pitch):
+        raise UnsuitedRobot(
+            f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "
+            f"'belly_crawl'; robot {robot.name!r} with gait {gait.name!r} lacks them: leave tail out."
+        )
+    return gait
+
+
+def _felt(sensed: Sensed, runs: list[int]) -> Sensed:
+    """Return the readings of some runs, as far as spine and tail read them."""
+    return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
+
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
 _LEAST = 1e-9  # [-]; an amplitude below this is none
@@ -79,17 +158,16 @@ class PatternGenerator:
 
     def __post_init__(self) -> None:
         with Checks("pattern_generator", self) as check:
-            for name, low, high in (("drive", 0.0, 10.0), ("asymmetry", -4.0, 4.0), ("steering", -1.0, 1.0)):
-                wrong = mistake(getattr(self, name), low, high)
-                check.that(not wrong, f"pattern_generator.{name} {wrong}")
-            wrong = mistake(self.gradient, 0.0, 10.0)
-            check.that(not wrong, f"pattern_generator.gradient {wrong}")
+            check.course("drive", 0.0, 10.0, "", start=0.0)
+            check.course("asymmetry", -4.0, 4.0, "", start=0.0)
+            check.course("steering", -1.0, 1.0, "", start=0.0)
+            check.course("gradient", 0.0, 10.0, "", over="place", start=0.0)
             check.number("steering_gain", 0.0, 1.0, "rad")
             if self.lag is not None:
                 check.number("lag", -0.5, 0.5, "cycle")
             if self.pace is not None:
                 check.number("pace", 1e-3, 1e3, "")
-            given = isinstance(self.initial, tuple) and all(number(one, -1e6, 1e6) for one in self.initial)
+            given = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
             check.that(
                 given or self.initial in ("gait", "random"),
                 f"pattern_generator.initial is {str(self.initial)[:80]!r}; gait, random or a phase for each oscillator "

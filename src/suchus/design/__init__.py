@@ -3,34 +3,31 @@
 from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
-from suchus.design.contact import Contact
-from suchus.design.hinge import Cable, Crank, Hinge, Spring, Turn
+from suchus.design.ground import Contact
+from suchus.design.hinge import Cable, Crank, Hinge, Servo, Spring, Turn
 from suchus.design.hull import Chamber, Foam, Hull
-from suchus.design.joints import (
-    LEGS,
-    LegName,
-    cable_joints,
-    fin_joints,
-    joint_names,
-    leg_joints,
-    servo_names,
-    spine_joints,
-)
 from suchus.design.layout import (
+    LEGS,
     Layout,
+    LegName,
     LimbPlace,
     behind_hips,
+    cable_joints,
+    fin_joints,
     front_segment,
     hips_ahead,
     hips_behind_snout,
+    joint_names,
     layout,
+    leg_joints,
+    servo_names,
     servo_ranges,
+    spine_joints,
 )
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.needs import ARTICLE_BODY, MEASURED, NEEDS, STANDING, check_needs, crocodile_like, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
-from suchus.design.servo import Servo
 from suchus.design.servos import with_servos, with_speed_lines, with_spring
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 

@@ -6,11 +6,10 @@ from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 
 from suchus.design.body import Robot
-from suchus.design.hinge import Cable, Hinge, Spring
+from suchus.design.hinge import Cable, Hinge, Servo, Spring
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.design.segment import Rod, Segment, Shell
-from suchus.design.servo import Servo
 from suchus.design.tables import LEG_SHARES, Head, Leg, Pelvis, Spine, Tables, Tail, Thorax, tail_segments
 from suchus.errors import InvalidDesign
 

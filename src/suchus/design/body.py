@@ -7,8 +7,8 @@ from math import fsum
 from typing import TypeVar
 
 from suchus.design.checks import Checks
-from suchus.design.contact import Contact
-from suchus.design.hinge import Cable, Hinge
+from suchus.design.ground import Contact
+from suchus.design.hinge import Cable, Hinge, Servo
 from suchus.design.hull import Hull
 from suchus.design.limb import Girdle
 from suchus.design.measures import (
@@ -26,7 +26,6 @@ from suchus.design.measures import (
     thorax_of,
 )
 from suchus.design.segment import Segment
-from suchus.design.servo import Servo
 from suchus.design.tables import Tables
 from suchus.errors import UnsuitedRobot
 

@@ -3,11 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf, isfinite
 from types import TracebackType
 from typing import Any
 
 from suchus.errors import InvalidDesign
 from suchus.kinds import misfits, show
+
+Course = float | tuple[tuple[float, float], ...]
+"""A number, or a table of time since the beginning of the run [s] and number; straight between, steady beyond."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +107,36 @@ class Checks:
         if not (row and all(a < b for a, b in pairwise(value))):
             limits = f"{_show(low)} to {_show(high, unit)}"
             self._complain(field, f"is {_show(value)}; increasing numbers within {limits} are needed, at least one")
+
+    def course(
+        self, field: str, low: float, high: float, unit: str, *, over: str = "time", start: float = -inf
+    ) -> None:
+        """Refuse what is neither a number within the bounds nor a table of rising times with such numbers.
+
+        Args:
+            field: holds a ``Course``.
+            low: least number.
+            high: greatest number.
+            unit: of the number.
+            over: what stands in the place of a time.
+            start: least time.
+        """
+        value = getattr(self._design, field)
+        if isinstance(value, (int, float)):
+            return self.number(field, low, high, unit)
+        rows = value if isinstance(value, tuple) else ()
+        pairs = bool(rows) and all(isinstance(row, tuple) and len(row) == 2 for row in rows)
+        times = [row[0] for row in rows] if pairs else []
+        within = pairs and all(_within(time, start, inf) and isfinite(time) for time in times)
+        within = within and all(_within(number, low, high) for _, number in rows)
+        if not (within and all(a < b for a, b in pairwise(times))):
+            limits, first = f"{_show(low)} to {_show(high, unit)}", "" if start == -inf else f" from {start:g} on"
+            self._complain(
+                field,
+                f"is {show(value)}; a number of {limits}, or pairs of a {over} and such a number are allowed, the "
+                f"{over}s rising{first}",
+            )
+        return None
 
     def that(self, holds: bool, text: str) -> None:
         """Refuse a combination of fields that does not hold, with a clause that says why."""

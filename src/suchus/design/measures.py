@@ -8,10 +8,9 @@ from functools import lru_cache
 from math import fsum, inf, isnan, nan, pi, tan
 from typing import TYPE_CHECKING, NamedTuple
 
-from suchus.design.hinge import Cable, Hinge, Spring
+from suchus.design.hinge import Cable, Hinge, Servo, Spring
 from suchus.design.limb import Girdle
 from suchus.design.segment import Rod, Segment, Shell
-from suchus.design.servo import Servo
 
 if TYPE_CHECKING:
     from suchus.design.body import Robot

@@ -12,11 +12,10 @@ from typing import Any, TypeVar
 
 from suchus.design.body import Robot
 from suchus.design.checks import require
-from suchus.design.contact import Contact
-from suchus.design.hinge import Spring
+from suchus.design.ground import Contact
+from suchus.design.hinge import Servo, Spring
 from suchus.design.meaning import meanings, unit
 from suchus.design.physics import GRAVITY
-from suchus.design.servo import Servo
 from suchus.errors import InvalidDesign
 
 T = TypeVar("T")

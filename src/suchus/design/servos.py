@@ -6,8 +6,7 @@ from typing import Any
 
 from suchus.design.article import remade
 from suchus.design.body import Robot
-from suchus.design.hinge import Hinge, Spring
-from suchus.design.servo import Servo
+from suchus.design.hinge import Hinge, Servo, Spring
 
 _LIMBS = ("girdles", "front_leg", "hind_leg")
 """Fields of a robot or of the article's tables that hold limbs."""

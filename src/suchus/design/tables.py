@@ -9,9 +9,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from suchus.design.checks import Checks
-from suchus.design.contact import Contact
+from suchus.design.ground import Contact
+from suchus.design.hinge import Servo
 from suchus.design.hull import Hull
-from suchus.design.servo import Servo
 
 LEG_SHARES = (0.60, 0.35, 0.05)
 """How a leg's mass is spread over femur, tibia and foot [-]."""

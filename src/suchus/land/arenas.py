@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from math import radians
 from types import MappingProxyType
 
-from suchus.design.ground import Ground
-from suchus.design.relief import Bumps, Step, Stone
+from suchus.design.ground import Bumps, Ground, Step, Stone
 
 BEFORE = 0.42
 """Where bumps begin, ahead of the hips at the start [m]: just ahead of the front feet."""

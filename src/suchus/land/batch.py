@@ -11,9 +11,8 @@ from mujoco.batch import Batch, SimulationError
 
 from suchus import hydro, threads
 from suchus.design import Robot, layout
-from suchus.design.ground import Ground
+from suchus.design.ground import Ground, Relief
 from suchus.design.pieces import pieces
-from suchus.design.relief import Relief
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.lake import Waters, gravity, up

@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 
 from suchus.design import Robot
+from suchus.design.checks import Course
 from suchus.design.water import Water
-from suchus.land.lake import Course, Lake
+from suchus.land.lake import Lake
 from suchus.land.prescribed import held_sections
 from suchus.motion import Swim
 

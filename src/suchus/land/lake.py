@@ -6,8 +6,7 @@ A ``Lake`` is the frozen value of one run; ``Waters`` are those of a batch, in t
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from itertools import pairwise
-from math import cos, isfinite, pi, sin, sqrt, tau
+from math import cos, pi, sin, sqrt, tau
 from typing import Any
 
 import numpy as np
@@ -15,13 +14,11 @@ from jaxtyping import Float
 
 from suchus import hydro
 from suchus.design import GRAVITY, Robot
-from suchus.design.checks import Checks
+from suchus.design.checks import Checks, Course
 from suchus.design.ground import Ground
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
 
-Course = float | tuple[tuple[float, float], ...]
-"""A number, or times [s] with the numbers there, linear in between and held before and after."""
 STEEPEST = 0.142
 """Height over length beyond which waves on deep water break [-]. Source: Michell 1893."""
 DEEPEST = 1000.0
@@ -92,8 +89,8 @@ class Lake:
             check.number("heel", -pi, pi, "rad")
             check.number("added_mass", 0.0, 10.0, "")
             check.number("shedding", 0.0, 10.0, "")
-            for name, low, high, unit in (("level", -DEEPEST, DEEPEST, "m"), ("air_fraction", 0.0, 1.0, "")):
-                check.that(*_course(name, getattr(self, name), low, high, unit))
+            check.course("level", -DEEPEST, DEEPEST, "m")
+            check.course("air_fraction", 0.0, 1.0, "")
 
     def at(self, time: float) -> tuple[float, float]:
         """Return level [m] and air fraction [-] at a time [s]."""
@@ -146,23 +143,6 @@ def check_lake(robot: Robot, lake: Lake) -> None:
             f"lake.air_fraction is {str(lake.air_fraction)[:60]}, and robot {robot.name!r} has no air that it could "
             "let out: leave air_fraction at 1, or give the robot a design.Hull with air."
         )
-
-
-def _course(name: str, course: Any, low: float, high: float, unit: str) -> tuple[bool, str]:
-    allowed = f"{low:g} to {high:g} {unit}".rstrip()
-    if isinstance(course, (int, float)) and not isinstance(course, bool):
-        return low <= course <= high, f"lake.{name} is {course:g} {unit}; {allowed} is allowed".replace(" ;", ";")
-    pairs = isinstance(course, tuple) and bool(course) and all(_pair(pair) for pair in course)
-    good = pairs and all(low <= value <= high for _, value in course)
-    rising = pairs and all(a[0] < b[0] for a, b in pairwise(course))
-    return good and rising, (
-        f"lake.{name} is {str(course)[:60]}; a number of {allowed}, or pairs of a time and such a number are allowed, "
-        "the times rising"
-    )
-
-
-def _pair(pair: Any) -> bool:
-    return isinstance(pair, tuple) and len(pair) == 2 and all(isinstance(x, (int, float)) and isfinite(x) for x in pair)
 
 
 def _now(course: Course, time: float) -> float:

@@ -10,8 +10,8 @@ import numpy as np
 
 from suchus.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Servo, Spring, layout
 from suchus.design.body import servos_of
+from suchus.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 from suchus.design.pieces import foam_centres
-from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 from suchus.design.segment import Point
 from suchus.errors import InvalidDesign
 from suchus.rotation import about

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from suchus.design import Robot, layout
+from suchus.design.ground import Relief
 from suchus.design.pieces import pieces
-from suchus.design.relief import Relief
 from suchus.errors import InvalidDesign
 from suchus.hydro import NUMBERS, column, packed
 from suchus.model.build import build

@@ -37,7 +37,7 @@ class BendAngles(NamedTuple):
 
 
 class JointSums(NamedTuple):
-    """The same bends as sums of joint angles in the signs of ``suchus.design.joints``."""
+    """The same bends as sums of joint angles in the signs of ``suchus.design.layout``."""
 
     spine_yaw: Any
     """Sum of the three yaw joints, front end left positive [rad]."""

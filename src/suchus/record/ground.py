@@ -6,8 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from suchus.design.ground import Ground
-from suchus.design.relief import Bumps, Step, Stone
+from suchus.design.ground import Bumps, Ground, Step, Stone
 from suchus.errors import IncompatibleRecord, SuchusError
 
 NAME = "stands_on"

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from suchus.design.joints import LEGS
+from suchus.design.layout import LEGS
 from suchus.errors import IncompatibleRecord
 
 _LARGEST, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off

@@ -1,6 +1,5 @@
 """A run on land or a swim as one HTML file: three-dimensional, plays offline, can be mailed."""
 
-from suchus.replay.page import replay, save
-from suchus.replay.wake import wake_replay
+from suchus.replay.page import replay, save, wake_replay
 
 __all__ = ["replay", "save", "wake_replay"]

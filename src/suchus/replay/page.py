@@ -1,23 +1,27 @@
-"""The page: a run packed into one HTML file with its player."""
+"""The page: a run or a swim in space, packed into one HTML file with its player."""
 
+import base64
 import json
 import re
-from collections.abc import Sequence
-from io import StringIO
+from collections.abc import Mapping, Sequence
+from io import BytesIO, StringIO
 from math import degrees
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
+from PIL import Image
 
 from suchus.design import Robot
 from suchus.design.ground import Ground
-from suchus.figures import limb_colours, panels, styled
+from suchus.figures import limb_colours, panels, styled, vortices
 from suchus.figures.posture import draw_posture
 from suchus.record import ground_of, new_file, versions
 from suchus.replay.frames import Frames, checked, frames
-from suchus.replay.scene import ARROW, KEYS, scene
+from suchus.replay.scene import ARROW, KEYS, PackedArrays, quantised, scene
 
 
 def replay(
@@ -65,7 +69,7 @@ def replay(
         keys=KEYS | {"legs": limb_colours(robot)},
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],
-        meta=Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c")),  # begins no tag, no comment
+        meta=_script(meta),
         data=data,
     )  # fmt: skip
 
@@ -96,6 +100,11 @@ def environment() -> Environment:
     for name, file in files.items():
         found.globals[name] = Markup(loader.get_source(found, file)[0])
     return found
+
+
+def _script(meta: Mapping[str, Any]) -> Markup:
+    """Return values as JSON that stands in a page: it begins no tag and no comment."""
+    return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
 
 def _on(grounds: Sequence[Ground]) -> str:
@@ -140,3 +149,80 @@ def _still(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
 
 def _text(record: xr.Dataset, name: str, otherwise: str) -> str:
     return str(record[name].values.ravel()[0]) if name in record.coords else otherwise
+
+
+LARGEST = 3_500_000
+"""Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""
+_COARSEST = 4
+
+
+def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> str:
+    """Return a cycle of a swim as an HTML page that plays offline and needs nothing else.
+
+    Args:
+        record: of ``water.resolved`` in space with frames, or of the experiment ``swim_3d``.
+        title: heading.
+        caption: one or two sentences: what there is to see.
+
+    Raises:
+        IncompatibleRecord: the record holds no vortices of a swim in three dimensions.
+    """
+    vortices.check_filmed(record)
+    meta, data = _swim_scene(record)
+    still = vortices.still(record, record.sizes["frame"] - 1)
+    drawn = BytesIO()
+    Image.fromarray(still).save(drawn, format="PNG", optimize=True)
+    picture = base64.b64encode(drawn.getvalue()).decode("ascii")
+    return environment().get_template("wake.html").render(
+        title=title or "A swim in three dimensions",
+        caption=" ".join(caption.split()),
+        alt=f"Three-dimensional replay of a swimming body and the vortices around it, {record.sizes['frame']} instants "
+        "of one cycle.",
+        still=picture,
+        limit=f"{meta['limit']:.3g}",
+        keys={"left": vortices.hexed(1.0), "right": vortices.hexed(-1.0)},
+        version=versions()["suchus"],
+        meta=_script(meta),
+        data=data,
+    )  # fmt: skip
+
+
+def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
+    """Return what the player gets, on the finest blocks whose surfaces are small enough."""
+    for coarse in range(1, _COARSEST + 1):
+        pack = PackedArrays()
+        meta = _packed_swim(record, pack, coarse)
+        if pack.size <= LARGEST or coarse == _COARSEST:
+            break
+    return meta, pack.text()
+
+
+def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, Any]:
+    limit = vortices.colour_limit(record)
+    found = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
+    middle = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])
+    scale = max(float(np.abs(one.points - middle).max(initial=0.0)) for one, _ in found) or 1.0
+    frames = []
+    for one, spin in found:
+        whole = np.round((one.points - middle) / scale * np.iinfo(np.int16).max).astype(np.int16)
+        shades = np.round(127.0 * np.clip(spin / limit, -1.0, 1.0)).astype(np.int8)
+        small = len(whole) <= np.iinfo(np.uint16).max
+        faces = pack.add(one.faces.astype(np.uint16 if small else np.uint32))
+        frames.append({"points": pack.add(whole), "spin": pack.add(shades), "faces": faces})
+    lines = {
+        name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES
+    }  # fmt: skip
+    return {
+        "frames": frames,
+        "phase": np.round(record.frame.values.astype(float), 4).tolist(),
+        "middle": np.round(middle, 6).tolist(),
+        "scale": scale,
+        "limit": limit,
+        "coarse": coarse,
+        "stations": record.sizes["station"],
+        "length": round(float(np.ptp(record.film_x.values[0])), 4),
+        "lines": {name: {"array": pack.add(values), "scale": size} for name, (values, size) in lines.items()},
+        "high": pack.add(record.half_height.values.astype(np.float32)),
+        "skin": vortices.SKIN,
+        "ramp": np.round(vortices.colours(np.linspace(-limit, limit, 9), limit), 4).tolist(),
+    }

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from suchus.design import GRAVITY, Robot, layout
-from suchus.design.ground import Ground, slope
-from suchus.design.relief import ASIDE, REACH, Bumps, Relief, Step, field
+from suchus.design.ground import ASIDE, REACH, Bumps, Ground, Relief, Step, field, slope
 from suchus.figures import COLOURS, limb_colours
 from suchus.metrics.gait import LOADED_SHARE
 from suchus.replay.frames import Frames

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from suchus.design import LEGS, Robot
-from suchus.design.relief import Relief, heights
+from suchus.design.ground import Relief, heights
 from suchus.rotation import about, multiply, rotate
 from suchus.skin.bones import Poses, bone_names
 from suchus.skin.surface import Skin, skin

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.cluster.vq import kmeans2
 
 from suchus.design import Robot, layout
-from suchus.design.relief import Relief
+from suchus.design.ground import Relief
 from suchus.model import compile_model, joint_addresses
 from suchus.skin import Poses, ankles, bone_names, footed
 

@@ -7,7 +7,7 @@ import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
 from suchus.design import Robot
-from suchus.design.relief import Relief
+from suchus.design.ground import Relief
 from suchus.fault import Fault
 from suchus.robots import beside_article
 from suchus.viewer.bodies import BodyPoses, pieces

@@ -9,7 +9,7 @@ import numpy as np
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Swimming
 from suchus.design import Robot, front_segment, layout
-from suchus.design.relief import Bumps
+from suchus.design.ground import Bumps
 from suchus.design.scale import coarse_step, control_period
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault

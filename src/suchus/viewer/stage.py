@@ -13,8 +13,7 @@ import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
 from suchus.design import GRAVITY, Robot, front_segment, layout
-from suchus.design.ground import slope
-from suchus.design.relief import Relief, heights
+from suchus.design.ground import Relief, heights, slope
 from suchus.fault import Fault
 from suchus.figures import COLOURS
 from suchus.figures.style import limb_colours

@@ -15,7 +15,7 @@ import xarray as xr
 from jaxtyping import Complex, Float
 
 from suchus.design import Robot, cable_joints
-from suchus.design.joints import fin_joints
+from suchus.design.layout import fin_joints
 from suchus.errors import InvalidDesign
 from suchus.motion import Swim
 from suchus.water.outline import MidlineCurve, Outline, summed

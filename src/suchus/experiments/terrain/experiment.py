@@ -12,7 +12,7 @@ import xarray as xr
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks
-from suchus.design.relief import Bumps, Relief, Step, Stone, profile
+from suchus.design.ground import Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
