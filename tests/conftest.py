@@ -17,7 +17,14 @@ from jaxtyping import install_import_hook
 import first_calls
 from left_out import COLLECTED
 
-CHECKED = ("suchus.kinematics", "suchus.motion.movement", "suchus.motion.limits", "suchus.control", "suchus.metrics")
+CHECKED = (
+    "suchus.kinematics",
+    "suchus.motion.axis",
+    "suchus.motion.movement",
+    "suchus.motion.limits",
+    "suchus.control",
+    "suchus.metrics",
+)
 """Rooms whose arrays' shapes are checked in the first calls of each test; production pays nothing."""
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6

@@ -124,7 +124,7 @@ def test_who_steers_refuses_measured_curves_in_a_sentence():
     assert not FILMED.has("steering")
     with pytest.raises(OutsideLimits, match="steering needs a gait of foot paths and bends"):
         FILMED.needs_steering("steering")
-    with pytest.raises(OutsideLimits, match="'animal_walk' is a table of angles"):
+    with pytest.raises(OutsideLimits, match="'animal_walk' has measured curves"):
         PatternPosture(SALAMANDER, FILMED, standing=True)
 
 

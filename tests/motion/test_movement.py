@@ -33,7 +33,8 @@ from suchus.motion import (
     suits,
     trunk_amplitude,
 )
-from suchus.motion.movement import foot_path, yaw_hinges
+from suchus.motion.axis import yaw_hinges
+from suchus.motion.movement import foot_path
 from suchus.robots import ROBOTS
 
 LEGS = ("LF", "RF", "LH", "RH")

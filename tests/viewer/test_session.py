@@ -319,7 +319,7 @@ def test_a_smaller_crocodile_has_the_sliders_of_its_gait_and_lower_bumps():
 def test_a_table_of_angles_has_nothing_to_turn_and_is_refused_in_a_sentence():
     robot, gait = ROBOTS["salamander"], GAITS["animal_walk"]
     assert knobs_of(robot, gait) == {}
-    with pytest.raises(OutsideLimits, match="is a table of angles: choose another gait"):
+    with pytest.raises(OutsideLimits, match="has measured curves: choose a gait"):
         Session(robot, gait)
 
 

@@ -26,7 +26,7 @@ from suchus.motion import (
     shortest_period,
     suits,
 )
-from suchus.motion.movement import yaw_hinges
+from suchus.motion.axis import yaw_hinges
 
 Duty = Literal["retraction", "contact"]
 """Share of the cycle that becomes the duty factor: feet going back along the body, or feet at rest on the ground.
@@ -112,10 +112,9 @@ def driven_share(robot: Robot) -> float:
     The end beyond it is passive: it follows by itself, and no command holds it. It is 1 without such an end.
     """
     place = layout(robot)
-    body = place.robot
     driven = {place.servos[i] for i in place.tail_yaw}
     driven |= {name for servo in place.cables for name in place.cable(servo).hinges}
-    behind = body.axis[body.root_place :]
+    behind = robot.axis[robot.root_place :]
     bent = [i for i, segment in enumerate(behind) if any(hinge.name in driven for hinge in segment.hinges)]
     lengths = [segment.front + segment.rear for segment in behind[1:]]
     if not bent or bent[-1] + 1 >= len(lengths):
@@ -187,7 +186,7 @@ def _most(robot: Robot, part: Literal["trunk", "tail"]) -> list[float]:
 
 def _stepping(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles, notes: list[str]) -> Gait:
     """Give the feet the measured paths in proportion to the trunk; what the limbs cannot follow becomes the base's."""
-    reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
+    reaches = [girdle.limb.reach for girdle in robot.girdles]
     lent = [_feet_of(limb, reach) for limb, reach in zip(base.limbs, reaches, strict=True)]
     feet = _feet(walk, robot, lent, girdles, notes)
     if walk.upright:
@@ -223,7 +222,7 @@ def _stepping(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles
 
 def _feet(walk: Walk, robot: Robot, lent: Sequence[_Feet], girdles: Girdles, notes: list[str]) -> list[_Feet]:
     """Return the measured paths of the feet at the robot's size."""
-    trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in layout(robot).robot.girdles]
+    trunk, sides = hips_ahead(robot, 0), [girdle.aside for girdle in robot.girdles]
     strokes, stroke = [trunk * mean_of(walk, "stroke", legs) for legs in _PAIRS], trunk * mean_of(walk, "stroke")
     if girdles == "alike" and abs(strokes[0] - strokes[1]) > 0.1 * stroke:
         notes.append(
@@ -252,7 +251,7 @@ def _feet_of(limb: object, reach: float) -> _Feet:
 
 def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
     """Return the gait with these paths of the feet; None where the robot cannot follow it."""
-    reaches = [girdle.limb.reach for girdle in layout(robot).robot.girdles]
+    reaches = [girdle.limb.reach for girdle in robot.girdles]
     try:
         limbs = tuple(
             replace(limb, **{field: _rounded(metres / reach) for field, metres in one._asdict().items()})  # type: ignore[arg-type]

@@ -10,8 +10,7 @@ from suchus import rotation
 from suchus.control.sensed import Sensed
 from suchus.design import Robot, hips_ahead, layout
 from suchus.design.checks import Checks
-
-_REACH = 0.175  # [m]; of the hind limbs of the article's robot
+from suchus.paper import LIMB_REACH
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,4 +84,4 @@ def _ahead(robot: Robot) -> list[float]:
 def _size(robot: Robot) -> float:
     """Return how long the hind limbs are beside those of the article's robot [-]."""
     limbs = layout(robot).limbs
-    return round(limbs[-1].girdle.limb.reach / _REACH, 9) if limbs else 1.0
+    return round(limbs[-1].girdle.limb.reach / LIMB_REACH, 9) if limbs else 1.0

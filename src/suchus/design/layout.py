@@ -70,7 +70,7 @@ class Layout:
     """Names, order and places of what a robot has. Places among servos and hinges are columns of arrays."""
 
     robot: Robot
-    """The robot in the general form."""
+    """The robot that it is the layout of."""
     bodies: tuple[LayoutBody, ...]
     """Every moving body; a parent stands before its children."""
     hinges: tuple[str, ...]
@@ -138,24 +138,23 @@ class Layout:
 @lru_cache(maxsize=256)
 def layout(robot: Robot) -> Layout:
     """Return the layout of a robot."""
-    body = robot
-    root = body.root_place
-    ahead = [_ahead_body(body, i) for i in range(root - 1, -1, -1)]
-    behind = [_behind_body(body, i) for i in range(root + 1, len(body.axis))]
-    bodies = [LayoutBody(body.root, -1, (0.0, 0.0, 0.0), 0.0, ())]
+    root = robot.root_place
+    ahead = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
+    behind = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
+    bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, ())]
     bodies += [_placed(one, i) for i, one in enumerate(ahead)]
     tips = []
-    for girdle, name, side in _pairs(body):
+    for girdle, name, side in _pairs(robot):
         parent = [one.name for one in bodies].index(girdle.segment)
         bodies += _limb_bodies(girdle, name, side, parent, len(bodies), bodies[parent].shift)
         tips.append(len(bodies) - 1)
     bodies += [_placed(one, -1 if i == 0 else len(bodies) - 1 + i) for i, one in enumerate(behind)]
-    limb_hinges = [(f"{name}_{hinge.name}", hinge) for girdle, name, _ in _pairs(body) for hinge in girdle.limb.hinges]
+    limb_hinges = [(f"{name}_{hinge.name}", hinge) for girdle, name, _ in _pairs(robot) for hinge in girdle.limb.hinges]
     axis_ahead = [(h.name, h) for one in ahead for h, _, _ in one.hinges]
     axis_behind = [(h.name, h) for one in behind for h, _, _ in one.hinges]
     all_hinges = [*limb_hinges, *axis_ahead, *axis_behind]
     hinges = tuple(name for name, _ in all_hinges)
-    servos = (*(name for name, hinge in all_hinges if hinge.servo is not None), *(cable.name for cable in body.cables))
+    servos = (*(name for name, hinge in all_hinges if hinge.servo is not None), *(cable.name for cable in robot.cables))
     turn = {name: hinge.turn for name, hinge in all_hinges}
     by_head = [name for name, _ in [*reversed(axis_ahead), *axis_behind]]
 
@@ -166,26 +165,26 @@ def layout(robot: Robot) -> Layout:
     yaws = among(by_head, "yaw")
     first = len(limb_hinges)
     return Layout(
-        robot=body,
+        robot=robot,
         bodies=tuple(bodies),
         hinges=hinges,
         servos=servos,
-        limbs=_limbs(body, hinges, servos, tips),
+        limbs=_limbs(robot, hinges, servos, tips),
         servo_hinges=tuple(hinges.index(name) if name in hinges else -1 for name in servos),
         ahead=slice(first, first + len(front)),
         behind=slice(first + len(front), len(hinges)),
         axial_yaw=yaws,
         axial_pitch=among(by_head, "pitch"),
         axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
-        axial_place=tuple(_place(body, servos[i]) for i in yaws),
+        axial_place=tuple(_place(robot, servos[i]) for i in yaws),
         trunk_yaw=tuple(i for i in among(front, "yaw") if bends_trunk(servos[i])),
-        trunk_pitch=among(_within(body, front), "pitch"),
+        trunk_pitch=among(_within(robot, front), "pitch"),
         tail_yaw=among(back, "yaw"),
         tail_pitch=among(back, "pitch"),
-        cables=tuple(range(len(servos) - len(body.cables), len(servos))),
+        cables=tuple(range(len(servos) - len(robot.cables), len(servos))),
         passive=tuple(i for i, (_, hinge) in enumerate(all_hinges) if hinge.servo is None),
-        trunk=tuple(segment.name for segment in reversed(body.axis[: root + 1])),
-        tail=tuple(segment.name for segment in body.axis[root + 1 :]),
+        trunk=tuple(segment.name for segment in reversed(robot.axis[: root + 1])),
+        tail=tuple(segment.name for segment in robot.axis[root + 1 :]),
     )
 
 
@@ -209,18 +208,17 @@ def servo_ranges(robot: Robot) -> np.ndarray:
 
 def front_segment(robot: Robot) -> str:
     """Return the name of the segment of the front girdle, or of the root of a robot without limbs."""
-    body = robot
-    return body.girdles[0].segment if body.girdles else body.root
+    return robot.girdles[0].segment if robot.girdles else robot.root
 
 
 def hips_behind_snout(robot: Robot, girdle: int) -> float:
     """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
-    body, ahead = robot, 0.0
-    for segment in body.axis:
-        if segment.name == body.girdles[girdle].segment:
-            return ahead + segment.front - body.girdles[girdle].at
+    ahead = 0.0
+    for segment in robot.axis:
+        if segment.name == robot.girdles[girdle].segment:
+            return ahead + segment.front - robot.girdles[girdle].at
         ahead += segment.front + segment.rear
-    raise UnknownName("segment", body.girdles[girdle].segment, [one.name for one in body.axis])
+    raise UnknownName("segment", robot.girdles[girdle].segment, [one.name for one in robot.axis])
 
 
 def behind_hips(robot: Robot) -> float:
@@ -230,13 +228,12 @@ def behind_hips(robot: Robot) -> float:
 
 def hips_ahead(robot: Robot, girdle: int) -> float:
     """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
-    body = robot
-    if girdle == len(body.girdles) - 1:
+    if girdle == len(robot.girdles) - 1:
         return 0.0
-    names, distance = [segment.name for segment in body.axis], -body.girdles[-1].at
-    for place in range(body.root_place, names.index(body.girdles[girdle].segment), -1):
-        distance += body.axis[place].front + body.axis[place - 1].rear
-    return distance + body.girdles[girdle].at
+    names, distance = [segment.name for segment in robot.axis], -robot.girdles[-1].at
+    for place in range(robot.root_place, names.index(robot.girdles[girdle].segment), -1):
+        distance += robot.axis[place].front + robot.axis[place - 1].rear
+    return distance + robot.girdles[girdle].at
 
 
 def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:

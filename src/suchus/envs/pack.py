@@ -297,7 +297,7 @@ class Pack:
         if 0.0 < self.task.least_height > height:
             return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
-        root = layout(self.task.robot).robot.root
+        root = self.task.robot.root
         return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
 
 

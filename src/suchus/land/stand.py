@@ -80,7 +80,7 @@ def _model(robot: Robot, joint: str, timestep: float) -> mujoco.MjModel:
     if spec.joint(joint) is None:
         raise InvalidDesign(f"servo {joint!r} turns no joint of its own; name one that does.")
     spec.delete(spec.joint("root"))
-    spec.body(layout(robot).robot.root).pos = [0.0, 0.0, _HEIGHT]
+    spec.body(robot.root).pos = [0.0, 0.0, _HEIGHT]
     spec.option.gravity = [0.0, 0.0, 0.0]
     hinge = mujoco.mjtObj.mjOBJ_JOINT
     spec.add_equality(name=_GRIP, type=mujoco.mjtEq.mjEQ_JOINT, objtype=hinge, name1=joint, active=False)

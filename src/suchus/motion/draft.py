@@ -12,10 +12,11 @@ from suchus.design import Crank, Girdle, Limb, Robot, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
+from suchus.motion.axis import yaw_hinges
 from suchus.motion.draft_table import is_upright, table_walk
 from suchus.motion.gait import Bend, FootPath, Gait, Sweep
 from suchus.motion.limits import check_limits, shortest_period
-from suchus.motion.movement import foot_path, yaw_hinges
+from suchus.motion.movement import foot_path
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
 _HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
@@ -47,7 +48,7 @@ def draft_gait(robot: Robot, name: str) -> Gait:
     Raises:
         OutsideLimits: no path was found that all limbs reach within their ranges.
     """
-    girdles = layout(robot).robot.girdles
+    girdles = robot.girdles
     phases = tuple(0.5 * ((i + right) % 2) for i in range(len(girdles)) for right in (0, 1))
     period = _PERIOD * gravity_time(robot.length)
     if not girdles:
@@ -68,7 +69,7 @@ def draft_gait(robot: Robot, name: str) -> Gait:
 
 def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
     """Return the first walk of those that are tried, the longest strokes first."""
-    girdles = layout(robot).robot.girdles
+    girdles = robot.girdles
     clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
     axis = _axis(robot)
     for stroke in _STROKES:
@@ -105,12 +106,11 @@ def _undulation(robot: Robot, name: str, period: float) -> Gait:
 
 def _heights(robot: Robot) -> list[float]:
     """Return heights of the hindmost hips [limb reach]: those first at which the belly is clear, cranks' own alone."""
-    body = layout(robot).robot
-    hind = body.girdles[-1]
+    hind = robot.girdles[-1]
     if _is_crank(hind.limb):
         _, depth = _down(hind.limb)
         return [(depth * cos(_STANCE / 4) + hind.limb.foot.radius) / hind.limb.reach]
-    belly = max(shape.bottom for segment in body.axis for shape in segment.shapes) + hind.above
+    belly = max(shape.bottom for segment in robot.axis for shape in segment.shapes) + hind.above
     clear = [h for h in _HEIGHTS if h * hind.limb.reach > belly + 0.05 * hind.limb.reach]
     return [*clear, *(h for h in sorted(_HEIGHTS, reverse=True) if h not in clear)]
 
@@ -122,7 +122,7 @@ def _does(
     limb = girdle.limb
     if _is_crank(limb):
         return Sweep(stance=_STANCE, down=_down(limb)[0])
-    hind = layout(robot).robot.girdles[-1]
+    hind = robot.girdles[-1]
     down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
     lift = round(_LIFT * stroke, 4)
     closed = limb_kinematics.kind(limb) != "other"

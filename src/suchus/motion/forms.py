@@ -15,9 +15,9 @@ import numpy as np
 from suchus.design import LEGS, Limb, Robot, check_needs, layout
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
+from suchus.motion.axis import Waves, yaw_hinges
 from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Sweep
 from suchus.motion.limits import check_limits, check_speeds
-from suchus.motion.movement import Waves, yaw_hinges
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
@@ -340,7 +340,7 @@ class FootPathByPlane:
 
     def limbs(self, robot: Robot, girdle: int) -> FootPath:
         """Return the path; a limb of yaw, pitch and knee has no plane."""
-        hinges = len(layout(robot).robot.girdles[girdle].limb.hinges)
+        hinges = len(robot.girdles[girdle].limb.hinges)
         swivel = self.plane if hinges > len(("yaw", "pitch", "knee")) else 0.0
         return FootPath(stroke=self.stroke, lift=self.lift, outward=self.outward, ahead=self.ahead, swivel=swivel)
 
@@ -405,7 +405,7 @@ class GaitByPlaces:
 
 
 def _check_girdles(robot: Robot, name: str, count: int) -> None:
-    girdles = layout(robot).robot.girdles
+    girdles = robot.girdles
     if len(girdles) != count:
         raise OutsideLimits(
             f"gait {name!r} is for {count} pairs of limbs; robot {robot.name!r} has {len(girdles)}: choose a gait made "
@@ -419,7 +419,7 @@ def limb_reaches(robot: Robot) -> tuple[float, float]:
     Raises:
         OutsideLimits: it has not two pairs of limbs.
     """
-    girdles = layout(robot).robot.girdles
+    girdles = robot.girdles
     if len(girdles) != 2:
         raise OutsideLimits(
             f"a gait in metres is for two pairs of limbs; robot {robot.name!r} has {len(girdles)}: choose a gait made "

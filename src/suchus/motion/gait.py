@@ -247,8 +247,8 @@ class Gait:
         """
         if not self.has("steering"):
             raise OutsideLimits(
-                f"{what} needs a gait of foot paths and bends; gait {self.name!r} is a table of angles: choose another "
-                "gait, as 'salamander_walk', or walk it in open loop."
+                f"{what} needs a gait of foot paths and bends; gait {self.name!r} has measured curves: choose a gait "
+                "without, or an experiment that walks it in open loop."
             )
 
     def scaled(self, length: float) -> "Gait":

@@ -6,8 +6,9 @@ import numpy as np
 
 from suchus.design import Robot, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
-from suchus.motion.gait import Bend, Curve, Gait, Part, ServoPart
-from suchus.motion.movement import Movement, at_knot, cycle_targets, movement, yaw_hinges
+from suchus.motion.axis import at_knot, yaw_hinges
+from suchus.motion.gait import MOST_ANGLES, Bend, Curve, Gait, Part, ServoPart
+from suchus.motion.movement import Movement, cycle_targets, movement
 
 SAMPLES = 128
 """Looks over a cycle [-]."""
@@ -47,8 +48,9 @@ def _check_cables(here: Movement, clock: np.ndarray) -> None:
         most, limit = float(np.abs(here.yaw.whole(among, bends)).max()), here.place.cable(servo).bend_limit
         if most > limit + _ROUNDING:
             raise OutsideLimits(
-                f"gait {here.gaits[0].name!r} bends the tail by {most:.3f} rad; robot {here.robot.name!r} allows up to "
-                f"{limit:.3f} rad: lower tail_bend."
+                f"gait {here.gaits[0].name!r} asks the hinges of cable {here.place.servos[servo]} of robot "
+                f"{here.robot.name!r} for a bend of {most:.3f} rad together; up to {limit:.3f} rad is allowed: let "
+                "its axis bend less."
             )
 
 
@@ -71,7 +73,7 @@ def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
     targets = cycle_targets(robot, gait, np.arange(_SPEED_SAMPLES + 1) / _SPEED_SAMPLES)
     turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _SPEED_SAMPLES  # [rad/cycle]
     servos = layout(robot).servos
-    needed = turns / np.array([layout(robot).robot.servo(servo).speed for servo in servos])
+    needed = turns / np.array([robot.servo(servo).speed for servo in servos])
     slowest = int(np.argmax(needed))
     return float(needed[slowest]), servos[slowest]
 
@@ -127,7 +129,7 @@ def excess(robot: Robot, gait: Gait) -> float:
     endless = np.isinf(ranges).any(axis=1)
     turns[:, endless] = (turns[:, endless] + np.pi) % (2 * np.pi) - np.pi  # a crank's angle jumps once a turn
     turned = np.abs(turns).max(axis=0) * SAMPLES / gait.period
-    fast = np.array([here.place.robot.servo(name).speed for name in here.place.servos])
+    fast = np.array([robot.servo(name).speed for name in here.place.servos])
     far = float(away.max(axis=0).sum()) if limbs.shape[1] else 0.0
     return float(far / _LENGTH + beyond.sum() / _ANGLE + np.maximum(turned - fast, 0.0).sum() / _SPEED)
 
@@ -141,12 +143,13 @@ def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
     Args:
         robot: the design.
         gait: the gait, which the robot can follow.
-        samples: of one cycle [-].
+        samples: of one cycle, at most ``MOST_ANGLES`` are taken [-].
 
     Raises:
         OutsideLimits: the robot cannot follow it.
     """
-    clock = np.arange(min(samples, 1000)) / min(samples, 1000)
+    samples = min(samples, MOST_ANGLES)
+    clock = np.arange(samples) / samples
     named = zip(layout(robot).servos, cycle_targets(robot, gait, clock).T, strict=True)
     moved = {name: curve[:1] if np.ptp(curve) < 1e-9 else curve for name, curve in named}
     parts = servo_parts(robot)

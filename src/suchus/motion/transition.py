@@ -11,8 +11,9 @@ from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.motion.gait import Gait
 from suchus.motion.movement import Steer, movement
+from suchus.paper import LIMB_REACH
 
-MEETING = 0.090 / 0.175
+MEETING = 0.090 / LIMB_REACH
 """Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
 RAISED = 0.2
 """How high limbs are lifted while they turn [reach of the hindmost limb]."""

@@ -97,6 +97,8 @@ FEMUR = LEG_CHAIN.a[2]
 """From hip to knee, a2 [m]."""
 TIBIA = LEG_CHAIN.a[3]
 """From knee to the end of the shank, a3 [m]."""
+LIMB_REACH = FEMUR + TIBIA
+"""From hip to the end of the shank of a stretched hind leg [m]."""
 SPINE_BASE = SPINE_CHAIN.a[0]
 """From the hind girdle's axis to the first spine joint, a0 [m]."""
 SPINE_LINK = SPINE_CHAIN.a[1]

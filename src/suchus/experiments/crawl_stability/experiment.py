@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import layout
 from suchus.design.scale import coarse_step
 from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
 from suchus.experiments._replayed import replayed
@@ -101,7 +100,7 @@ class CrawlStability(TwoGroups):
 
     def _stroke(self) -> float:
         """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
-        girdles = zip(layout(self.robot).robot.girdles, self.control.limbs, strict=False)
+        girdles = zip(self.robot.girdles, self.control.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
     def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:

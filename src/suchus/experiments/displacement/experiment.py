@@ -199,7 +199,7 @@ class Displacement(TwoGroups):
 
     def _stroke(self) -> float:
         """Return half the distance that a front foot moves back in stance [m]."""
-        girdles = zip(layout(self.robot).robot.girdles, self.gait.limbs, strict=True)
+        girdles = zip(self.robot.girdles, self.gait.limbs, strict=True)
         return next((girdle.limb.reach * limb.stroke for girdle, limb in girdles if isinstance(limb, FootPath)), 0.0)
 
     def _article(self) -> bool:

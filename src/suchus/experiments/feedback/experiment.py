@@ -119,7 +119,7 @@ class Feedback(Experiment):
         """Return the robot's own gait, and a kick for each of its limbs.
 
         Raises:
-            OutsideLimits: its own gait is a table of angles.
+            OutsideLimits: its own gait has measured curves.
         """
         own = own_gait(robot)
         own.needs_steering(self.name())
@@ -167,7 +167,7 @@ class Feedback(Experiment):
     @property
     def _front(self) -> str:
         """The segment of the foremost girdle."""
-        return layout(self.robot).robot.girdles[0].segment
+        return self.robot.girdles[0].segment
 
     @property
     def _pushed(self) -> float:

@@ -235,7 +235,7 @@ class JointFaults(Experiment):
     @property
     def _failing(self) -> tuple[str, ...]:
         """The joints whose loss is repeated, steered and locked in several places."""
-        return self._joints[: _OF_A_LIMB * len(layout(self.robot).robot.girdles)]
+        return self._joints[: _OF_A_LIMB * len(self.robot.girdles)]
 
     @property
     def _lifts(self) -> bool:

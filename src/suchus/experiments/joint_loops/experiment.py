@@ -90,7 +90,7 @@ class JointLoops(Experiment):
             test=list(TESTS),
             time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
         )
-        kp = layout(self.robot).robot.servo(self.joint).kp
+        kp = self.robot.servo(self.joint).kp
         attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
         return Simulated(record=data.assign_attrs(attrs))
 
@@ -198,8 +198,8 @@ def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset
         robot: whose gains the runs share.
         forward: displacement of each run [m].
     """
-    names, body = layout(robot).servos, layout(robot).robot
-    kp, kd = (xr.DataArray([getattr(body.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
+    names = layout(robot).servos
+    kp, kd = (xr.DataArray([getattr(robot.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
     walk = walk.sel(servo=list(names))
     error = walk.servo_target - walk.servo_angle
     first = walk.isel(run=0)
