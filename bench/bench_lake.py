@@ -17,10 +17,11 @@ from suchus.control import Swimming
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run
 from suchus.land.loop import Loop, physics_steps
-from suchus.motion import LIMBS_BACK, Swim
+from suchus.robots import ROBOTS
+from suchus.water import fit, printed_wave
 
 RUNS, TICKS, TURNS, WARM = 8, 20, 24, 3  # TICKS control periods in a turn; the first WARM turns do not count
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
+WAVE = fit(ROBOTS["caiman"], printed_wave(ROBOTS["caiman"], frequency=1.0)).gait
 GAIT = GAITS["belly_crawl"]
 ARMS = {
     "dry": {"robot": "caiman"},
@@ -29,7 +30,8 @@ ARMS = {
     "swimming": {
         "robot": "floating_caiman",
         "lake": Lake(level=2.0),
-        "control": Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1]),
+        "gait": WAVE,
+        "control": Swimming(),
     },
 }
 FIRST = """
@@ -46,7 +48,9 @@ class Arm:
     """A batch that is stepped turn by turn."""
 
     def __init__(self, arm: dict) -> None:
-        runs = [Run(gait=GAIT, seed=i, noise=1e-6, **arm) for i in range(RUNS)]  # noise: no two of them go alike
+        runs = [
+            Run(**{"gait": GAIT, "seed": i, "noise": 1e-6} | arm) for i in range(RUNS)
+        ]  # noise: no two of them go alike
         samples = (WARM + TURNS) * TICKS
         self.steps = physics_steps(0.002)
         self.loop = Loop(runs, 0.002, ticks=samples)

@@ -21,7 +21,7 @@ from suchus.figures import COLOURS, panels, styled
 from suchus.jobs import conduct_sweep
 from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
-from suchus.motion import Swim
+from suchus.motion import Gait
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil, scaled
@@ -74,7 +74,7 @@ class Case:
     """What is done to it."""
     cells: int = GRIDS[0]
     """Cells per body length [-]."""
-    swim: Swim
+    swim: Gait
     """Its motion; that of a towed body does not count."""
     speed: float = 0.0
     """Of a towed body [m/s]."""
@@ -85,16 +85,16 @@ class Case:
         return SwimSetting(axes=3, cells=self.cells, viscosity=VISCOSITY, cycles=cycles, free=free)
 
 
-def motions() -> dict[str, Swim]:
+def motions() -> dict[str, Gait]:
     """Return the motions by name, the whole wave of (20) first."""
-    whole = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
+    whole = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
     return {
         "whole wave": whole,
         "half the amplitude": scaled(whole, 0.5, whole.frequency),
         "half the frequency": scaled(whole, 1.0, 0.5 * whole.frequency),
-        "trunk only": whole.trunk_only(),
-        "tail only": whole.tail_only(),
-        "as printed": fit(ROBOT, printed_wave(ROBOT, "I", sign=1)).swim,
+        "trunk only": whole.straightened("tail"),
+        "tail only": whole.straightened("trunk"),
+        "as printed": fit(ROBOT, printed_wave(ROBOT, "I", sign=1)).gait,
     }
 
 
@@ -216,7 +216,7 @@ def _on_grids(values: Sequence[float]) -> dict[str, Any]:
     return {"values": list(values), "foretold": float(line(1.0 / FINEST)), "limit": float(line(0.0))}
 
 
-def _held(swim: Swim, flow: xr.Dataset, one: WaterCoefficients) -> xr.Dataset:
+def _held(swim: Gait, flow: xr.Dataset, one: WaterCoefficients) -> xr.Dataset:
     """Return what the model of the runs says with coefficients of a body that is held as in a flow."""
     return held_sections(ROBOT, swim, one.lake(VISCOSITY), **_head(flow))
 
@@ -242,7 +242,7 @@ def numbers(kind: str, flow: xr.Dataset) -> dict[str, float]:
 
 
 def _beside(
-    found: Found, kind: str, name: str, swims: Mapping[str, Swim], both: Sequence[WaterCoefficients]
+    found: Found, kind: str, name: str, swims: Mapping[str, Gait], both: Sequence[WaterCoefficients]
 ) -> dict[str, list[float]]:
     """Return, by quantity, what the flow says, the model of the runs and the fitted one."""
     flow = found[kind, name, GRIDS[0]]

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from suchus.land import crawl as crawl
     from suchus.land import simulate as simulate
     from suchus.motion import Gait as Gait
-    from suchus.motion import Swim as Swim
+    from suchus.motion import swimming_gait as swimming_gait
     from suchus.robots import ROBOTS as ROBOTS
     from suchus.sources import project as project
     from suchus.study import MEASURES as MEASURES
@@ -74,7 +74,7 @@ _HOMES = {
     "GAITS": "suchus.gaits",
     "ROBOTS": "suchus.robots",
     "Gait": "suchus.motion",
-    "Swim": "suchus.motion",
+    "swimming_gait": "suchus.motion",
     "project": "suchus.sources",
     "swim": "suchus.water",
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.felt import felt as feels
 from tests.start_batch import start_batch
+from tests.swims import crocodile_swim
 
 from suchus.control import Amphibious, HeadingHold, HeadingRule, Sensed, Swimming
 from suchus.control.holding import DepthHold
@@ -13,12 +14,12 @@ from suchus.design import layout
 from suchus.errors import InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
-from suchus.motion import START, Swim
+from suchus.motion import LIMBS_UP, START
 from suchus.robots import ROBOTS
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
-WAY = Amphibious(swim=Swimming(swim=WAVE), memory=0.1, change=0.5, patience=0.2)
+WAVE = crocodile_swim(limbs=LIMBS_UP)
+WAY = Amphibious(swim=WAVE, memory=0.1, change=0.5, patience=0.2)
 GAIT = GAITS["low_crawl"]
 BEGIN = round(START / PERIOD)
 
@@ -108,7 +109,7 @@ def test_a_touch_shorter_than_the_memory_is_not_felt():
 
 def test_limbs_step_only_while_it_walks_and_postures_go_over_without_a_jump():
     machine = begun()
-    swims = start_batch(Swimming(swim=WAVE), [ROBOT], [GAIT], [0], 3000, PERIOD)
+    swims = start_batch(Swimming(), [ROBOT], [WAVE], [0], 3000, PERIOD)
     before, last, phases = [], None, []
     for tick in range(BEGIN, BEGIN + 300):
         command = machine.command(tick, sensed(0.0 if tick < BEGIN + 100 else 0.5))
@@ -224,7 +225,7 @@ def test_what_others_of_its_batch_do_changes_nothing():
         (lambda: replace(WAY, afloat=0.9), "aground must be the greatest"),
         (lambda: replace(WAY, air_released=2.0), "air_released is 2"),
         (lambda: replace(WAY, change=0.0), "change is 0 s"),
-        (lambda: replace(WAY, swim=Swimming(swim=WAVE, depth=DepthHold(depth=1.0))), "leave out swim.depth"),
+        (lambda: replace(WAY, swimming=Swimming(depth=DepthHold(depth=1.0))), "leave out swimming.depth"),
         (
             lambda: start_batch(replace(WAY, air_released=0.5), [ROBOTS["caiman"]], [GAIT], [0], 10, PERIOD),
             "no air that it could let out",

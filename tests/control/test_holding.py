@@ -6,20 +6,19 @@ import numpy as np
 import pytest
 from tests.felt import felt as feels
 from tests.start_batch import start_batch
+from tests.swims import crocodile_swim
 
 from suchus.control import DepthHold, HeadingHold, Swimming
 from suchus.control.holding import Depths, Headings, neutral_air_fraction
 from suchus.design import WATER_DENSITY
 from suchus.design.pieces import volumes
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
-from suchus.motion import LIMBS_BACK, Swim
 from suchus.robots import ROBOTS
 from suchus.rotation import about
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
+WAVE = crocodile_swim()
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -115,11 +114,8 @@ def test_a_weight_that_is_not_known_is_learnt():
 
 
 def test_a_swim_holds_heading_and_depth_in_the_water():
-    held = Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=0.4), depth=DepthHold(depth=0.5))
-    runs = [
-        Run(robot=ROBOT, gait="belly_crawl", lake=Lake(level=2.0), control=control)
-        for control in (held, Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1]))
-    ]
+    held = Swimming(heading=HeadingHold(direction=0.4), depth=DepthHold(depth=0.5))
+    runs = [Run(robot=ROBOT, gait=WAVE, lake=Lake(level=2.0), control=control) for control in (held, Swimming())]
     record = simulate(runs, duration=20.0, timestep=0.005, every=10)
     end = record.sel(time=slice(17.0, None))
     course = end.centre_of_mass.isel(time=-1) - end.centre_of_mass.isel(time=0)
@@ -146,9 +142,9 @@ def test_a_swim_holds_heading_and_depth_in_the_water():
         ),
         (
             lambda: start_batch(
-                Swimming(swim=WAVE, heading=HeadingHold(trunk_turn=3.0)),
+                Swimming(heading=HeadingHold(trunk_turn=3.0)),
                 [ROBOT],
-                [GAITS["belly_crawl"]],
+                [WAVE],
                 [0],
                 10,
                 PERIOD,

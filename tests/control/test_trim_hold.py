@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.felt import felt as feels
 from tests.start_batch import start_batch
+from tests.swims import crocodile_swim
 
 from suchus import rotation
 from suchus.control import DepthHold, PitchHold, Sensed, Swimming
@@ -15,15 +16,13 @@ from suchus.control.holding import neutral_air_fraction
 from suchus.control.trim import Pitches
 from suchus.design.pieces import chambers
 from suchus.errors import InvalidDesign
-from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
-from suchus.motion import LIMBS_BACK, Swim
 from suchus.robots import ROBOTS
 from suchus.rotation import about
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 IN_FOAM = replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
+WAVE = crocodile_swim()
 FAST = {"memory": 0.0, "pump": 100.0, "integral_gain": 0.0}
 AIR = np.array(chambers(ROBOT))
 LEFT = np.array([0.0, 1.0, 0.0])
@@ -110,9 +109,9 @@ def test_a_moment_that_stays_is_learnt():
 
 
 def test_a_swim_at_depth_is_level_and_with_the_air_in_its_foam_nose_up():
-    swim = Swimming(swim=WAVE, limb_pitch=LIMBS_BACK[1], depth=DepthHold(depth=0.5))
+    swim = Swimming(depth=DepthHold(depth=0.5))
     runs = [
-        Run(robot=robot, gait="belly_crawl", lake=Lake(level=2.0), control=control)
+        Run(robot=robot, gait=WAVE, lake=Lake(level=2.0), control=control)
         for robot, control in ((ROBOT, replace(swim, pitch=PitchHold())), (IN_FOAM, swim))
     ]
     record = simulate(runs, duration=14.0, timestep=0.005, every=10)
@@ -132,12 +131,12 @@ def test_a_swim_at_depth_is_level_and_with_the_air_in_its_foam_nose_up():
     [
         (lambda: PitchHold(pitch=2.0), "pitch_hold.pitch is 2 rad"),
         (lambda: PitchHold(pump=0.0), "pitch_hold.pump is 0 1/s"),
-        (lambda: Swimming(swim=WAVE, pitch=PitchHold()), "swimming.depth is None; give it a DepthHold"),
+        (lambda: Swimming(pitch=PitchHold()), "swimming.depth is None; give it a DepthHold"),
         (
             lambda: start_batch(
-                Swimming(swim=WAVE, depth=DepthHold(depth=1.0), pitch=PitchHold()),
+                Swimming(depth=DepthHold(depth=1.0), pitch=PitchHold()),
                 [replace(ROBOT, hull=replace(ROBOT.hull, foam=one_sided(), air=3e-4, chambers=()))],
-                [GAITS["belly_crawl"]],
+                [WAVE],
                 [0],
                 10,
                 PERIOD,

@@ -10,14 +10,16 @@ from scipy.spatial.transform import Rotation
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
 
 from suchus import envs  # noqa: E402
-from suchus.control import Amphibious, HeadingHold, HeadingRule  # noqa: E402
-from suchus.design import with_speed_lines  # noqa: E402, crocodile
+from suchus.control import Amphibious, HeadingHold, HeadingRule, Swimming  # noqa: E402
+from suchus.design import with_speed_lines  # noqa: E402
 from suchus.envs.pack import Pack  # noqa: E402
 from suchus.envs.senses import felt  # noqa: E402
-from suchus.envs.task import swimming  # noqa: E402
+from suchus.envs.task import swim_of  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.land import Ground, Lake, Wave  # noqa: E402
 from suchus.land.lake import up  # noqa: E402
+from suchus.motion import cycle_targets  # noqa: E402
+from suchus.robots import ROBOTS  # noqa: E402
 
 SWIM, SHORE = envs.TASKS["Swim"], envs.TASKS["Shore"]
 NEAR = envs.Goal(distance=0.4, within=0.1, bearing=0.3)
@@ -137,8 +139,7 @@ def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways
     envs.part(seen, "goal_direction", SWIM.robot)[:] = [1.0, 0.0, 0.0]
     straight = swim(seen)
     assert np.abs(straight).max() < 1.0
-    motion = swimming(SWIM.robot, None)
-    expected = motion.targets(SWIM.robot, clock + SWIM.decision)
+    expected = cycle_targets(SWIM.robot, swim_of(SWIM.robot, None), clock + SWIM.decision)
     np.testing.assert_allclose(np.array(centre) + SWIM.span * straight, expected, atol=1e-12)
     envs.part(seen, "goal_direction", SWIM.robot)[:] = [0.0, 1.0, 0.0]
     left = swim(seen)
@@ -164,16 +165,18 @@ def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
 def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_held():
     near = replace(SWIM, goal=replace(NEAR, bearing=0.0), jitter=0.0)
     centre = tuple(Pack(near, 1).centre)
-    control = replace(swimming(SWIM.robot, None), ramp=1.0, heading=HeadingHold())
-    played = envs.play(near, envs.Controlled(near, centre, control, steps=100), episodes=1, steps=100)
+    control, gait = Swimming(heading=HeadingHold()), swim_of(SWIM.robot, None)
+    policy = envs.Controlled(near, centre, control, steps=100, gait=gait)
+    played = envs.play(near, policy, episodes=1, steps=100)
     assert played.goal.all()
     away = replace(control, heading=HeadingHold(direction=1.5))
-    played = envs.play(near, envs.Controlled(near, centre, away, steps=100), episodes=1, steps=100)
+    policy = envs.Controlled(near, centre, away, steps=100, gait=gait)
+    played = envs.play(near, policy, episodes=1, steps=100)
     assert not played.goal.any()
 
 
 def test_the_clock_goes_with_the_swimming_motion():
-    slow = replace(swimming(SWIM.robot, None).swim, frequency=0.5)
+    slow = replace(swim_of(SWIM.robot, None), period=2.0)
     assert (SWIM.period, replace(SWIM, swim=slow).period) == (pytest.approx(1.0), pytest.approx(2.0))
     assert envs.TASKS["Crawl"].period == envs.TASKS["Crawl"].gait.period
 
@@ -182,8 +185,8 @@ def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_mor
     steep = radians(12)  # a shorter way, and less to compute, than that of the task
     near = replace(SHORE, ground=Ground(uphill=steep), lake=Lake(level=1.1 * sin(steep)), goal=envs.Landing(beyond=0.1))
     centre = tuple(Pack(near, 1).centre)
-    swim = replace(swimming(near.robot, None), ramp=1.0, heading=HeadingHold())
-    control, steps = Amphibious(swim=swim, heading=HeadingRule()), 400
+    holds = Swimming(heading=HeadingHold())
+    control, steps = Amphibious(swim=swim_of(near.robot, None), swimming=holds, heading=HeadingRule()), 400
     comes = envs.play(near, envs.Controlled(near, centre, control, steps=steps), episodes=1, steps=steps)
     rests = envs.play(near, envs.Still(near), episodes=1, steps=40)
     assert comes.goal.all()
@@ -226,16 +229,32 @@ def test_servos_lose_torque_with_speed_in_water_too():
     assert joint > SWIM.robot.servo("LF_yaw").damping
 
 
+def rigid():
+    """Return a robot whose axis does not bend."""
+    robot = ROBOTS["strider"]
+    return replace(robot, name="rigid", axis=tuple(replace(segment, hinges=()) for segment in robot.axis))
+
+
+@pytest.mark.parametrize("name", ["swimmer", "pleurobot"])
+def test_any_body_that_floats_and_bends_swims_to_the_goal(name):
+    near = replace(SWIM.on(ROBOTS[name]), goal=replace(NEAR, bearing=0.0), jitter=0.0)
+    policy = envs.SwimToGoal(task=near, centre=tuple(Pack(near, 1).centre))
+    swum = envs.play(near, policy, episodes=1, steps=100)
+    rests = envs.play(near, envs.Still(near), episodes=1, steps=100)
+    assert swum.forward[0] > 0.1 > 10 * abs(rests.forward[0])
+
+
 @pytest.mark.parametrize(
     ("task", "changes", "error", "text"),
     [
         ("Swim", {"robot": "caiman"}, InvalidDesign, r"robot 'caiman' sinks: it weighs 3\.52 kg and displaces at most"),
         (
             "Swim",
-            {"robot": "strider"},
+            {"robot": rigid()},
             SuchusError,
-            "a task that begins swimming needs four legs of yaw",
+            "a task that begins swimming needs an axis that bends sideways",
         ),
+        ("Swim", {"robot": "strider"}, InvalidDesign, r"robot 'strider' sinks"),
         ("Swim", {"lake": None}, InvalidDesign, r"needs water: give it a land\.Lake"),
         ("Swim", {"lake": 1.0}, InvalidDesign, "a Lake or None is needed"),
         ("Swim", {"lake": Lake(level=((0.0, 0.4), (5.0, 0.5)))}, InvalidDesign, "give each as one number"),
@@ -257,6 +276,6 @@ def test_a_goal_and_a_swim_that_cannot_be_are_refused():
         envs.Goal(distance=0.1, within=0.1)
     with pytest.raises(InvalidDesign, match="0 to 1000 m is allowed"):
         envs.Landing(beyond=-1.0)
-    wide = replace(swimming(SWIM.robot, None).swim, tail=3.0)
+    wide = swim_of(SWIM.robot, None).with_numbers(tail_bend=3.0)
     with pytest.raises(OutsideLimits, match="tail"):
         envs.CrocodileEnv("Swim", swim=wide)

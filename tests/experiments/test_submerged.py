@@ -8,19 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from tests.swims import crocodile_swim
 
-from suchus.control import Swimming
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free import submerged
 from suchus.land import Lake
-from suchus.motion import LIMBS_BACK, Swim
 from suchus.robots import ROBOTS
 
 ROBOT, LAKE = ROBOTS["floating_caiman"], Lake(level=2.0)
-SWIM = Swimming(
-    swim=Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_lag=(0, 0, 0), tail=0.5, tail_lag=0.0),
-    limb_pitch=LIMBS_BACK[1],
-)
+SWIM = crocodile_swim(yaw=(0.1, 0.2, 0.3), yaw_lag=(0.0, 0.0, 0.0), tail=0.5, tail_lag=0.0)
 TIME = np.linspace(0.0, 10.0, 101)
 
 

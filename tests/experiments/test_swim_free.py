@@ -5,16 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from tests.start_batch import start_batch
+from tests.swims import crocodile_swim
 
 from suchus.control import Swimming
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _ends, _radius, _speed, _uneven
-from suchus.motion import Swim
+from suchus.motion import LIMBS_UP, intended
 from suchus.robots import ROBOTS
 from suchus.rotation import about
 
-SWIM = Swim(name="one", frequency=1.0, yaw=(0.1, 0.2, 0.3), yaw_lag=(0, 0, 0), tail=0.5, tail_lag=0.0)
+SWIM = crocodile_swim(yaw=(0.1, 0.2, 0.3), yaw_lag=(0.0, 0.0, 0.0), tail=0.5, tail_lag=0.0, limbs=LIMBS_UP)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -53,19 +55,26 @@ def test_the_band_is_as_wide_as_the_table_of_sections_asks(drag, expected):
 def test_the_table_is_read_where_this_body_swims():
     """A wider swing has larger Keulegan numbers: more drag beyond the attached layer, and more added mass."""
     one = EXPERIMENTS["swim_free"]
-    small = replace(SWIM, yaw=tuple(0.2 * a for a in SWIM.yaw), tail=0.2 * SWIM.tail)
-    found = [one._by_table(motion) for motion in (small, SWIM)]
+    found = [one._by_table(motion) for motion in (SWIM.bent(0.2), SWIM)]
     for name in ("cross_drag", "added_mass"):
         assert 0.2 < found[0][name] < found[1][name] < 3.0
+
+
+def posture(robot, gait, time):
+    """Return what ``Swimming`` commands over time, and watch that it is the gait that grows."""
+    swims = start_batch(Swimming(), [robot], [gait], [0], len(time), time[1])
+    targets = np.array([swims.command(tick, None).targets[0] for tick in range(len(time))])
+    assert targets == pytest.approx(intended(robot, gait, time, begin=0.0, ramp=1.0).targets, abs=1e-12)
+    return targets
 
 
 def test_a_swim_grows_and_a_mean_bend_goes_to_its_side():
     robot = ROBOTS["caiman"]
     time = np.linspace(0, 3, 301)
-    plain = Swimming(swim=SWIM, ramp=1.0).targets(robot, time)
-    steered = Swimming(swim=SWIM, ramp=1.0, turn=0.4, trunk_turn=0.3).targets(robot, time)
+    turned = SWIM.with_numbers(tail_offset=0.4, trunk_offset=0.3)
+    plain, steered = (posture(robot, gait, time) for gait in (SWIM, turned))
     assert np.abs(plain[0, 12:]).max() == 0.0
-    assert np.abs(plain[200:]).max(axis=0)[[14, 16]] == pytest.approx(SWIM.yaw[1:], rel=0.01)
+    assert np.abs(plain[200:]).max(axis=0)[[14, 16]] == pytest.approx((0.2, 0.3), rel=0.01)
     more = steered - plain
     assert more[:, 14] == pytest.approx(0.1)
     assert (more[:, -1] < 0).all()

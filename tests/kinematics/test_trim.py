@@ -6,24 +6,22 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.control import Swimming
 from suchus.control.holding import neutral_air_fraction
 from suchus.design import Chamber, Hull, layout
 from suchus.design.flotation import float_hull
 from suchus.design.pieces import SOLID, chambers, masses, pieces, volumes
 from suchus.errors import InvalidDesign, UnknownName
-from suchus.experiments.floating.experiment import STILL
 from suchus.hydro import column, unpacked
 from suchus.kinematics.tree import centre_of_mass
 from suchus.kinematics.trim import level_chambers, spare_volume
 from suchus.model.build import TIMESTEP, joint_addresses
 from suchus.model.hydrostatics import hydrostatics
 from suchus.model.wet import wet_model
-from suchus.motion import LIMBS_BACK, limbs_back
+from suchus.motion import cycle_targets, limbs_back, still
 from suchus.robots import ROBOTS
 
 BARE, ROBOT = ROBOTS["caiman"], ROBOTS["floating_caiman"]
-BACK = Swimming(swim=STILL, limb_pitch=LIMBS_BACK[1]).targets(ROBOT, np.zeros(1))[0]
+BACK = cycle_targets(ROBOT, still(ROBOT), np.zeros(1))[0]
 IN_FOAM = replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))
 
 

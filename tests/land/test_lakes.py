@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 from numba import cfunc, types
+from tests.swims import crocodile_swim
 
 from suchus import rotation
 from suchus.control import Swimming
@@ -17,11 +18,12 @@ from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
 from suchus.land.afloat import check_floats
-from suchus.motion import Swim
+from suchus.motion import LIMBS_UP, still
 from suchus.record import WATER
 from suchus.robots import ROBOTS
 
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1)
+WAVE = crocodile_swim(yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1, limbs=LIMBS_UP)
+REST = still(ROBOTS["caiman"], limbs=LIMBS_UP)
 
 
 def runs(*lakes, **more):
@@ -102,10 +104,9 @@ def test_buoyancy_is_against_gravity_where_the_ground_slopes():
 
 
 def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
-    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
     lake = Lake(level=1.0)
     light, heavy = (
-        crawl(name, "belly_crawl", duration=0.01, lake=lake, control=still) for name in ("floating_caiman", "caiman")
+        crawl(name, REST, duration=0.01, lake=lake, control=Swimming()) for name in ("floating_caiman", "caiman")
     )
     assert float(light.water_force[0, 2]) == pytest.approx(9.81 * float(light.mass), rel=1e-6)
     assert float(light.position[0, 2]) > 0.9
@@ -115,10 +116,8 @@ def test_a_robot_that_floats_begins_at_the_surface_and_one_that_sinks_stands():
 def test_let_go_heeled_by_150_degrees_it_rights_itself_and_with_its_foam_no_higher_it_does_not():
     robot = ROBOTS["floating_caiman"]
     flat = replace(robot, hull=replace(robot.hull, foam=tuple(replace(foam, raised=0.0) for foam in robot.hull.foam)))
-    still = Swimming(swim=replace(WAVE, yaw=(0, 0, 0), tail=0.0))
     some = [
-        Run(robot=one, gait="belly_crawl", lake=Lake(level=3.0, heel=radians(150)), control=still)
-        for one in (robot, flat)
+        Run(robot=one, gait=REST, lake=Lake(level=3.0, heel=radians(150)), control=Swimming()) for one in (robot, flat)
     ]
     record = simulate(some, duration=9.0, timestep=0.01, every=10)
     heel = np.abs(rotation.heel(record.orientation.values))[:, -20:]
@@ -134,11 +133,8 @@ def test_the_steepest_wave_is_allowed():
 def test_it_swims_forward_and_backward_with_the_wave():
     def distance(swim):
         lake = Lake(level=2.0)
-        return float(
-            crawl("floating_caiman", "belly_crawl", duration=4.0, lake=lake, control=Swimming(swim=swim)).position[
-                -1, 0
-            ]
-        )
+        record = crawl("floating_caiman", swim, duration=4.0, lake=lake, control=Swimming())
+        return float(record.position[-1, 0])
 
     assert distance(WAVE) > 0.1
     assert distance(WAVE.reversed()) < distance(WAVE) - 0.2
@@ -164,7 +160,7 @@ def test_it_swims_forward_and_backward_with_the_wave():
             lambda: crawl("caiman", "belly_crawl", duration=0.1, lake=Lake(level=0.0, air_fraction=0.5)),
             "no air that it could",
         ),
-        (lambda: Swimming(swim=WAVE, turn=9.0), "swimming.turn is 9 rad"),
+        (lambda: Swimming(ramp=-1.0), "swimming.ramp is -1 s"),
     ],
 )
 def test_bad_water_is_refused_in_a_sentence(make, message):
@@ -207,8 +203,10 @@ def test_a_run_that_diverges_in_water_ends_with_its_time_and_the_others_go_on():
 
 
 def test_a_swim_beyond_the_joints_is_refused():
-    with pytest.raises(OutsideLimits, match="tail_cable of robot 'caiman'"):
-        crawl("caiman", "belly_crawl", duration=0.1, control=Swimming(swim=WAVE, turn=1.7))
+    most = ROBOTS["caiman"].tail.bend_limit - 0.6
+    crawl("caiman", WAVE.with_numbers(tail_offset=most - 1e-6), duration=0.01, control=Swimming())
+    with pytest.raises(OutsideLimits, match="the hinges of cable tail_cable of robot 'caiman'"):
+        crawl("caiman", WAVE.with_numbers(tail_offset=most + 1e-6), duration=0.01, control=Swimming())
 
 
 def test_the_offsets_are_where_mujocos_own_arrays_are():

@@ -5,6 +5,7 @@ from math import tau
 
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 from suchus.design.pieces import pieces
 from suchus.design.water import Water
@@ -12,13 +13,13 @@ from suchus.hydro import column
 from suchus.land import Lake
 from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, composed, fitted, left, responses
 from suchus.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
-from suchus.motion import Swim
+from suchus.motion import still
 from suchus.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]
 TABLE = pieces(replace(ROBOT, girdles=(), hull=None))
-SWIM = Swim(name="w", frequency=0.8, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
-STILL = replace(SWIM, yaw=(0.0, 0.0, 0.0), tail=0.0)
+SWIM = crocodile_swim(frequency=0.8)
+STILL = still(ROBOT, frequency=0.8)
 HEAD = {"sway": -0.03 + 0.01j, "turn": 0.13 + 0.02j}
 THICK = 1.5e-4
 NOTHING = WaterCoefficients(cross_drag=0.0, thickening=0.0, added_mass=0.0)
@@ -62,7 +63,7 @@ def test_a_straight_body_that_sways_feels_its_added_mass_and_its_drag():
 
 
 def test_the_mirrored_swim_is_pushed_to_the_other_side(parts):
-    mirrored = replace(SWIM, yaw_lag=tuple(lag + 0.5 for lag in SWIM.yaw_lag), tail_lag=SWIM.tail_lag + 0.5)
+    mirrored = SWIM.lagged(0.5)
     whole, other = composed(parts, WaterCoefficients()), WaterCoefficients().lake(THICK)
     there = held_sections(ROBOT, mirrored, other, **{name: -value for name, value in HEAD.items()})
     assert there.aside.values == pytest.approx(-whole.aside.values, abs=1e-9)

@@ -8,20 +8,19 @@ import numpy as np
 import pytest
 
 from suchus import rotation
-from suchus.control import Swimming
 from suchus.design import servo_names
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign
-from suchus.experiments.floating.experiment import STILL
 from suchus.hydro import column, unpacked
 from suchus.model.build import TIMESTEP
 from suchus.model.hydrostatics import Hydrostatics, _root, hydrostatics
 from suchus.model.wet import wet_model
+from suchus.motion import LIMBS_UP, cycle_targets, still
 from suchus.robots import ROBOTS
 from suchus.rotation import about
 
 BARE, FLOATING = ROBOTS["caiman"], ROBOTS["floating_caiman"]
-POSTURE = Swimming(swim=STILL).targets(BARE, np.zeros(1))[0]
+POSTURE = cycle_targets(BARE, still(BARE, limbs=LIMBS_UP), np.zeros(1))[0]
 
 
 @pytest.fixture(scope="module")

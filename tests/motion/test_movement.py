@@ -412,7 +412,9 @@ def test_a_batch_of_different_gaits_and_bodies_says_what_each_says_alone(robot, 
     robots = [robot, robot, robot, other, other]
     rng = np.random.default_rng(0)
     limbs = np.array([gait.limb_phases for gait in gaits]) + rng.uniform(-0.1, 0.1, (5, 4))
-    steer = Steer(rng.uniform(0.5, 1.0, 5), rng.uniform(0.5, 1.0, (5, 4)), np.zeros((5, 4)), rng.uniform(-0.1, 0.1, 5))
+    steer = Steer(
+        rng.uniform(0.5, 1.0, 5), rng.uniform(0.5, 1.0, (5, 4)), np.zeros((5, 4)), *rng.uniform(-0.1, 0.1, (2, 5))
+    )
     batch = Batch(robots, gaits)
     assert len(batch.groups) == 3  # the two crawls share one call, and so do the two walks of the other body
     axis = batch.axis_phase(limbs, np.zeros(5))

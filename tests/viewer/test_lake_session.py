@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 from suchus.control import DepthHold, Swimming
 from suchus.errors import InvalidDesign
 from suchus.gaits import GAITS
 from suchus.land import Lake, Live, Run, simulate
-from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.live_page import status
 
 ROBOT, CRAWL = ROBOTS["floating_caiman"], GAITS["belly_crawl"]
-WAVE = Swim(name="wave", frequency=1.0, yaw=(0.36, 0.13, 0.11), yaw_lag=(0.08, -0.11, -0.29), tail=0.75, tail_lag=-0.11)
+WAVE = crocodile_swim()
 
 
 def afloat(seconds: float, **settings: float) -> Session:
@@ -76,7 +76,7 @@ def test_on_dry_land_there_is_no_water():
 
 
 def test_a_live_swim_is_the_swim_of_a_batch():
-    run = Run(robot=ROBOT, gait=CRAWL, lake=Lake(level=0.6), control=Swimming(swim=WAVE))
+    run = Run(robot=ROBOT, gait=WAVE, lake=Lake(level=0.6), control=Swimming())
     live = Live(run, timestep=0.005)
     for _ in range(30):
         live.step()
@@ -86,8 +86,8 @@ def test_a_live_swim_is_the_swim_of_a_batch():
 
 
 def test_what_a_live_run_cannot_do_is_refused():
-    hold = Swimming(swim=WAVE, depth=DepthHold(depth=0.3))
+    hold = Swimming(depth=DepthHold(depth=0.3))
     with pytest.raises(InvalidDesign, match="a Swimming without heading and depth hold"):
         Live(Run(robot=ROBOT, gait=CRAWL, lake=Lake(level=0.6), control=hold))
     with pytest.raises(InvalidDesign, match="this run is on dry land"):
-        Live(Run(robot=ROBOT, gait=CRAWL, control=Swimming(swim=WAVE))).fill(Lake(level=0.1))
+        Live(Run(robot=ROBOT, gait=WAVE, control=Swimming())).fill(Lake(level=0.1))

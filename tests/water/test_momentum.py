@@ -13,7 +13,7 @@ def _books(robot):
     What the body has; what the water's forces gave it; and what the water lost, followed through a box around the body.
     """
     cells = 48
-    shape = immersed(Outline(robot, cells + 1), fit(robot, printed_wave(robot)).swim, grow=0.5)
+    shape = immersed(Outline(robot, cells + 1), fit(robot, printed_wave(robot)).gait, grow=0.5)
     grid = SwimSetting(cells=cells, viscosity=1e-3, cycles=1).grid(robot.length)
     body = flow.FreeBody(shape=shape, start=(0.5 * robot.length, 0.0))
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, density=1000.0, bodies=(body,), courant=0.3))

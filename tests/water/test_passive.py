@@ -5,10 +5,11 @@ import pytest
 
 import suchus
 from suchus.design import crocodile, with_values
-from suchus.motion import Swim
+from suchus.motion import still
+from suchus.robots import ROBOTS
 from suchus.water import Outline, fit, printed_wave, sprung, undulation
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
+STILL = still(ROBOTS["caiman"])
 
 
 def _stiffer(robot, factor):
@@ -28,7 +29,7 @@ def test_a_still_body_leaves_its_end_straight(robot):
 
 
 def test_only_the_end_gives_way_and_a_stiff_one_in_proportion_less(robot):
-    motion = fit(robot, printed_wave(robot)).swim
+    motion = fit(robot, printed_wave(robot)).gait
     root = robot.length - robot.tail.fin_length * (1 + 1 / robot.tail.fin_segments)
     soft, stiff, hard = (_tip(_stiffer(robot, factor), motion) for factor in (1.0, 100.0, 200.0))
     np.testing.assert_allclose(soft[Outline(robot).s < root - 1e-9], 0.0, atol=1e-12)
@@ -38,7 +39,7 @@ def test_only_the_end_gives_way_and_a_stiff_one_in_proportion_less(robot):
 
 def test_a_hard_spring_bends_by_moment_over_stiffness(robot):
     """At rest, with the head held by a fast beat's recoil: the root spring carries the moment of all beyond it."""
-    motion = fit(robot, printed_wave(robot)).swim
+    motion = fit(robot, printed_wave(robot)).gait
     one = crocodile(
         replace(
             robot.tables, tail=replace(robot.tables.tail, fin_segments=1, fin_stiffness_lateral=50.0, fin_damping=0.0)
@@ -52,7 +53,7 @@ def test_a_hard_spring_bends_by_moment_over_stiffness(robot):
 
 
 def test_a_springy_end_changes_the_speed_by_little(robot):
-    motion = fit(robot, printed_wave(robot)).swim
+    motion = fit(robot, printed_wave(robot)).gait
     straight, bent = (suchus.swim(robot, m, stations=129) for m in (motion, sprung(Outline(robot, 129), motion, 0.2)))
     change = bent.speed.values / straight.speed.values - 1
     assert np.all(np.abs(change) < 0.2)

@@ -2,24 +2,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 import suchus
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.motion import Swim
+from suchus.motion import still
 from suchus.progress import silent
 from suchus.water import ExactWave, Outline
 from suchus.water.immersed import immersed
 from suchus.water.resolved import ON_THE_SPOT, TETHERED, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
 
-MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
+MOTION = crocodile_swim(yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail_lag=-0.1)
 COARSE = SwimSetting(cells=32, viscosity=1e-3, cycles=1)
 COARSE_TETHERED = replace(COARSE, free=TETHERED)
-
-
-def mirrored(motion: Swim) -> Swim:
-    """Return the motion half a cycle later, left and right swapped."""
-    first, second, third = motion.yaw_lag
-    return replace(motion, yaw_lag=(first + 0.5, second + 0.5, third + 0.5), tail_lag=motion.tail_lag + 0.5)
 
 
 @pytest.mark.parametrize("time", [0.2, 0.47, 1.3])
@@ -38,13 +33,13 @@ def test_a_motion_grows_from_a_straight_body_at_rest(robot):
 
 
 def test_a_body_that_does_not_move_feels_nothing(robot):
-    record = resolved_swim(robot, replace(MOTION, yaw=(0.0, 0.0, 0.0), tail=0.0), COARSE_TETHERED)
+    record = resolved_swim(robot, still(robot), COARSE_TETHERED)
     assert float(abs(record.thrust).max()) < 1e-9
     assert float(abs(record.joint_torque).max()) < 1e-9
 
 
 def test_a_mirrored_start_gives_a_mirrored_track(robot):
-    here, there = (resolved_swim(robot, motion, COARSE) for motion in (MOTION, mirrored(MOTION)))
+    here, there = (resolved_swim(robot, motion, COARSE) for motion in (MOTION, MOTION.lagged(0.5)))
     assert float(here.speed[-1]) == pytest.approx(float(there.speed[-1]), abs=1e-4)
     np.testing.assert_allclose(here.snout_y, -there.snout_y, atol=1e-4)
     assert float(abs(here.snout_y).max()) > 1e-3
@@ -97,7 +92,7 @@ def test_a_box_too_small_for_the_body_is_refused(box, said):
 
 def test_impossible_swims_are_refused(robot):
     with pytest.raises(OutsideLimits, match="tail_cable"):
-        resolved_swim(robot, replace(MOTION, frequency=3.0), COARSE)
+        resolved_swim(robot, replace(MOTION, period=1 / 3), COARSE)
     with pytest.raises(InvalidDesign, match="cells"):
         SwimSetting(cells=8, viscosity=1e-3, cycles=1)
     with pytest.raises(InvalidDesign, match="boundary layer"):

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.motion import still
 from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, Water, fit, printed_wave, recoil
 from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
-from suchus.water.undulation import STILL
 
 ROBOT = ROBOTS["caiman"]
-MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
+MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
 SETTING = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, free=TETHERED)
 
 
@@ -29,14 +29,13 @@ def swum():
 
 
 def test_a_body_at_rest_feels_nothing():
-    found = held(STILL, progress=silent)
+    found = held(still(ROBOT), progress=silent)
     assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
 
 
 @pytest.mark.slow("a second run of a swim")
 def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
-    lags = {"yaw_lag": tuple(lag + 0.5 for lag in MOTION.yaw_lag), "tail_lag": MOTION.tail_lag + 0.5}
-    other = held(replace(MOTION, **lags), progress=silent)
+    other = held(MOTION.lagged(0.5), progress=silent)
     peak = np.abs(swum.aside.values).max()
     assert peak > 0.1
     assert other.aside.values == pytest.approx(-swum.aside.values, abs=1e-3 * peak)

@@ -3,15 +3,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 from suchus.errors import UnreadableFile
-from suchus.motion import Swim
 from suchus.progress import silent
 from suchus.record.seal import sealed
 from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
 from suchus.water.samples import Samples
 
-MOTION = Swim(name="wave", frequency=1.0, yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail=0.75, tail_lag=-0.1)
+MOTION = crocodile_swim(yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail_lag=-0.1)
 SETTING = SwimSetting(cells=32, viscosity=1e-3, cycles=1, frames=6)
 
 
@@ -47,7 +47,7 @@ def test_another_swim_does_not_go_on_from_it(robot, tmp_path):
     with pytest.raises(_Killed):
         resolved_swim(robot, MOTION, SETTING, checkpoint=file, progress=_killed_at(0.3))
     with pytest.raises(UnreadableFile, match=r"another (swim|setup)"):
-        resolved_swim(robot, replace(MOTION, tail=0.7), SETTING, checkpoint=file)
+        resolved_swim(robot, MOTION.with_numbers(tail_bend=0.7), SETTING, checkpoint=file)
 
 
 def test_samples_come_back_as_they_were_and_no_later_than_asked(tmp_path):

@@ -2,10 +2,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 import suchus
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.motion import Swim
+from suchus.motion import still
+from suchus.robots import ROBOTS
 from suchus.water import (
     Outline,
     Water,
@@ -20,7 +22,7 @@ from suchus.water import (
     wave_speed,
 )
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
+STILL = still(ROBOTS["caiman"])
 SMOOTH = Water(thickening=0.0)
 
 
@@ -33,7 +35,7 @@ def outline():
 def forward():
     """The wave of (20), from head to tail."""
     robot = suchus.ROBOTS["caiman"]
-    return fit(robot, printed_wave(robot), name="forward").swim
+    return fit(robot, printed_wave(robot), name="forward").gait
 
 
 @pytest.mark.parametrize("model", [resistive, reactive])
@@ -65,7 +67,7 @@ def test_reversed_wave_reversed_thrust(outline, forward):
 
 def test_the_printed_wave_swims_tail_first_and_ours_head_first(outline, robot):
     printed, ours = (
-        cruise(outline, fit(robot, printed_wave(robot, sign=sign)).swim, resistive, Water()).speed for sign in (1, -1)
+        cruise(outline, fit(robot, printed_wave(robot, sign=sign)).gait, resistive, Water()).speed for sign in (1, -1)
     )
     assert ours > 0.1
     assert printed == pytest.approx(-ours, rel=1e-3)
@@ -73,14 +75,14 @@ def test_the_printed_wave_swims_tail_first_and_ours_head_first(outline, robot):
 
 def test_a_single_hinge_gets_nowhere_by_drag(outline, forward):
     """A motion that retraces its way gives no thrust: Purcell's scallop, whose drag is resistive too."""
-    flap = replace(forward, yaw=(0.0, 0.0, 0.0), tail_lag=0.0)
+    flap = crocodile_swim(yaw=(0.0, 0.0, 0.0), tail_lag=0.0)
     held = resistive(outline, cycle(outline, flap, *recoil(outline, flap, 0.0, Water())), 0.0, Water())
     assert abs(held.thrust) < 1e-8
     assert cruise(outline, flap, resistive, Water()).speed == 0.0
 
 
 def test_without_friction_thrust_grows_with_the_square_of_the_frequency(outline, forward):
-    fast = replace(forward, frequency=2.0)
+    fast = replace(forward, period=0.5)
     for model in (resistive, reactive):
         once, twice = (model(outline, cycle(outline, some), 0.0, SMOOTH) for some in (forward, fast))
         assert twice.thrust == pytest.approx(4 * once.thrust, rel=1e-9)
@@ -100,7 +102,7 @@ def test_small_motions_give_lighthills_linear_thrust(outline):
 
 
 def test_recoil_leaves_no_lateral_momentum_at_rest(outline, forward):
-    small = replace(forward, yaw=tuple(1e-4 * a for a in forward.yaw), tail=1e-4 * forward.tail)
+    small = forward.bent(1e-4)
     curve = cycle(outline, small, *recoil(outline, small, 0.0, Water()))
     wide, high = outline.silhouette
     weight = wide * high + high**2
@@ -161,6 +163,6 @@ def test_the_displaced_mass_is_that_of_its_ellipses(robot):
 
 def test_impossible_requests_are_refused(robot, forward):
     with pytest.raises(OutsideLimits, match="tail_cable"):
-        suchus.swim(robot, replace(forward, frequency=3.0))
+        suchus.swim(robot, replace(forward, period=1 / 3))
     with pytest.raises(InvalidDesign, match="cross_drag"):
         Water(cross_drag=-1.0)

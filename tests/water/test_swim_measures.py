@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from suchus.errors import OutsideLimits
-from suchus.motion import check_swim
+from suchus.motion import check_limits, check_speeds
 from suchus.water import (
     Quarters,
     Sway,
@@ -15,7 +17,6 @@ from suchus.water import (
     greatest,
     printed_wave,
     readings_table,
-    scaled,
     survey,
     swing,
     wave_form,
@@ -33,6 +34,15 @@ def _held(thrust, aside, difference):
         | {"difference": ("phase", difference(2 * np.pi * PHASE))},
         coords={"phase": PHASE, "settled": [2, 3], "instant": [0.25, 0.5, 0.75, 1.0]},
     )
+
+
+def scaled(motion, amplitude, frequency):
+    return replace(motion.bent(amplitude), period=1.0 / frequency)
+
+
+def check_swim(robot, motion):
+    check_limits(robot, motion)
+    check_speeds(robot, motion)
 
 
 def test_a_mirrored_stroke_is_what_the_article_says():
@@ -129,7 +139,7 @@ def test_every_reading_is_tried_and_the_table_says_why_not(robot):
 
 
 def test_a_survey_follows_frequency_and_amplitude(robot):
-    motion = fit(robot, printed_wave(robot)).swim
+    motion = fit(robot, printed_wave(robot)).gait
     slow, fast, small = (scaled(motion, *how) for how in ((1.0, 0.5), (1.0, 1.0), (0.5, 1.0)))
     found = survey(robot, [slow, fast, small, scaled(motion, 1.0, 4.0)], stations=49)
     speed = found.speed.values
@@ -141,8 +151,8 @@ def test_a_survey_follows_frequency_and_amplitude(robot):
 
 
 def test_the_greatest_amplitude_is_the_last_that_can_be_followed(robot):
-    motion = fit(robot, printed_wave(robot)).swim
-    for frequency, joint in ((1.5, "tail_cable at"), (0.25, "bends tail_cable")):
+    motion = fit(robot, printed_wave(robot)).gait
+    for frequency, joint in ((1.5, "asks tail_cable of"), (0.25, "the hinges of cable tail_cable")):
         slow = scaled(motion, 1.0, frequency)
         most = greatest(robot, slow)
         check_swim(robot, scaled(motion, most, frequency))

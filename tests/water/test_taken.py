@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 import xarray as xr
+from tests.swims import crocodile_swim
 
 from suchus.design import cable_joints, layout
 from suchus.errors import InvalidDesign
-from suchus.motion import Swim
 from suchus.robots import ROBOTS
 from suchus.water import Outline, taken, undulation, unevenness
-from suchus.water.undulation import lateral_joints
 
-SWIM = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=0.6, tail_lag=0.6)
+YAW, YAW_LAG, TAIL, TAIL_LAG = (0.5, 0.4, 0.2), (0.3, 0.1, 0.0), 0.6, 0.6
+SWIM = crocodile_swim(frequency=0.8, yaw=YAW, yaw_lag=YAW_LAG, tail=TAIL, tail_lag=TAIL_LAG)
 ROBOT = ROBOTS["caiman"]
 OUTLINE = Outline(ROBOT, 65)
 
@@ -21,11 +21,11 @@ def record(shares, *, duration=5.0, mean=0.0, step=0.02):
     time = np.arange(0.0, duration + step / 2, step)
     turn = 2 * np.pi * SWIM.frequency * time
     angles = {name: np.full(time.size, 0.3) for name in layout(ROBOT).hinges}  # nothing but yaw is looked at
-    for name, size, lag in zip(lateral_joints(ROBOT)[:3], SWIM.yaw, SWIM.yaw_lag, strict=True):
+    for name, size, lag in zip(OUTLINE.joints[:3], YAW, YAW_LAG, strict=True):
         angles[name] = size * np.cos(turn - 2 * np.pi * lag)
     for name, share in zip(cable_joints(ROBOT), shares, strict=True):
-        angles[name] = share * SWIM.tail * np.cos(turn - 2 * np.pi * SWIM.tail_lag) + mean
-    for name in lateral_joints(ROBOT)[9:]:
+        angles[name] = share * TAIL * np.cos(turn - 2 * np.pi * TAIL_LAG) + mean
+    for name in OUTLINE.joints[9:]:
         angles[name] = np.zeros(time.size)
     data = np.column_stack([angles[name] for name in layout(ROBOT).hinges])
     return xr.Dataset({"joint_angle": (("time", "joint"), data)}, {"time": time, "joint": list(layout(ROBOT).hinges)})
@@ -45,7 +45,7 @@ def test_a_bend_that_is_shared_out_anew_is_another_midline_of_the_same_end():
     assert unevenness(found, meant) > 0.05
     doubled = taken(OUTLINE, record([1 / 3] * 6), frequency=0.8, cycles=2)
     behind = [OUTLINE.s > OUTLINE.places[8] + OUTLINE.reaches[8]]
-    assert np.abs(doubled.stations[1] - meant.stations[1])[*behind] == pytest.approx(SWIM.tail, rel=2e-3)
+    assert np.abs(doubled.stations[1] - meant.stations[1])[*behind] == pytest.approx(TAIL, rel=2e-3)
 
 
 def test_a_passive_end_counts():

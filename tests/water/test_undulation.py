@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
+from tests.swims import crocodile_swim
 
 from suchus.errors import InvalidDesign
-from suchus.motion import Swim, bends
+from suchus.motion import as_table
+from suchus.robots import ROBOTS
 from suchus.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
 
 TIME = np.linspace(0.0, 1.0, 17)
@@ -42,17 +44,29 @@ def test_velocities_are_the_derivatives_of_positions(robot, name):
 
 
 def test_joints_bend_the_midline_as_the_outline_says(robot):
-    swim = Swim(name="w", frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=1.1, tail_lag=0.6)
     outline = Outline(robot)
-    ours, theirs = undulation(outline, swim).curve(TIME), outline.curve(bends(swim, TIME))
-    for mine, other in zip(ours, theirs, strict=True):
-        np.testing.assert_allclose(mine, other, atol=1e-12)
+    servos = np.array([0.5, 0.4, 0.2, 1.1]) * np.exp(-2j * np.pi * np.array([0.3, 0.1, 0.0, 0.6]))
+    gait = crocodile_swim(frequency=0.8, yaw=(0.5, 0.4, 0.2), yaw_lag=(0.3, 0.1, 0.0), tail=1.1, tail_lag=0.6)
+    bent = undulation(outline, gait)
+    np.testing.assert_allclose(bent.middles, [0 * outline.s[1:], outline.bending @ servos], atol=1e-12)
+    np.testing.assert_allclose(bent.stations[1], outline.bending_at(outline.s) @ servos, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["caiman", "salamander", "swimmer"])
+def test_measured_curves_bend_the_midline_as_the_gait_that_they_are_of(name):
+    """Curves of 64 samples have their harmonics exactly; a cable's pulley turns by a sine of the bend."""
+    robot = ROBOTS[name]
+    gait = fit(robot, printed_wave(robot, frequency=1.0)).gait
+    outline = Outline(robot, 65)
+    meant, measured = undulation(outline, gait), undulation(outline, as_table(robot, gait))
+    np.testing.assert_allclose(measured.stations[:2], meant.stations, atol=2e-3)
+    assert np.abs(meant.stations).max() > 0.2
 
 
 def test_a_head_that_is_turned_turns_every_section(robot):
     outline, wave = Outline(robot, 65), printed_wave(robot)
     found = fit(robot, wave)
-    still, turned = (cycle(outline, found.swim, 0.01, turn) for turn in (0.0, found.head))
+    still, turned = (cycle(outline, found.gait, 0.01, turn) for turn in (0.0, found.head))
     np.testing.assert_allclose((turned.heading - still.heading).std(axis=1), 0.0, atol=1e-12)
     assert turned.y[:, 0].max() == pytest.approx(0.01)
 

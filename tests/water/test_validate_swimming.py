@@ -28,8 +28,8 @@ def grids():
     rows = {}
     for cells in CELLS:
         setting = SwimSetting(cells=cells, viscosity=viscosity, cycles=3, free=TETHERED)
-        held = resolved_swim(robot, fitted.swim, setting, turn=fitted.head)
-        free = resolved_swim(robot, fitted.swim, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
+        held = resolved_swim(robot, fitted.gait, setting, turn=fitted.head)
+        free = resolved_swim(robot, fitted.gait, SwimSetting(cells=cells, viscosity=viscosity, cycles=CYCLES))
         swum = Swum.of(free, 1.0)
         rows[cells] = {
             "speed": swum.speed,

@@ -11,10 +11,10 @@ import tyro
 from suchus.capture import ReadingOptions, read_tracks
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
-from suchus.design import ARTICLE_BODY, Robot, check_needs, with_values
+from suchus.design import Robot, check_needs, with_values
 from suchus.design.checks import require
 from suchus.gaits import own_gait
-from suchus.motion import Gait, Swim
+from suchus.motion import Gait
 from suchus.record import there
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
@@ -137,14 +137,14 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     )  # fmt: skip
 
 
-def _wave_of(robot: Robot) -> Swim:
+def _wave_of(robot: Robot) -> Gait:
     """Return the article's wave on the joints of a robot.
 
     Raises:
-        UnsuitedRobot: it does not swim by trunk and cable.
+        UnsuitedRobot: its axis does not bend sideways.
     """
-    bare = with_values(check_needs(robot, ARTICLE_BODY, "suchus view --lake"), {"hull": None})
-    return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).swim
+    bare = with_values(check_needs(robot, ["axis"], "suchus view --lake"), {"hull": None})
+    return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).gait
 
 
 def _replay(words: Sequence[str]) -> int:

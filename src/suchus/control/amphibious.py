@@ -1,13 +1,13 @@
 """From swimming to walking and back, by the load that the ground is felt to carry."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from math import pi
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control import swimming
 from suchus.control.controller import Command, Controller, Runs
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
@@ -15,7 +15,7 @@ from suchus.control.swimming import Swimming
 from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
-from suchus.motion import START, Batch, Gait, Steer
+from suchus.motion import START, Batch, Bend, Gait, Held, Steer, check_limits
 
 _SLACK = 1e-9  # [s]
 _GROWS = 0.5  # [cycle]; over which stroke and bends grow when the walk begins
@@ -33,8 +33,10 @@ class Amphibious:
     the next. While it swims its limbs' phases stand still.
     """
 
-    swim: Swimming
-    """How it swims; with its heading hold."""
+    swim: Gait
+    """Gait in which it swims."""
+    swimming: Swimming = field(default_factory=Swimming)
+    """What it holds as it swims, at the surface."""
     begins: Literal["swimming", "walking"] = "swimming"
     """In what it begins."""
     touch: float = 0.02
@@ -79,8 +81,9 @@ class Amphibious:
                 f"amphibious.begins is {str(self.begins)[:40]!r}; swimming or walking is allowed",
             )
             check.that(
-                self.swim.depth is None,
-                "amphibious.swim holds a depth; a robot that comes ashore swims at the surface: leave out swim.depth",
+                self.swimming.depth is None,
+                "amphibious.swimming holds a depth; a robot that comes ashore swims at the surface: leave out "
+                "swimming.depth",
             )
 
     @property
@@ -94,7 +97,6 @@ class Amphibious:
 
         Raises:
             OutsideLimits: a robot cannot follow its swim, or a gait has measured curves.
-            UnsuitedRobot: a robot does not swim by trunk and cable.
             InvalidDesign: a robot that is to let air out has no air.
         """
         controls, robots, gaits = runs.controls, runs.robots, runs.gaits
@@ -108,7 +110,12 @@ class Amphibious:
                     f"amphibious.air_released is {control.air_released:g}, and robot {robot.name!r} has no air that it "
                     "could let out: leave it at 0, or give the robot a design.Hull with air."
                 )
-        swims = Swimming.start(runs._replace(controls=tuple(control.swim for control in controls)), period)
+        for robot, swim in {*zip(robots, (control.swim for control in controls), strict=True)}:
+            check_limits(robot, swim)
+        swimmers = runs._replace(
+            controls=tuple(control.swimming for control in controls), gaits=tuple(control.swim for control in controls)
+        )
+        swims = Swimming.start(swimmers, period)
         return Amphibian(controls, robots, gaits, wades, swims, period)
 
 
@@ -236,4 +243,14 @@ def _eased(share: np.ndarray) -> np.ndarray:
 
 
 controller = Amphibious
-examples = (Amphibious(swim=swimming.examples[0]),)
+_WAVE = Gait(
+    name="wave",
+    period=1.0,
+    limb_phases=(0.0,) * 4,
+    limbs=(Held(angles=(-pi / 2, -0.15)),) * 2,
+    axis=(
+        Bend(part="trunk", amplitude=(0.33, 0.39, 1.08), lag=(-0.29, -0.11, 0.08)),
+        Bend(part="tail", amplitude=(0.75,), lag=(0.39,)),
+    ),
+)
+examples = (Amphibious(swim=_WAVE),)

@@ -15,10 +15,10 @@ from jaxtyping import Bool, Float
 
 from suchus import rotation
 from suchus.control import Command, Sensed, Standing
-from suchus.design import ARTICLE_BODY, Robot, check_needs, layout, servo_ranges
+from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import control_period
 from suchus.envs.senses import Observer, turning
-from suchus.envs.task import AnyGoal, Task, Terms, remaining, swimming
+from suchus.envs.task import AnyGoal, Task, Terms, remaining, swim_of
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
 from suchus.gaits import GAITS
@@ -30,7 +30,7 @@ from suchus.land.loop import Loop
 from suchus.land.run import check_pushes
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
-from suchus.motion import check_limits, check_swim, hip_height
+from suchus.motion import check_limits, check_speeds, cycle_targets, hip_height
 
 STILL = 3.0
 """How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
@@ -72,9 +72,10 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 def _afloat(task: Task, model: Any) -> Beginning:
     """Put a robot on the water in the mean posture of its swimming motion."""
     assert task.lake is not None  # see ``Task``
-    motion, robot = swimming(task.robot, task.swim), check_needs(task.robot, ARTICLE_BODY, "a swim")
-    check_swim(robot, motion.swim)
-    servos = replace(motion, ramp=1.0).targets(robot, np.zeros(1))[0]  # amplitudes that grow are zero at first
+    swim = swim_of(task.robot, task.swim)
+    check_limits(task.robot, swim)
+    check_speeds(task.robot, swim)
+    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
     qpos = surfaced(task.body, task.lake, up(task.ground), stands, task.timestep)
     if np.array_equal(qpos, stands):

@@ -7,14 +7,13 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from suchus.control import Control, Controller, HeadingHold, Runs
-from suchus.control.swimming import bent
-from suchus.design import ARTICLE_BODY, check_needs, layout
+from suchus.design import layout
 from suchus.design.scale import control_period
 from suchus.envs.senses import felt, part, turning
 from suchus.envs.shelf import STEPS
-from suchus.envs.task import Task, swimming
+from suchus.envs.task import Task, swim_of
 from suchus.envs.vector import CrocodileVectorEnv
-from suchus.motion import Gait, cycle_targets
+from suchus.motion import Gait, Steer, cycle_targets, movement
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
 """From observations to actions."""
@@ -75,7 +74,7 @@ class Follow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwimToGoal:
-    """The task's swimming motion by the clock of the observation, steered towards the goal by a mean bend."""
+    """The task's swim by the clock of the observation, steered towards the goal by a mean bend."""
 
     task: Task
     """The task; it begins swimming and has a goal."""
@@ -86,14 +85,15 @@ class SwimToGoal:
 
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
-        task = self.task
-        robot = check_needs(task.robot, ARTICLE_BODY, "a swim")
+        task, robot = self.task, self.task.robot
+        swim = movement(robot, swim_of(robot, task.swim))
         sine, cosine = part(seen, "clock", robot).astype(float).T
-        time = task.period * np.arctan2(sine, cosine) / (2 * np.pi) + task.decision
-        targets = swimming(robot, task.swim).targets(robot, time)
+        clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
         direction = part(seen, "goal_direction", robot).astype(float)
         share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
-        targets = bent(targets, robot, self.hold.turn * share, self.hold.trunk_turn * share)
+        steer = Steer(bend=self.hold.trunk_turn * share, tail=self.hold.turn * share)
+        phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
+        targets = swim.targets(phases, swim.axis_of_clock(clock), steer)
         return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
 
 
@@ -107,13 +107,17 @@ class Controlled:
         centre: servo angles of an action of zero, ``Pack.centre`` [rad].
         control: the controller, as ``Run.control`` takes it.
         steps: greatest number of steps of an episode.
+        gait: the gait of the run that it controls; that of the task if None.
 
     Raises:
         SuchusError: on the first call, if the controller does not suit the robot or its gait.
     """
 
-    def __init__(self, task: Task, centre: tuple[float, ...], control: Control, *, steps: int) -> None:
+    def __init__(
+        self, task: Task, centre: tuple[float, ...], control: Control, *, steps: int, gait: Gait | None = None
+    ) -> None:
         self._task, self._centre, self._control = task, np.array(centre), control
+        self._gait = gait or task.gait
         self._period = control_period(task.robot)
         self._per_step = round(task.decision / self._period)
         self._ticks, self._tick = steps * self._per_step, 0
@@ -123,7 +127,7 @@ class Controlled:
         """Call the controller for every control period of the step and return the last commanded angles as actions."""
         task, count = self._task, len(seen)
         if self._controller is None:
-            runs = Runs.alike(self._control, task.robot, task.gait, count=count, ticks=self._ticks)
+            runs = Runs.alike(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
             self._controller = self._control.start(runs, self._period)
         sensed = felt(seen, task.robot, self._tick * self._period)
         for _ in range(self._per_step):

@@ -11,7 +11,7 @@ from suchus.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Ta
 from suchus.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.gaits import GAITS
 from suchus.land import Ground, Lake
-from suchus.motion import Gait, Swim
+from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
 
@@ -102,7 +102,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "breaks": (Breaks, type(None)),
         "pushes": (Pushes, type(None)),
         "lake": (Lake, type(None)),
-        "swim": (Swim, type(None)),
+        "swim": (Gait, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),
     }
     for name, value in values.items():

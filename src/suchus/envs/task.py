@@ -10,8 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control import Swimming
-from suchus.design import ARTICLE_BODY, Robot, check_needs, front_segment, layout, with_speed_lines, with_values
+from suchus.design import Robot, check_needs, front_segment, layout, with_speed_lines, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
@@ -21,7 +20,7 @@ from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
 from suchus.land.afloat import capacity
 from suchus.land.lake import check_lake
-from suchus.motion import LIMBS_BACK, Gait, Swim
+from suchus.motion import Gait
 from suchus.robots import ROBOTS
 from suchus.water import fit, printed_wave
 
@@ -216,7 +215,7 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "lying": (),
         "upright": ("legs", "shells", "article_spine", "cable_tail"),
-        "swimming": ("legs", "shells", "article_spine", "cable_tail"),
+        "swimming": ("axis",),
     }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
@@ -375,8 +374,8 @@ class Task:
     """The push of each episode; None: no push."""
     lake: Lake | None = None
     """Water in which the robot swims or wades, its level and air fraction numbers; None on dry land."""
-    swim: Swim | None = None
-    """Swimming motion of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
+    swim: Gait | None = None
+    """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
     goal: AnyGoal | None = None
     """The goal, at which the episode ends; None: no goal."""
 
@@ -389,7 +388,7 @@ class Task:
     def period(self) -> float:
         """Period of the clock, that of the swimming motion or of the gait [s]."""
         if self.start == "swimming":
-            return 1.0 / swimming(self.robot, self.swim).swim.frequency
+            return swim_of(self.robot, self.swim).period
         return self.gait.period
 
     def on(self, robot: Robot, gait: Gait | None = None) -> "Task":
@@ -464,20 +463,21 @@ class Task:
 
 
 @lru_cache(maxsize=16)
-def swimming(robot: Robot, swim: Swim | None) -> Swimming:
-    """Return the swimming motion of a robot, at full amplitude from the first moment.
+def swim_of(robot: Robot, swim: Gait | None) -> Gait:
+    """Return the gait in which a robot swims.
 
     Args:
-        robot: a crocodile-like robot with a cable tail.
-        swim: the wave; None for that of (20) at 1 Hz, fitted to the robot's joints.
+        robot: any robot whose axis bends sideways.
+        swim: the gait; None for the wave of (20) at 1 Hz, fitted to the robot's joints.
 
     Raises:
-        UnsuitedRobot: the robot is given by another table.
+        UnsuitedRobot: no servo bends the robot sideways.
+        OutsideLimits: its joints cannot make the wave of (20).
     """
-    if swim is None:
-        bare = with_values(check_needs(robot, ARTICLE_BODY, "a swim"), {"hull": None})
-        swim = fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).swim
-    return Swimming(swim=swim, limb_pitch=LIMBS_BACK[1], ramp=0.0)
+    if swim is not None:
+        return swim
+    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
+    return fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).gait
 
 
 def check_water(robot: Robot, lake: Lake) -> None:

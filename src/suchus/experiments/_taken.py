@@ -5,9 +5,8 @@ from typing import NamedTuple
 from suchus.control import Swimming
 from suchus.design import Robot, with_values
 from suchus.design.flotation import float_hull
-from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
-from suchus.motion import Swim
+from suchus.motion import LIMBS_UP, Gait, with_limbs
 from suchus.water import Outline, Undulation, taken, undulation, unevenness
 
 AS_TAKEN = " as taken"
@@ -28,7 +27,7 @@ class TakenMidline(NamedTuple):
     """Rms angle off what was commanded, over that [-]."""
 
 
-def midlines(robot: Robot, motion: Swim, stations: int) -> list[TakenMidline]:
+def midlines(robot: Robot, motion: Gait, stations: int) -> list[TakenMidline]:
     """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
 
     Args:
@@ -38,10 +37,10 @@ def midlines(robot: Robot, motion: Swim, stations: int) -> list[TakenMidline]:
     """
     bare = with_values(robot, {"hull": None})
     floating = robot if robot.hull is not None else with_values(bare, {"hull": float_hull(bare)})
-    meant = (motion, motion.tail_only())
+    meant = (motion, motion.straightened("trunk"))
     runs = [
-        Run(robot=floating, gait=GAITS["belly_crawl"], lake=Lake(level=2.0), control=Swimming(swim=one))
-        for one in meant
+        Run(robot=floating, gait=with_limbs(robot, gait, LIMBS_UP), lake=Lake(level=2.0), control=Swimming())
+        for gait in meant
     ]
     record = simulate(runs, duration=(_SETTLE + _AVERAGED) / motion.frequency)
     outline, found = Outline(bare, stations), []

@@ -15,7 +15,7 @@ from suchus.design.checks import Course
 from suchus.design.water import Water
 from suchus.land.lake import Lake
 from suchus.land.prescribed import held_sections
-from suchus.motion import Swim
+from suchus.motion import Gait
 
 QUANTITIES = ("thrust", "aside", "power")
 """What is compared over a cycle."""
@@ -43,13 +43,13 @@ NAMES = tuple(field.name for field in fields(WaterCoefficients))
 
 
 def responses(
-    robot: Robot, swim: Swim, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
+    robot: Robot, gait: Gait, viscosity: float, *, sway: complex = 0j, turn: complex = 0j
 ) -> Mapping[str, xr.Dataset]:
     """Return what each of ``WaterCoefficients`` does by one unit of it, and what is left without them, as ``rest``.
 
     Args:
         robot: whose body, limbs left out.
-        swim: motion of its joints.
+        gait: in which it swims.
         viscosity: of the water [m2/s].
         sway: see ``held_sections`` [m].
         turn: see ``held_sections`` [rad].
@@ -57,7 +57,7 @@ def responses(
 
     def response(**unit: float) -> xr.Dataset:
         lake = WaterCoefficients(**({"cross_drag": 0.0, "thickening": 0.0, "added_mass": 0.0} | unit)).lake(viscosity)
-        return held_sections(robot, swim, lake, sway=sway, turn=turn)
+        return held_sections(robot, gait, lake, sway=sway, turn=turn)
 
     rest = response()
     return {"rest": rest, **{name: response(**{name: 1.0}) - rest for name in NAMES}}

@@ -20,7 +20,7 @@ from suchus.motion import START, Gait, check_limits
 class Live:
     """One robot that walks until commanded otherwise, one control period at a time.
 
-    The controller hears of one cycle again and again; so the period of a gait or a swim is rounded to whole control
+    The controller hears of one cycle again and again; so the period of a gait is rounded to whole control
     periods. With an unchanged gait of such a period, all goes as in ``simulate``, up to rounding.
 
     Args:
@@ -30,7 +30,7 @@ class Live:
     Raises:
         InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated`` or a
             ``Swimming`` that holds nothing, or an air fraction below 1 that the robot has no air for.
-        OutsideLimits: a gait or swim that the robot's joints cannot follow.
+        OutsideLimits: a gait that the robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
 
@@ -158,8 +158,7 @@ class Live:
 
     def _cycle(self, run: Run) -> int:
         """Return the length of a cycle in control periods."""
-        period = 1.0 / run.control.swim.frequency if isinstance(run.control, Swimming) else run.gait.period
-        return max(1, round(period / self._period))
+        return max(1, round(run.gait.period / self._period))
 
     def _ticks(self, run: Run) -> int:
         """Return how many control periods a controller must know."""
@@ -171,6 +170,5 @@ class Live:
         gait, control = replace(run.gait, period=period), run.control
         check_limits(run.robot, gait)
         if isinstance(control, Swimming):
-            swim = replace(control.swim, frequency=1.0 / (self._cycle(run) * self._period))
-            control = replace(control, swim=swim, ramp=min(control.ramp, START))
+            control = replace(control, ramp=min(control.ramp, START))
         return replace(run, gait=gait, control=control)

@@ -18,15 +18,15 @@ from jaxtyping import Float
 from scipy.integrate import solve_ivp
 
 from suchus import hydro
-from suchus.design import Robot, cable_joints
+from suchus.design import Robot
 from suchus.design.pieces import pieces
 from suchus.hydro import column, unpacked
 from suchus.land import wetting
 from suchus.land.lake import DEEPEST, Lake
 from suchus.model.build import SNOUT
 from suchus.model.wet import wet_model
-from suchus.motion import Swim
-from suchus.motion.swim import trunk_yaws
+from suchus.motion import Gait, movement
+from suchus.motion.axis import yaw_hinges
 
 INSTANTS = 120
 """Instants of a cycle [-]."""
@@ -50,12 +50,12 @@ def towed_sections(robot: Robot, speed: float, lake: Lake) -> float:
     return -float(body.force[0])
 
 
-def held_sections(robot: Robot, swim: Swim, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
+def held_sections(robot: Robot, gait: Gait, lake: Lake, *, sway: complex = 0j, turn: complex = 0j) -> xr.Dataset:
     """Return the forces over a cycle on a body that swims on the spot, its head moved as it is said.
 
     Args:
         robot: whose body, limbs left out.
-        swim: motion of its joints.
+        gait: in which it swims.
         lake: the water; its level does not matter.
         sway: harmonic of the snout's displacement to the right, ``Re(h exp(2 pi i f t))`` [m].
         turn: harmonic of the head's direction, counter-clockwise from above [rad].
@@ -66,13 +66,13 @@ def held_sections(robot: Robot, swim: Swim, lake: Lake, *, sway: complex = 0j, t
     body, count = _Submerged(robot, lake), INSTANTS
     phase = np.arange(1, count + 1) / count
     turning = np.exp(2j * np.pi * phase)
-    amplitude = body.amplitudes(swim)
+    amplitude = body.amplitudes(gait)
     angles = (turning[:, None] * amplitude).real
     root = np.array(
         [body.root_at(one, -(sway * z).real, (turn * z).real) for one, z in zip(angles, turning, strict=True)]
     )
     moved = np.hstack([root, angles])
-    rate, bend = (_derived(moved, swim.frequency, order) for order in (1, 2))
+    rate, bend = (_derived(moved, gait.frequency, order) for order in (1, 2))
     found = np.empty((count, 3))
     for i in range(count):
         body.move(
@@ -84,12 +84,12 @@ def held_sections(robot: Robot, swim: Swim, lake: Lake, *, sway: complex = 0j, t
     return xr.Dataset(series, coords={"phase": phase})
 
 
-def free_sections(robot: Robot, swim: Swim, lake: Lake, cycles: int) -> xr.Dataset:
+def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Dataset:
     """Return a swim from rest in the plane, as heavy as the water that the body displaces, its motion growing at first.
 
     Args:
         robot: whose body, limbs left out.
-        swim: motion of its joints.
+        gait: in which it swims.
         lake: the water; its level does not matter.
         cycles: how many [-].
 
@@ -98,15 +98,15 @@ def free_sections(robot: Robot, swim: Swim, lake: Lake, cycles: int) -> xr.Datas
     """
     body = _Submerged(robot, lake)
     body.fill(lake.water.density)
-    joints = _growing(body.amplitudes(swim), swim.frequency)
+    joints = _growing(body.amplitudes(gait), gait.frequency)
 
     def accelerated(time: float, state: np.ndarray) -> np.ndarray:
         (angle, rate, bend), x, v = joints(time), state[:3], state[3:]
         return np.concatenate([v, body.freed(body.qpos(x, angle), body.rates(v, rate), body.rates(np.zeros(3), bend))])
 
-    times = np.arange(cycles * INSTANTS + 1) / INSTANTS / swim.frequency
+    times = np.arange(cycles * INSTANTS + 1) / INSTANTS / gait.frequency
     swum = solve_ivp(accelerated, (0.0, times[-1]), np.zeros(6), t_eval=times, rtol=1e-6, atol=1e-8,
-                     max_step=0.02 / swim.frequency)  # fmt: skip
+                     max_step=0.02 / gait.frequency)  # fmt: skip
     power, centre = np.empty(times.size), np.empty(times.size)
     for i, (time, state) in enumerate(zip(times, swum.y.T, strict=True)):
         (angle, rate, bend), x, v = joints(float(time)), state[:3], state[3:]
@@ -115,7 +115,7 @@ def free_sections(robot: Robot, swim: Swim, lake: Lake, cycles: int) -> xr.Datas
         body.move(where, moving, body.rates(root, bend))
         power[i], centre[i] = body.power, body.centre
     means = power[1:].reshape(cycles, INSTANTS).mean(axis=1)
-    speed = np.diff(centre[::INSTANTS]) * swim.frequency
+    speed = np.diff(centre[::INSTANTS]) * gait.frequency
     return xr.Dataset(
         {"speed": ("cycle", speed, {"units": "m/s"}), "power": ("cycle", means, {"units": "W"})},
         coords={"cycle": np.arange(1, cycles + 1)},
@@ -132,18 +132,15 @@ class _Submerged:
         self._model.opt.gravity[:] = 0.0
         self._data = mujoco.MjData(self._model)
         self._lake = replace(lake, level=DEEPEST)
-        names = (*trunk_yaws(robot), *cable_joints(robot))
-        self._places = [int(self._model.joint(name).qposadr[0]) for name in names]
-        self._dofs = [int(self._model.joint(name).dofadr[0]) for name in names]
-        self.joints = len(names)
+        self._hinges = yaw_hinges(robot)
+        self._places = [int(self._model.joint(name).qposadr[0]) for name in self._hinges.names]
+        self._dofs = [int(self._model.joint(name).dofadr[0]) for name in self._hinges.names]
+        self.joints = len(self._hinges.names)
         self.still = np.zeros(self._model.nv)
 
-    def amplitudes(self, swim: Swim) -> np.ndarray:
-        """Return the harmonics of the lateral joints, the cable's bend shared evenly [rad]."""
-        cables = len(cable_joints(self._robot))
-        size = np.array([*swim.yaw, *[swim.tail / cables] * cables])
-        lag = np.array([*swim.yaw_lag, *[swim.tail_lag] * cables])
-        return np.asarray(size * np.exp(-2j * np.pi * lag))
+    def amplitudes(self, gait: Gait) -> np.ndarray:
+        """Return the harmonics of the lateral joints, a cable's bend shared evenly [rad]."""
+        return np.asarray(np.array(self._hinges.signs) * movement(self._robot, gait).harmonics()[0])
 
     def qpos(self, root: np.ndarray, angles: np.ndarray) -> np.ndarray:
         """Return a posture: the root in the plane (x, y, yaw) and the lateral joints."""

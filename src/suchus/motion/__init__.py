@@ -32,16 +32,16 @@ from suchus.motion.movement import (
 )
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
-from suchus.motion.swim import LIMBS_BACK, Bends, Swim, bends, check_swim, limbs_back, swim_targets
+from suchus.motion.swim import LIMBS_BACK, LIMBS_UP, held, lateral_servos, limbs_back, still, swimming_gait, with_limbs
 
 __all__ = [
     "LIMBS_BACK",
+    "LIMBS_UP",
     "NUMBERS",
     "START",
     "AxialWave",
     "Batch",
     "Bend",
-    "Bends",
     "Curve",
     "FootPath",
     "Gait",
@@ -55,20 +55,19 @@ __all__ = [
     "Posture",
     "Steer",
     "Sweep",
-    "Swim",
     "as_table",
-    "bends",
     "check_limits",
     "check_speeds",
-    "check_swim",
     "cycle_targets",
     "divided",
     "draft_gait",
     "excess",
     "form_of",
+    "held",
     "hip_height",
     "in_metres",
     "intended",
+    "lateral_servos",
     "limb_movement",
     "limb_reaches",
     "limb_targets",
@@ -82,9 +81,11 @@ __all__ = [
     "servo_range",
     "shortest_period",
     "stand_up",
+    "still",
     "stretched",
     "suits",
-    "swim_targets",
+    "swimming_gait",
     "tallest",
     "trunk_amplitude",
+    "with_limbs",
 ]

@@ -14,6 +14,8 @@ from suchus.motion.gait import Bend, Gait, Part
 class Hinges(NamedTuple):
     """The hinges of the axis that turn one way, from head to tail; a cable has one for each of its joints."""
 
+    names: tuple[str, ...]
+    """Name of each of them."""
     servos: tuple[int, ...]
     """Servo that moves each of them."""
     signs: tuple[float, ...]
@@ -32,16 +34,18 @@ class Hinges(NamedTuple):
 def yaw_hinges(robot: Robot) -> Hinges:
     """Return the driven hinges that bend a robot sideways; positive is concave to the left."""
     place = layout(robot)
-    rows: list[tuple[float, int, float, Part]] = []
+    rows: list[tuple[float, str, int, float, Part]] = []
     for servo, left, along in zip(place.axial_yaw, place.axial_left, place.axial_place, strict=True):
         part: Part = "trunk" if servo in place.trunk_yaw else "tail" if servo in place.tail_yaw else "neck"
-        rows.append((along, servo, left, part))
+        rows.append((along, place.servos[servo], servo, left, part))
     for servo in place.cables:
-        behind = place.hinges.index(place.cable(servo).hinges[0]) >= place.behind.start
-        rows += [(along, servo, -1.0, "tail" if behind else "trunk") for along in place.cable_places(servo)]
+        hinges = place.cable(servo).hinges
+        behind = place.hinges.index(hinges[0]) >= place.behind.start
+        for along, name in zip(place.cable_places(servo), hinges, strict=True):
+            rows.append((along, name, servo, -1.0, "tail" if behind else "trunk"))
     rows.sort(key=lambda row: row[0])
-    places, servos, signs, parts = tuple(zip(*rows, strict=True)) or ((), (), (), ())
-    return Hinges(servos, signs, parts, places)
+    places, names, servos, signs, parts = tuple(zip(*rows, strict=True)) or ((), (), (), (), ())
+    return Hinges(names, servos, signs, parts, places)
 
 
 @lru_cache(maxsize=256)
@@ -53,7 +57,8 @@ def pitch_hinges(robot: Robot) -> Hinges:
         return "trunk" if servo in place.trunk_pitch else "tail" if servo in place.tail_pitch else "neck"
 
     servos = place.axial_pitch
-    return Hinges(servos, (1.0,) * len(servos), tuple(part(servo) for servo in servos), (0.0,) * len(servos))
+    names = tuple(place.servos[servo] for servo in servos)
+    return Hinges(names, servos, (1.0,) * len(servos), tuple(part(servo) for servo in servos), (0.0,) * len(servos))
 
 
 class Waves:

@@ -12,12 +12,13 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from suchus.design import LEGS, Limb, Robot, check_needs, layout
+from suchus.design import LEGS, Robot, check_needs
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion.axis import Waves, yaw_hinges
 from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Sweep
 from suchus.motion.limits import check_limits, check_speeds
+from suchus.motion.swim import held
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)
 """Phases at which LF, RF, LH and RH pull on the trunk in the article's law [cycle]."""
@@ -469,7 +470,7 @@ def roll(
         ("tail_pitch", Bend(part="tail", turn="pitch", amplitude=tail[1:], lag=(tail_lag + lag,))),
     )
     check_needs(robot, [need for need, bend in bends if any(bend.amplitude)], "a death roll")
-    limbs = tuple(folded(girdle.limb) for girdle in robot.girdles)
+    limbs = tuple(held(girdle.limb, (-pi / 2, 0.0)) for girdle in robot.girdles)
     gait = Gait(
         name="death_roll",
         period=period,
@@ -480,13 +481,3 @@ def roll(
     check_limits(robot, gait)
     check_speeds(robot, gait)
     return gait
-
-
-def folded(limb: Limb) -> Held:
-    """Return a limb that lies back along the body, as far as its foremost yaw joint lets it; without one, straight."""
-    driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
-    number = next((i for i, hinge in enumerate(driven) if hinge.turn == "yaw"), None)
-    if number is None:
-        return Held(angles=())
-    low, high = driven[number].range or (-pi, pi)
-    return Held(angles=(*(0.0,) * number, min(max(-pi / 2, low), high)))

@@ -232,6 +232,11 @@ class Gait:
         return not self.curves
 
     @property
+    def frequency(self) -> float:
+        """Cycles over time [Hz]."""
+        return 1.0 / self.period
+
+    @property
     def erect(self) -> bool:
         """Whether limbs stand erect below their hips, elbows behind and knees ahead; see ``FootPath.swivel``."""
         return any(isinstance(limb, FootPath) and abs(limb.swivel) > pi / 4 for limb in self.limbs)
@@ -577,6 +582,13 @@ NUMBERS: Mapping[str, Number] = MappingProxyType(
             lambda gait: not gait.curves,
             lambda gait: _steady(gait, "trunk", "yaw"),
             lambda gait, value: _with_steady(gait, "trunk", "yaw", value),
+        ),
+        "tail_offset": Number(
+            "rad",
+            "the steady lateral bend of the tail, left positive",
+            lambda gait: not gait.curves,
+            lambda gait: _steady(gait, "tail", "yaw"),
+            lambda gait, value: _with_steady(gait, "tail", "yaw", value),
         ),
         "tail_pitch": Number(
             "rad",

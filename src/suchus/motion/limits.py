@@ -27,8 +27,9 @@ def check_limits(robot: Robot, gait: Gait) -> None:
         UnknownName: a curve is for a servo that the robot lacks.
     """
     here, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
-    _check_cables(here, clock)
+    _check_cables(here)
     targets, direct = cycle_targets(robot, gait, clock), len(here.place.servos) - len(here.place.cables)
+    targets = np.vstack([targets, _lateral_ends(here, targets[0])])
     for name, column, (low, high) in zip(
         here.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
     ):
@@ -40,12 +41,25 @@ def check_limits(robot: Robot, gait: Gait) -> None:
             )
 
 
-def _check_cables(here: Movement, clock: np.ndarray) -> None:
+def _lateral_ends(here: Movement, posture: np.ndarray) -> np.ndarray:
+    """Return a posture twice, with the least and the greatest angles of what waves bend sideways, (2, servo) [rad]."""
+    ends, follows = np.array([posture, posture]), float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
+    measured = {here.place.servos.index(curve.servo) for curve in here.gaits[0].curves}
+    hinges, share = here.yaw.hinges, here.yaw.share[0]
+    for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
+        if servo not in here.place.cables and servo not in measured:
+            swing = max(follows * float(np.abs(here.yaw.swing[0, k])) / share[k] - _ROUNDING, 0.0)
+            ends[:, servo] = sign * here.yaw.offset[0, k] / share[k] + np.array([-swing, swing])
+    return ends
+
+
+def _check_cables(here: Movement) -> None:
     """Refuse bends beyond what cables allow; the pulleys' angles are clipped, and would not show it."""
-    bends = here.yaw.bends(here.axis_of_clock(clock))
+    follows = float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
     for servo in here.place.cables:
         among = [k for k, mine in enumerate(here.yaw.hinges.servos) if mine == servo]
-        most, limit = float(np.abs(here.yaw.whole(among, bends)).max()), here.place.cable(servo).bend_limit
+        swing, steady = here.yaw.together(among)
+        most, limit = float(follows * np.abs(swing[0]) + np.abs(steady[0])), here.place.cable(servo).bend_limit
         if most > limit + _ROUNDING:
             raise OutsideLimits(
                 f"gait {here.gaits[0].name!r} asks the hinges of cable {here.place.servos[servo]} of robot "

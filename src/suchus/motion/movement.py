@@ -41,6 +41,8 @@ class Steer(NamedTuple):
     """How much lower than the gait says each foot is [m]."""
     bend: Float[np.ndarray, "*batch"] | float = 0.0
     """Steady bend of the trunk besides that of the gait, left positive [rad]."""
+    tail: Float[np.ndarray, "*batch"] | float = 0.0
+    """Steady lateral bend of the tail besides that of the gait, left positive [rad]."""
 
 
 class Intended(NamedTuple):
@@ -135,6 +137,14 @@ class Movement:
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
         return np.clip(targets, self._low, self._high) if steer is not None else targets
+
+    def harmonics(self) -> Complex[np.ndarray, "run hinge"]:
+        """Return h of the hinges that bend sideways, whose angles are a mean plus ``Re(h exp(2 pi i clock))`` [rad].
+
+        Positive is concave to the left; measured curves are left aside.
+        """
+        start = self.axis_of_clock(np.zeros(len(self.gaits)))
+        return np.asarray(self.yaw.swing * start[:, None] / self.yaw.share)
 
     def bend_of(self, part: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
@@ -233,8 +243,11 @@ class Movement:
 
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
         size = None if steer is None else steer.size
-        if self.yaw.moves:
+        tail = 0.0 if steer is None else steer.tail
+        if self.yaw.moves or np.any(tail):
             hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
+            if np.any(tail):
+                bends = bends + self._of_tail(tail)
             turned = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
             targets[..., np.array(hinges.servos, dtype=int)[direct]] = turned
             for servo in self.place.cables:
@@ -248,6 +261,13 @@ class Movement:
             targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.share
         if steer is not None and self.place.trunk_yaw:
             targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
+
+    def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
+        """Return what a steady bend of the tail adds to the bends of all hinges, as ``Waves.bends`` has them [rad]."""
+        within = self.yaw.hinges.within("tail")
+        each = np.zeros(len(self.yaw.hinges.servos))
+        each[within] = 1.0 / max(len(within), 1)
+        return np.asarray(np.asarray(bend)[..., None] * each * self.yaw.share)
 
     def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
         if not self._curves:

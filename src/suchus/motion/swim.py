@@ -1,18 +1,28 @@
-"""A swimming motion: the trunk's yaw joints and the tail's cable as sines, limbs folded back."""
+"""Swimming gaits: a wave of lateral bends along the axis of any body, its limbs held back."""
 
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import ARTICLE_BODY, Robot, check_needs, layout
-from suchus.design.checks import Checks, require
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.kinematics import tail as tail_kinematics
+from suchus.design import Limb, Robot, layout
+from suchus.design.checks import require
+from suchus.errors import InvalidDesign
+from suchus.motion.axis import yaw_hinges
+from suchus.motion.gait import Bend, Gait, Held, Part
 
 LIMBS_BACK = (-np.pi / 2, -0.15)
 """Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""
+LIMBS_UP = (-np.pi / 2, -0.3)
+"""Those of limbs that point up to the surface: foam on them keeps the body upright [rad]."""
+_PARTS: tuple[Part, ...] = ("neck", "trunk", "tail")
+
+
+def lateral_servos(robot: Robot) -> tuple[str, ...]:
+    """Return the servos that bend a robot sideways, in the order of ``design.layout(robot).servos``."""
+    place = layout(robot)
+    return tuple(place.servos[i] for i in sorted((*place.axial_yaw, *place.cables)))
 
 
 def limbs_back(robot: Robot) -> Float[np.ndarray, " joint"]:
@@ -20,134 +30,88 @@ def limbs_back(robot: Robot) -> Float[np.ndarray, " joint"]:
     place = layout(robot)
     angles = np.zeros(len(place.hinges))
     for limb in place.limbs:
-        angles[limb.hinges.start : limb.hinges.start + 2] = LIMBS_BACK
+        back = held(limb.girdle.limb, LIMBS_BACK).angles
+        angles[limb.hinges.start : limb.hinges.start + len(back)] = back
     return angles
 
 
-def trunk_yaws(robot: Robot) -> tuple[str, ...]:
-    """Return the trunk's yaw servos from the root forward."""
-    place = layout(robot)
-    return tuple(place.servos[i] for i in place.trunk_yaw)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Swim:
-    """A periodic swimming motion: every lateral angle is ``amplitude cos(2 pi (f t - lag))``."""
-
-    name: str
-    """Name, for messages and tables."""
-    frequency: float
-    """Frequency of the wave, f [Hz], 0.01 to 20."""
-    yaw: tuple[float, float, float]
-    """Amplitudes of the trunk's yaw joints from the pelvis forward, front end left [rad], 0 to pi."""
-    yaw_lag: tuple[float, float, float]
-    """Phase lag of each of them behind f t [cycle], -1 to 1."""
-    tail: float
-    """Amplitude of the bend of the tail's cable section, tip to the right [rad], 0 to pi."""
-    tail_lag: float
-    """Phase lag of the tail's bend behind f t [cycle], -1 to 1."""
-
-    def __post_init__(self) -> None:
-        with Checks("swim", self) as check:
-            check.number("frequency", 0.01, 20.0, "Hz")
-            check.number("tail", 0.0, 3.1416, "rad")
-            check.number("tail_lag", -1.0, 1.0, "cycle")
-        for field in ("yaw", "yaw_lag"):
-            values = getattr(self, field)
-            if len(values) != 3:
-                raise InvalidDesign(f"swim.{field} has {len(values)} numbers; three yaw joints need one each.")
-            for i, value in enumerate(values):
-                low, high, unit = (0.0, 3.1416, "rad") if field == "yaw" else (-1.0, 1.0, "cycle")
-                require("swim", f"{field}[{i}]", value, low, high, unit)
-
-    def reversed(self) -> "Swim":
-        """Return the motion played backwards: the wave runs in the other direction."""
-        first, second, third = self.yaw_lag
-        return replace(self, yaw_lag=(-first, -second, -third), tail_lag=-self.tail_lag)
-
-    def trunk_only(self) -> "Swim":
-        """Return the motion with the tail straight."""
-        return replace(self, tail=0.0)
-
-    def tail_only(self) -> "Swim":
-        """Return the motion with the trunk straight."""
-        return replace(self, yaw=(0.0, 0.0, 0.0))
-
-
-class Bends(NamedTuple):
-    """Lateral angles and their rates."""
-
-    yaw: Float[np.ndarray, "*b 3"]
-    """Trunk's yaw joints from the pelvis forward [rad]."""
-    tail: Float[np.ndarray, "*b"]
-    """Bend of the cable section [rad]."""
-    yaw_rate: Float[np.ndarray, "*b 3"]
-    """[rad/s]."""
-    tail_rate: Float[np.ndarray, "*b"]
-    """[rad/s]."""
-
-
-def bends(swim: Swim, time: Float[np.ndarray, "*b"]) -> Bends:
-    """Return the lateral angles of a swimming motion.
+def swimming_gait(
+    robot: Robot,
+    *,
+    name: str,
+    frequency: float,
+    amplitude: Sequence[float],
+    lag: Sequence[float],
+    limbs: tuple[float, float] = LIMBS_BACK,
+) -> Gait:
+    """Return the gait in which every lateral servo bends by ``amplitude cos(2 pi (f t - lag))``, concave left positive.
 
     Args:
-        swim: the motion.
-        time: [s].
+        robot: the design, with any axis and any limbs.
+        name: of the gait.
+        frequency: f [Hz], 0.01 to 20.
+        amplitude: of each of ``lateral_servos(robot)``; that of a cable is the bend of all its hinges together [rad], 0
+            to pi.
+        lag: phase lag of each of them behind f t [cycle], -1 to 1.
+        limbs: yaw and pitch at which limbs that have such joints are held [rad]; other joints of limbs are held at 0.
+
+    Raises:
+        InvalidDesign: not one amplitude and lag for each lateral servo, or a number is out of range.
     """
-    rate = 2 * np.pi * swim.frequency
-    yaw_phase = rate * time[..., None] - 2 * np.pi * np.array(swim.yaw_lag)
-    tail_phase = rate * time - 2 * np.pi * swim.tail_lag
-    amplitude = np.array(swim.yaw)
-    return Bends(
-        np.asarray(amplitude * np.cos(yaw_phase)),
-        np.asarray(swim.tail * np.cos(tail_phase)),
-        np.asarray(-rate * amplitude * np.sin(yaw_phase)),
-        np.asarray(-rate * swim.tail * np.sin(tail_phase)),
+    servos = lateral_servos(robot)
+    require("swim", "frequency", frequency, 0.01, 20.0, "Hz")
+    for field, values, low, high, unit in (
+        ("amplitude", amplitude, 0.0, 3.1416, "rad"),
+        ("lag", lag, -1.0, 1.0, "cycle"),
+    ):
+        if len(values) != len(servos):
+            raise InvalidDesign(
+                f"swim.{field} has {len(values)} numbers; robot {robot.name!r} has {len(servos)} lateral servos "
+                f"({', '.join(servos) or 'none'}), and each needs one."
+            )
+        for servo, value in zip(servos, values, strict=True):
+            require("swim", f"{field} of {servo}", value, low, high, unit)
+    hinges, place = yaw_hinges(robot), layout(robot)
+    number = {place.servos.index(servo): i for i, servo in enumerate(servos)}
+    count = {servo: hinges.servos.count(servo) for servo in number}
+    axis = []
+    for part in _PARTS:
+        moved = [hinges.servos[k] for k in hinges.within(part)]
+        if moved:
+            sizes = tuple(len(moved) / count[servo] * float(amplitude[number[servo]]) for servo in moved)
+            lags = tuple(float(lag[number[servo]]) for servo in moved)
+            axis.append(Bend(part=part, amplitude=_knots(sizes), lag=_knots(lags)))
+    return Gait(
+        name=name,
+        period=1.0 / frequency,
+        limb_phases=(0.0,) * len(place.limbs),
+        limbs=tuple(held(girdle.limb, limbs) for girdle in robot.girdles),
+        axis=tuple(axis),
     )
 
 
-def swim_targets(robot: Robot, swim: Swim, time: Float[np.ndarray, "*b"]) -> Float[np.ndarray, "*b servo"]:
-    """Return the servo angles of a swimming motion, in the order of ``design.servo_names()`` [rad].
-
-    Args:
-        robot: the design.
-        swim: the motion.
-        time: [s].
-    """
-    check_needs(robot, ARTICLE_BODY, "the swim by trunk and cable")
-    place = layout(robot)
-    now = bends(swim, time)
-    targets = np.zeros((*np.shape(time), len(place.servos)))
-    targets[..., [limb.servos.start for limb in place.limbs]] = -np.pi / 2
-    targets[..., place.trunk_yaw] = now.yaw
-    targets[..., place.cables[0]] = tail_kinematics.servo_angle(robot.tail, now.tail)
-    return targets
+def still(robot: Robot, *, frequency: float = 1.0, limbs: tuple[float, float] = LIMBS_BACK) -> Gait:
+    """Return the swimming gait that is none: a straight axis, limbs held back; see ``swimming_gait``."""
+    none = (0.0,) * len(lateral_servos(robot))
+    return swimming_gait(robot, name="still", frequency=frequency, amplitude=none, lag=none, limbs=limbs)
 
 
-def check_swim(robot: Robot, swim: Swim) -> None:
-    """Refuse a swimming motion that a robot's joints or servos cannot follow.
+def with_limbs(robot: Robot, gait: Gait, limbs: tuple[float, float]) -> Gait:
+    """Return a gait whose limbs are held at other angles, yaw and pitch as in ``swimming_gait`` [rad]."""
+    return replace(gait, limbs=tuple(held(girdle.limb, limbs) for girdle in robot.girdles))
 
-    Raises:
-        OutsideLimits: a joint would have to leave its range, or a servo to turn faster than it can; the message names
-            it and by how much.
-    """
-    check_needs(robot, ARTICLE_BODY, "the swim by trunk and cable")
-    low, high = robot.spine.yaw_range
-    asked = [(name, amplitude, min(-low, high)) for name, amplitude in zip(trunk_yaws(robot), swim.yaw, strict=True)]
-    place = layout(robot)
-    cable = place.servos[place.cables[0]]
-    asked.append((cable, swim.tail, robot.tail.bend_limit))
-    for name, amplitude, limit in asked:
-        if amplitude > limit:
-            raise OutsideLimits(
-                f"swim {swim.name!r} bends {name} by {amplitude:.3f} rad to either side, {amplitude - limit:.3f} rad "
-                f"more than the {limit:.3f} rad that robot {robot.name!r} allows: lower the amplitude, or take a "
-                "longer wave."
-            )
-        shaft = float(tail_kinematics.servo_angle(robot.tail, amplitude)) if name == cable else amplitude
-        speed, most = 2 * np.pi * swim.frequency * shaft, robot.servo(name).speed
-        if speed > most:
-            raise OutsideLimits(
-                f"swim {swim.name!r} turns {name} at {speed:.2f} rad/s; its servo turns at {most:.2f} rad/s at most: "
-                f"lower the frequency to {swim.frequency * most / speed:.2f} Hz, or the amplitude."
-            )
+
+def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
+    return values[:1] if len({*values}) == 1 else values
+
+
+def held(limb: Limb, angles: tuple[float, float]) -> Held:
+    """Return a limb held at yaw and pitch as far as its first such joints go [rad]; other joints are held at 0."""
+    driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
+    turns, row = [hinge.turn for hinge in driven], [0.0] * len(driven)
+    for turn, angle in zip(("yaw", "pitch"), angles, strict=True):
+        if turn in turns:
+            number = turns.index(turn)
+            low, high = driven[number].range or (-np.pi, np.pi)
+            row[number] = float(min(max(angle, low), high))
+    return Held(angles=tuple(row))

@@ -16,7 +16,7 @@ from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.land import Ground, Lake, Live, Push, Run
 from suchus.land.arenas import BEFORE
-from suchus.motion import LIMBS_BACK, START, Gait, Swim, check_limits, divided
+from suchus.motion import START, Gait, check_limits, divided
 from suchus.robots import beside_article
 from suchus.viewer.history import History
 from suchus.viewer.knobs import (
@@ -70,8 +70,8 @@ class Settings:
     """Direction of the next push, from forward to the left [rad]."""
     speed: float = 1.0
     """Simulated over real time [-]."""
-    swim: Swim | None = None
-    """Its swimming motion; None on dry land."""
+    swim: Gait | None = None
+    """Gait in which it swims; None on dry land."""
     swims: bool = True
     """Whether it swims or walks, where there is water."""
     level: float = 0.6
@@ -88,6 +88,10 @@ class Settings:
         still = [*(() if self.spine else ("neck", "trunk")), *(() if self.tail else ("tail",))]
         return divided(robot, self.gait).straightened(*still)
 
+    def moved(self, robot: Robot) -> Gait:
+        """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
+        return self.swim if self.swim is not None and self.swims else self.walked(robot)
+
     @property
     def lake(self) -> Lake | None:
         """The water; None on dry land."""
@@ -97,7 +101,7 @@ class Settings:
     def control(self) -> Coordinated | Swimming:
         """The swim, or the rules that are on."""
         if self.swim is not None and self.swims:
-            return Swimming(swim=self.swim, limb_pitch=LIMBS_BACK[1])
+            return Swimming()
         rules = Coordinated() if self.coordination else _OPEN
         return replace(rules, heading=HeadingRule()) if self.heading else rules
 
@@ -147,14 +151,14 @@ class Session:
         robot: the robot.
         gait: the gait at the beginning.
         timestep: time step of the physics [s]; the one for many runs of a robot of its size if None.
-        swim: its swimming motion, in a lake; None on dry land.
+        swim: gait in which it swims in a lake; None on dry land.
 
     Raises:
         OutsideLimits: the robot's joints cannot follow the gait, or the swim.
         InvalidDesign: the time step does not divide the control period.
     """
 
-    def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Swim | None = None) -> None:
+    def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Gait | None = None) -> None:
         check_limits(robot, gait)
         self.robot = robot
         share = beside_article(robot).length
@@ -283,7 +287,7 @@ class Session:
         s = self.settings
         # a locked joint holds the angle that it has as the walk begins
         run = Run(
-            robot=self.robot, gait=s.walked(self.robot), ground=s.ground, lake=s.lake, control=s.control,
+            robot=self.robot, gait=s.moved(self.robot), ground=s.ground, lake=s.lake, control=s.control,
             faults=s.broken,
         )  # fmt: skip
         self._live = Live(run, timestep=self._timestep)
@@ -297,7 +301,7 @@ class Session:
     def _change(self, settings: Settings) -> str:
         """Walk on by other settings, or keep the old ones and say why."""
         try:
-            self._live.walk(settings.walked(self.robot), settings.control)
+            self._live.walk(settings.moved(self.robot), settings.control)
         except SuchusError as error:
             return str(error)
         self.settings = settings

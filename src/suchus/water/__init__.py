@@ -4,19 +4,18 @@ Swims by CFD stand in ``suchus.water.resolved``, which loads the flow solver.
 """
 
 from suchus.design.water import Water
-from suchus.water.fit import Attempt, Fit, attempts, fit, head_base, readings_table
+from suchus.water.fit import Attempt, Fit, attempts, fit, readings_table
 from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
-from suchus.water.outline import Base, BodySilhouette, MidlineCurve, Outline, silhouette
+from suchus.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
 from suchus.water.passive import sprung
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.water.swimming import MODELS, displaced, greatest, scaled, survey, swim, wave_speed
+from suchus.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
 from suchus.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
 from suchus.water.waves import BodyWave, EelWave, PrintedWave, printed_wave
 
 __all__ = [
     "MODELS",
     "Attempt",
-    "Base",
     "BodySilhouette",
     "BodyWave",
     "Cruise",
@@ -41,14 +40,12 @@ __all__ = [
     "efficiency",
     "fit",
     "greatest",
-    "head_base",
     "level",
     "printed_wave",
     "reactive",
     "readings_table",
     "recoil",
     "resistive",
-    "scaled",
     "silhouette",
     "sprung",
     "survey",

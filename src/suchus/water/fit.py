@@ -1,22 +1,21 @@
 """Waves that the joints are asked to make: the motion that comes nearest to them.
 
-The article commands a continuous wave; the robot has three yaw joints and one cable. So the wave's tangent angles are
-fitted by least squares, and what remains is reported.
+The article commands a continuous wave; a robot has a few lateral servos, the article's three yaw joints and one cable.
+So the wave's tangent angles are fitted by least squares, and what remains is reported.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
 
-from suchus.design import Robot, cable_joints, layout
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.design import Robot
+from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.kinematics.wave import READINGS
-from suchus.motion import Swim, bends
-from suchus.motion.swim import trunk_yaws
-from suchus.water.outline import Base, Outline
+from suchus.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
+from suchus.water.outline import Outline
+from suchus.water.undulation import undulation
 from suchus.water.waves import BodyWave, along, printed_wave
 
 _TIMES = 48
@@ -25,20 +24,27 @@ _TIMES = 48
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fit:
-    """A swimming motion that comes nearest to a wave."""
+    """A swimming gait that comes nearest to a wave."""
 
-    swim: Swim
-    """The motion."""
+    gait: Gait
+    """The gait."""
     head: complex
     """Harmonic of the head's direction: its angle is ``Re(head exp(2 pi i f t))`` [rad]."""
     misfit: float
     """Rms distance of the joints' midline from the wave's, over the greatest swing of the wave's tail [-]."""
     asked: tuple[float, ...]
-    """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.places`` [rad]."""
+    """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.joints`` [rad]."""
 
 
-def fit(robot: Robot, wave: BodyWave, *, name: str = "wave", most: float = 0.25) -> Fit:
-    """Return the motion of the joints that comes nearest to a wave, least squares on tangent angles.
+def fit(
+    robot: Robot,
+    wave: BodyWave,
+    *,
+    name: str = "wave",
+    most: float = 0.25,
+    limbs: tuple[float, float] = LIMBS_BACK,
+) -> Fit:
+    """Return the gait of the lateral servos that comes nearest to a wave, least squares on tangent angles.
 
     Angles are compared at equal arc lengths over one cycle, their first harmonic in time; the head's direction is
     free, the passive end straight.
@@ -48,55 +54,50 @@ def fit(robot: Robot, wave: BodyWave, *, name: str = "wave", most: float = 0.25)
         wave: to be made.
         name: of the motion.
         most: greatest misfit that still counts as the same wave, see ``Fit.misfit`` [-].
+        limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
 
     Raises:
         OutsideLimits: the joints cannot make the wave; the message names the joint and by how much.
         InvalidDesign: the wave's period is not positive.
+        UnsuitedRobot: no servo bends the robot sideways.
     """
     if not (np.isfinite(wave.period) and wave.period > 0):
         raise InvalidDesign(f"the wave's period is {wave.period} s; a positive one is needed.")
+    servos = lateral_servos(robot)
+    if not servos:
+        raise UnsuitedRobot(f"robot {robot.name!r} has no servo that bends it sideways: choose another robot.")
     outline = Outline(robot)
     time = wave.period * np.arange(_TIMES) / _TIMES
     heading, x, y = along(wave, outline.s, time)
     turning = np.exp(-2j * np.pi * time / wave.period)
     harmonic = 2.0 * turning @ heading / _TIMES
     basis = np.column_stack([np.ones_like(outline.s), outline.bending_at(outline.s)])
-    found = np.linalg.lstsq(basis.astype(complex), harmonic, rcond=None)[0]
-    lag = [float(round(-np.angle(value) / (2 * np.pi), 12)) for value in found[1:]]
-    asked = _asked(outline, heading)
-    _check_amplitudes(robot, name, np.abs(found[1:]))
-    swim = Swim(
-        name=name,
-        frequency=1.0 / wave.period,
-        yaw=(float(abs(found[1])), float(abs(found[2])), float(abs(found[3]))),
-        yaw_lag=(lag[0], lag[1], lag[2]),
-        tail=float(abs(found[4])),
-        tail_lag=lag[3],
-    )
-    misfit = _misfit(outline, swim, complex(found[0]), time, x, y)
+    head, *bends = np.linalg.lstsq(basis.astype(complex), harmonic, rcond=None)[0].tolist()
+    amplitudes = [abs(bend) for bend in bends]
+    _check_amplitudes(robot, name, amplitudes)
+    lags = [round(-float(np.angle(bend)) / (2 * np.pi), 12) for bend in bends]
+    # a servo behind the root turns the tip right where its angle is positive, and a gait's bends are to the left
+    left = [
+        lag if servo.ahead else lag - 0.5 if lag > 0.0 else lag + 0.5
+        for servo, lag in zip(outline.servos, lags, strict=True)
+    ]
+    gait = swimming_gait(robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left, limbs=limbs)
+    misfit, asked = _misfit(outline, gait, head, time, x, y), _asked(outline, heading)
     if not misfit <= most:
-        worst = int(np.argmax(asked / _limits(robot)))
+        limits = _limits(outline)
+        worst = int(np.argmax(asked / limits))
         raise OutsideLimits(
             f"the joints of robot {robot.name!r} cannot make {name!r}: the nearest motion is off by {100 * misfit:.0f} "
-            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {_joints(robot)[worst]} stands the wave "
-            f"bends by {asked[worst]:.2f} rad and the joint by {_limits(robot)[worst]:.2f} rad at most: take a longer "
+            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst]} stands the wave "
+            f"bends by {asked[worst]:.2f} rad and the joint by {limits[worst]:.2f} rad at most: take a longer "
             "or a flatter wave."
         )
-    return Fit(swim=swim, head=complex(found[0]), misfit=misfit, asked=tuple(asked.tolist()))
+    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(asked.tolist()))
 
 
-def head_base(fitted: Fit, time: Float[np.ndarray, "*b"]) -> Base:
-    """Return the snout of a fitted wave: it stays in place and turns as the fit says."""
-    rate = 2 * np.pi * fitted.swim.frequency
-    angle = fitted.head * np.exp(1j * rate * time)
-    zero = np.zeros_like(time)
-    return Base(zero, zero, angle.real, zero, zero, (1j * rate * angle).real)
-
-
-def _misfit(outline: Outline, swim: Swim, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
+def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
     """Return the rms distance over the tail's swing; at every instant the curves lie over each other on the average."""
-    base = head_base(Fit(swim=swim, head=head, misfit=0.0, asked=()), time)
-    curve = outline.curve(bends(swim, time), base)
+    curve = undulation(outline, gait).held(turn=head).curve(time)
     apart = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
     swing = float(np.abs(y[:, -1]).max())
     return float(np.sqrt(np.mean(apart[0] ** 2 + apart[1] ** 2)) / swing) if swing > 0 else 0.0
@@ -104,34 +105,32 @@ def _misfit(outline: Outline, swim: Swim, head: complex, time: np.ndarray, x: np
 
 def _asked(outline: Outline, heading: np.ndarray) -> np.ndarray:
     """Return the greatest bend of a wave over the length that each joint stands for [rad]."""
-    half = 0.5 * outline.reaches
-    half[:3] *= 2.0  # trunk's yaw joints stand two links apart
+    half = 0.5 * outline.spacings
     ends = [np.array([np.interp(outline.places + side * half, outline.s, now) for now in heading]) for side in (-1, 1)]
     return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
 
 
-def _limits(robot: Robot) -> np.ndarray:
-    low, high = robot.spine.yaw_range
-    count = len(cable_joints(robot))
-    cable, passive = robot.tail.bend_limit / count, 1.2  # [rad]; the model stops a passive joint there
-    return np.array([*3 * [min(-low, high)], *count * [cable], *robot.tail.fin_segments * [passive]])
+def _limits(outline: Outline) -> np.ndarray:
+    """Return how far each joint bends to either side, those of a cable an even share of what it allows [rad]."""
+    robot = outline.robot
+    limits = {hinge.name: hinge.range or (-np.pi, np.pi) for hinge in robot.axis_hinges}
+    limits |= {name: (0.0, cable.bend_limit / cable.joints) for cable in robot.cables for name in cable.hinges}
+    return np.array([_either_side(*limits[name]) for name in outline.joints])
 
 
-def _joints(robot: Robot) -> tuple[str, ...]:
-    return (*trunk_yaws(robot), *cable_joints(robot), *(f"fin_yaw_{i + 1}" for i in range(robot.tail.fin_segments)))
+def _either_side(low: float, high: float) -> float:
+    return min(-low, high) if low < 0.0 else high
 
 
-def _check_amplitudes(robot: Robot, name: str, amplitudes: np.ndarray) -> None:
-    low, high = robot.spine.yaw_range
-    limits = [*3 * [min(-low, high)], robot.tail.bend_limit]
-    place = layout(robot)
-    names = (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
-    for joint, amplitude, limit in zip(names, amplitudes, limits, strict=True):
-        if amplitude > limit:
+def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> None:
+    limits = {hinge.name: _either_side(*(hinge.range or (-np.pi, np.pi))) for hinge in robot.axis_hinges}
+    limits |= {cable.name: cable.bend_limit for cable in robot.cables}
+    for servo, amplitude in zip(lateral_servos(robot), amplitudes, strict=True):
+        if amplitude > limits[servo]:
             raise OutsideLimits(
-                f"the joints of robot {robot.name!r} cannot make {name!r}: it asks {joint} for {amplitude:.2f} rad to "
-                f"either side, {amplitude - limit:.2f} rad more than the {limit:.2f} rad it has: take a longer or a "
-                "flatter wave."
+                f"the joints of robot {robot.name!r} cannot make {name!r}: it asks {servo} for {amplitude:.2f} rad to "
+                f"either side, {amplitude - limits[servo]:.2f} rad more than the {limits[servo]:.2f} rad it has: take "
+                "a longer or a flatter wave."
             )
 
 

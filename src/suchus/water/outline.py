@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import ARTICLE_BODY, Robot, cable_joints, check_needs
+from suchus.design import Robot, layout
 from suchus.design.profile import profile
 from suchus.errors import InvalidDesign
-from suchus.motion import Bends
+from suchus.motion import lateral_servos
 
 STATIONS = 257
 """Points along the midline, 4 mm apart on a robot of 1 m [-]."""
@@ -36,25 +36,8 @@ def silhouette(robot: Robot, s: Float[np.ndarray, " station"]) -> BodySilhouette
         robot: the design.
         s: from the snout [m].
     """
-    found = profile(check_needs(robot, ARTICLE_BODY, "the outline in the water"), s)
-    return BodySilhouette(found.half_width, found.half_height)
-
-
-class Base(NamedTuple):
-    """Position of the snout and direction of the head."""
-
-    x: Float[np.ndarray, "*b"]
-    """[m]."""
-    y: Float[np.ndarray, "*b"]
-    """[m]."""
-    heading: Float[np.ndarray, "*b"]
-    """Direction from snout to neck [rad]."""
-    x_rate: Float[np.ndarray, "*b"]
-    """[m/s]."""
-    y_rate: Float[np.ndarray, "*b"]
-    """[m/s]."""
-    heading_rate: Float[np.ndarray, "*b"]
-    """[rad/s]."""
+    sections = profile(robot, s)
+    return BodySilhouette(sections.half_width, sections.half_height)
 
 
 class MidlineCurve(NamedTuple):
@@ -74,13 +57,24 @@ class MidlineCurve(NamedTuple):
     """[rad/s]."""
 
 
+class LateralServo(NamedTuple):
+    """What bends the midline at a command: a servo at its hinge, or a cable at several."""
+
+    name: str
+    """Name of the servo."""
+    joints: tuple[int, ...]
+    """Its hinges among ``Outline.joints``, which share its bend evenly."""
+    ahead: bool
+    """Whether they lie ahead of the root, so that a moment about them is that of what lies toward the snout."""
+
+
 @dataclass(frozen=True)
 class Outline:
-    """The robot's midline, from its joints.
+    """A robot's midline, from its joints.
 
-    Each joint's bend is smeared over its flexible length, the curvature as a raised cosine: to the next yaw joint's
-    half way on either side in the trunk, to the next joint in tail and passive end. Where joints bend alike the
-    curvature is even.
+    Each joint's bend is smeared over a length, the curvature as a raised cosine: half way to the nearest joint on
+    either side where a servo turns one hinge between rigid segments, as far as the nearest joint in a cable section
+    and a passive end, which are flexible. Where such joints bend alike the curvature is even.
     """
 
     robot: Robot
@@ -103,75 +97,118 @@ class Outline:
         return silhouette(self.robot, self.s)
 
     @cached_property
+    def joints(self) -> tuple[str, ...]:
+        """The hinges that bend the midline sideways: those ahead of the root from there forward, then those behind."""
+        place, lateral = layout(self.robot), {h.name for h in self.robot.axis_hinges if h.turn == "yaw"}
+        return tuple(name for name in (*place.hinges[place.ahead], *place.hinges[place.behind]) if name in lateral)
+
+    @cached_property
+    def ahead(self) -> int:
+        """How many of ``joints`` lie ahead of the root.
+
+        A positive angle turns the front end left there, and the tip right behind the root.
+        """
+        place = layout(self.robot)
+        return sum(name in place.hinges[place.ahead] for name in self.joints)
+
+    @cached_property
+    def servos(self) -> tuple[LateralServo, ...]:
+        """What bends the midline at a command, in the order of ``motion.lateral_servos``."""
+        place, order = layout(self.robot), {name: i for i, name in enumerate(self.joints)}
+        hinges = {name: place.cable(place.servos.index(name)).hinges for name in self._cables}
+        moved = {
+            name: tuple(order[joint] for joint in hinges.get(name, (name,))) for name in lateral_servos(self.robot)
+        }
+        return tuple(LateralServo(name, joints, joints[0] < self.ahead) for name, joints in moved.items())
+
+    def at_servos(self, moments: Float[np.ndarray, "*b joint"]) -> Float[np.ndarray, "*b servo"]:
+        """Return what moments about ``joints`` ask of ``servos``, each at its own shaft [N m].
+
+        A cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
+        cords' distance to the pulley.
+        """
+        cables = {cable.name: cable.pulley / (0.5 * cable.cord_spacing) for cable in self.robot.cables}
+        columns = [
+            moments[..., list(servo.joints)].mean(axis=-1) * cables.get(servo.name, 1.0) for servo in self.servos
+        ]
+        return np.stack(columns, axis=-1)
+
+    @cached_property
+    def passive(self) -> tuple[int, ...]:
+        """Those of ``joints`` that no servo moves."""
+        driven = {joint for servo in self.servos for joint in servo.joints}
+        return tuple(i for i in range(len(self.joints)) if i not in driven)
+
+    @property
+    def tail_root(self) -> float:
+        """Where the tail begins, at the end of the root's segment, from the snout [m]."""
+        return tail_root(self.robot)
+
+    @property
+    def _cables(self) -> tuple[str, ...]:
+        return tuple(cable.name for cable in self.robot.cables)
+
+    @cached_property
     def places(self) -> Float[np.ndarray, " joint"]:
-        """Where the lateral joints are: three of the trunk from the pelvis forward, cable joints, passive ones [m]."""
-        robot, tail = self.robot, self.robot.tail
-        trunk = robot.head.snout + robot.spine.link * np.array([4.0, 2.0, 0.0])
-        first = robot.head.snout + robot.spine.length + tail.offset + tail.root + tail.pitch / 2
-        cable = first + tail.pitch * np.arange(len(cable_joints(robot)))
-        fin = robot.length - tail.fin_length * (1.0 - np.arange(tail.fin_segments) / tail.fin_segments)
-        return np.concatenate([trunk, cable, fin])
+        """Where the joints are, from the snout [m]."""
+        ends = np.cumsum([segment.front + segment.rear for segment in self.robot.axis])
+        at = {h.name: end for segment, end in zip(self.robot.axis, ends, strict=True) for h in segment.hinges}
+        return np.array([at[name] for name in self.joints])
+
+    @cached_property
+    def spacings(self) -> Float[np.ndarray, " joint"]:
+        """From each joint to the nearest one that is driven in the same way [m].
+
+        That is by a servo of its own, by the same cable, or by nothing; of a single one the distance is that to the
+        nearest of all, or to the nearer end of the body.
+        """
+        cables = {joint: servo.name for servo in self.servos if servo.name in self._cables for joint in servo.joints}
+        drive = ["" if i in self.passive else cables.get(i, "servo") for i in range(len(self.joints))]
+        apart = np.abs(self.places[:, None] - self.places)
+        np.fill_diagonal(apart, np.inf)
+        alike = np.where(np.array(drive)[:, None] == np.array(drive), apart, np.inf).min(axis=1, initial=np.inf)
+        nearest = np.where(np.isfinite(alike), alike, apart.min(axis=1, initial=np.inf))
+        ends = np.minimum(self.places, self.robot.length - self.places)
+        return np.asarray(np.where(np.isfinite(nearest), nearest, ends))
 
     @cached_property
     def reaches(self) -> Float[np.ndarray, " joint"]:
         """Half of the length over which each joint bends the midline [m]."""
-        robot, tail = self.robot, self.robot.tail
-        count = len(cable_joints(robot))
-        fin = tail.fin_length / tail.fin_segments
-        return np.array([*3 * [robot.spine.link], *count * [tail.pitch], *tail.fin_segments * [fin]])
+        rigid = [servo.joints[0] for servo in self.servos if servo.name not in self._cables]
+        share = np.ones(len(self.joints))
+        share[rigid] = 0.5
+        return np.asarray(share * self.spacings)
 
     @cached_property
-    def bending(self) -> Float[np.ndarray, "middle 4"]:
-        """How the heading halfway between stations grows with the three yaw angles and the tail's bend [-]."""
-        middle = 0.5 * (self.s[1:] + self.s[:-1])
-        return self.bending_at(middle)
+    def bending(self) -> Float[np.ndarray, "middle servo"]:
+        """How the heading halfway between stations grows with the bend of each of ``servos`` [-]."""
+        return self.bending_at(0.5 * (self.s[1:] + self.s[:-1]))
 
-    def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point 4"]:
-        """Return how the heading at points grows with the three yaw angles and the tail's bend [-].
+    def bending_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point servo"]:
+        """Return how the heading at points grows with the bend of each of ``servos``, its own sense positive [-]."""
+        each = self.joints_at(s)
+        shares = [each[:, list(servo.joints)].mean(axis=1) for servo in self.servos]
+        return np.array(shares).reshape(len(self.servos), len(s)).T
 
-        A trunk joint that turns the front end left turns what lies behind it right, seen from the front.
-        """
-        each, cables = self.joints_at(s), len(cable_joints(self.robot))
-        return np.column_stack([each[:, :3], each[:, 3 : 3 + cables].mean(axis=1)])
-
-    def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point fin"]:
-        """Return how the heading at points grows with the bend of each passive joint, tip to the right [-]."""
-        return self.joints_at(s)[:, 3 + len(cable_joints(self.robot)) :]
+    def passive_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point passive"]:
+        """Return how the heading at points grows with the bend of each passive joint [-]."""
+        return self.joints_at(s)[:, list(self.passive)]
 
     def joints_at(self, s: Float[np.ndarray, " point"]) -> Float[np.ndarray, "point joint"]:
-        """Return how the heading at points grows with the angle of each joint, in the order of ``places`` [-].
+        """Return how the heading at points grows with the angle of each joint, in the order of ``joints`` [-].
 
-        It is the share of the joint's bend that lies ahead of the point; that of a trunk joint, which turns the front
-        end left, counts to the right behind it.
+        It is the share of the joint's bend that lies ahead of the point; that of a joint ahead of the root, which turns
+        the front end left, counts to the right behind it.
         """
         along = np.clip((s[:, None] - self.places) / self.reaches, -1.0, 1.0)
         shares = np.asarray(0.5 * (1.0 + along + np.sin(np.pi * along) / np.pi))
-        shares[:, :3] *= -1.0
+        shares[:, : self.ahead] *= -1.0
         return shares
 
-    def curve(self, bends: Bends, base: Base | None = None) -> MidlineCurve:
-        """Return the midline, its stations equally far apart along it whatever the bends.
 
-        Args:
-            bends: lateral angles and their rates; the passive end is held straight.
-            base: the snout; at rest at the origin, the head along x, if None.
-        """
-        angles = np.concatenate([bends.yaw, np.asarray(bends.tail)[..., None]], axis=-1)
-        rates = np.concatenate([bends.yaw_rate, np.asarray(bends.tail_rate)[..., None]], axis=-1)
-        if base is None:
-            base = Base(*(np.zeros(angles.shape[:-1]) for _ in Base._fields))
-        middle = angles @ self.bending.T + base.heading[..., None]
-        spin = rates @ self.bending.T + base.heading_rate[..., None]
-        step = self.robot.length / (self.stations - 1)
-        at_stations = self.bending_at(self.s)
-        return MidlineCurve(
-            summed(base.x, step * np.cos(middle)),
-            summed(base.y, step * np.sin(middle)),
-            angles @ at_stations.T + base.heading[..., None],
-            summed(base.x_rate, -step * np.sin(middle) * spin),
-            summed(base.y_rate, step * np.cos(middle) * spin),
-            rates @ at_stations.T + base.heading_rate[..., None],
-        )
+def tail_root(robot: Robot) -> float:
+    """Return where the tail of a straight robot begins, at the end of its root's segment, from the snout [m]."""
+    return sum(segment.front + segment.rear for segment in robot.axis[: robot.root_place + 1])
 
 
 def summed(first: Float[np.ndarray, "*b"], steps: Float[np.ndarray, "*b step"]) -> Float[np.ndarray, "*b station"]:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from suchus.design import Spring
 from suchus.design.water import Water
 from suchus.water.outline import Outline, summed
 from suchus.water.slender import recoil
@@ -53,9 +54,9 @@ def _bent(driven: Undulation, middles: np.ndarray, stations: np.ndarray) -> Undu
 
 def _springs(outline: Outline, frequency: float) -> np.ndarray:
     """Return spring and damper of each passive joint at a frequency, as the model has them [N m/rad]."""
-    tail = outline.robot.tail
-    softer = np.linspace(1.0, 0.5, tail.fin_segments) if tail.fin_segments > 1 else np.ones(1)
-    return tail.fin_stiffness_lateral * softer + 2j * np.pi * frequency * tail.fin_damping
+    drives = {hinge.name: hinge.drive for hinge in outline.robot.axis_hinges}
+    springs = [drives[outline.joints[i]] for i in outline.passive]
+    return np.array([s.stiffness + 2j * np.pi * frequency * s.damping for s in springs if isinstance(s, Spring)])
 
 
 class _Load:
@@ -70,7 +71,7 @@ class _Load:
         self._mass = water.density * np.pi * wide * high
         across = np.abs(self._rate * y + speed * slope)
         self._drag = water.density * water.cross_drag * high * 8.0 / (3.0 * np.pi) * across
-        self._joints = outline.places[-outline.robot.tail.fin_segments :]
+        self._joints = outline.places[list(outline.passive)]
 
     def moments(self, y: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return the moments about the passive joints of what the water does beyond them in a sideways motion [N m]."""

@@ -9,8 +9,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.design import GRAVITY, cable_joints, layout
-from suchus.motion.swim import trunk_yaws
+from suchus.design import GRAVITY
 from suchus.water.field_samples import FieldWindow, midline, midline_values
 from suchus.water.measures import swing
 from suchus.water.outline import Outline
@@ -32,7 +31,6 @@ class TetheredSlice:
     """Forces, loads along the skin and fields of a slice whose motion is given."""
 
     def __init__(self, swim: ResolvedSwim) -> None:
-        self._robot = swim.robot
         self._outline, self._view = swim.outline, FieldWindow(swim.setup.grid, swim.robot.length, 1.9, 0.6)
         self._start, self._period, self._cycles = swim.end - swim.period, swim.period, swim.setting.cycles
         self._settled = min(1, self._cycles - 1)
@@ -68,7 +66,7 @@ class TetheredSlice:
 
     def record(self, sim: flow.Simulation, samples: Samples) -> xr.Dataset:
         """Return what was sampled, at even phases, with the means of every cycle."""
-        place, yaws = layout(self._robot), trunk_yaws(self._robot)
+        lateral = self._outline.servos
         series, steps, quarters = sim.record.after(self._start), samples.series("steps"), samples.series("quarters")
         phase = np.arange(1, PHASES + 1) / PHASES
         seen = (steps["time"] - self._start) / self._period
@@ -100,8 +98,8 @@ class TetheredSlice:
                 "instant": list(QUARTERS),
                 "side": ["left", "right"],
                 "tail": ("tail", np.linspace(0.0, 1.0, PLACES), {"units": "1"}),
-                "joint": [*yaws, cable_joints(self._robot)[0]],
-                "servo": [*yaws, *(place.servos[i] for i in place.cables)],
+                "joint": [self._outline.joints[servo.joints[0]] for servo in lateral],
+                "servo": [servo.name for servo in lateral],
             },
         )
         return data.merge(shown).merge(self._turns(sim.record, samples))
@@ -203,55 +201,53 @@ def _share(track: np.ndarray) -> float:
     return float(swing(track, 1).share[0])
 
 
-def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " 4"]:
-    """Return the moment of the water about each yaw joint and the first cable joint, of what lies beyond it [N m/m].
+def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
+    """Return the moment of the water about the first joint of each lateral servo, of what lies beyond it [N m/m].
 
-    Beyond a joint of the trunk lies the part towards the snout, beyond that of the tail the part towards its tip.
+    Beyond a joint ahead of the root lies the part towards the snout, beyond one behind it the part towards the tip.
 
     Args:
         outline: of the robot.
         surface: pressure and friction along the skin.
         midline: where the joints are now.
     """
-    return _moments(outline, surface, midline, outline.places[:4], np.ones(surface.markers.station.size))
+    first = [servo.joints[0] for servo in outline.servos]
+    return _moments(outline, surface, midline, np.ones(surface.markers.station.size))[first]
 
 
-def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " 4"]:
-    """Return what the water asks of the yaw servos and of the cable's servo, each at its own shaft [N m].
+def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
+    """Return what the water asks of the lateral servos, each at its own shaft; see ``Outline.at_servos`` [N m].
 
     Every section is as high as the robot is there and feels the pressures of the flow, which knows no height: water
-    that goes over and under the body would ask for less. The cable bends its joints alike, so that its servo takes the
-    mean of their moments, over the ratio of half the cords' distance to the pulley.
+    that goes over and under the body would ask for less.
 
     Args:
         outline: of the robot.
         surface: pressure and friction along the skin.
         midline: where the joints are now.
     """
-    tail, last = outline.robot.tail, 3 + len(cable_joints(outline.robot))
     high = 2.0 * np.interp(surface.markers.station, outline.s, outline.silhouette.half_height)
-    moments = _moments(outline, surface, midline, outline.places[:last], high)
-    return np.array([*moments[:3], moments[3:].mean() * tail.pulley / (0.5 * tail.cord_spacing)])
+    return outline.at_servos(_moments(outline, surface, midline, high))
 
 
 def _moments(
-    outline: Outline, surface: flow.Surface, midline: flow.MidlineState, places: np.ndarray, high: np.ndarray
-) -> np.ndarray:
-    """Return the moment about joints of what the water does beyond them, markers being so high."""
+    outline: Outline, surface: flow.Surface, midline: flow.MidlineState, high: np.ndarray
+) -> Float[np.ndarray, " joint"]:
+    """Return the moment about each joint of what the water does beyond it, markers being so high."""
     m = surface.markers
     fx, fy = surface.traction * m.length * high
-    found = []
-    for i, place in enumerate(places):
+    moments = []
+    for i, place in enumerate(outline.places):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
-        beyond = m.station < place if i < 3 else m.station > place
-        found.append(float(np.sum(((m.x - x) * fy - (m.y - y) * fx)[beyond])))
-    return np.array(found)
+        beyond = m.station < place if i < outline.ahead else m.station > place
+        moments.append(float(np.sum(((m.x - x) * fy - (m.y - y) * fx)[beyond])))
+    return np.array(moments)
 
 
 def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 place"]:
     """Return the pressure on the robot's left and right of its tail, from root to tip [Pa]."""
     m = surface.markers
-    places = np.linspace(root(outline), outline.robot.length, PLACES)
+    places = np.linspace(outline.tail_root, outline.robot.length, PLACES)
     out = np.empty((2, PLACES))
     for row, side in enumerate((-1.0, 1.0)):  # the midline runs to the tail: its left is the robot's right
         there = np.flatnonzero(m.side == side)
@@ -262,7 +258,7 @@ def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 
 
 def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> float:
     """Return the mean pressure along the convex side of the tail less that along the concave side [Pa]."""
-    m, start = surface.markers, root(outline)
+    m, start = surface.markers, outline.tail_root
     means = []
     for side in (1.0, -1.0):
         part = (m.side == side) & (m.station > start)
@@ -280,9 +276,4 @@ def place_of_difference(sides: Float[np.ndarray, "2 place"]) -> float:
 
 def bend(outline: Outline, midline: flow.MidlineState) -> float:
     """Return how far the tail bends from its root to its tip, to the robot's right [rad]."""
-    return float(midline.heading[-1] - np.interp(root(outline), outline.s, midline.heading))
-
-
-def root(outline: Outline) -> float:
-    """Return where the tail begins, from the snout [m]."""
-    return outline.robot.length - outline.robot.tail.length + outline.robot.tail.offset
+    return float(midline.heading[-1] - np.interp(outline.tail_root, outline.s, midline.heading))

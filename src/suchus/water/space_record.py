@@ -4,10 +4,8 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.design import GRAVITY, Robot, cable_joints, layout
-from suchus.motion.swim import trunk_yaws
+from suchus.design import GRAVITY
 from suchus.water.field_samples import VortexSampler, midline, wake
-from suchus.water.outline import Outline
 from suchus.water.samples import Samples
 from suchus.water.setting import DENSITY
 from suchus.water.slender import cycle
@@ -36,6 +34,7 @@ class FreeInSpace:
         """Return what was sampled, at even phases, with the means of every cycle."""
         period, cycles, series = self._swim.period, self._swim.setting.cycles, sim.record
         outline, motion, robot = self._swim.outline, self._swim.motion, self._swim.robot
+        servos = [servo.name for servo in outline.servos]
         means = dict(zip(_PER_CYCLE, cycle_means(series, period, cycles, tuple(_PER_CYCLE)), strict=True))
         track, last = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
         torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
@@ -49,8 +48,8 @@ class FreeInSpace:
         data = data.assign(
             moment=("moment", last.time, {"units": "s"}),
             joint_torque=(("moment", "joint"), torques, {"units": "N m"}),
-            servo_torque=(("moment", "servo"), _at_servos(outline, torques), {"units": "N m"}),
-            servo_limit=("servo", [robot.servo(name).torque for name in _servos(robot)], {"units": "N m"}),
+            servo_torque=(("moment", "servo"), outline.at_servos(torques), {"units": "N m"}),
+            servo_limit=("servo", [robot.servo(name).torque for name in servos], {"units": "N m"}),
             swing=((), float(np.ptp(track["tail"])), {"units": "m", "long_name": "of the tail's tip, peak to peak"}),
             head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
             weight=((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
@@ -60,7 +59,7 @@ class FreeInSpace:
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
             joint_place=("joint", outline.places, {"units": "m"}),
         )
-        data = data.assign_coords(servo=list(_servos(robot)), cycle=np.arange(1, cycles + 1)).merge(wake(sim))
+        data = data.assign_coords(servo=servos, cycle=np.arange(1, cycles + 1)).merge(wake(sim))
         return data.merge(self._film.record(samples))
 
 
@@ -95,20 +94,3 @@ class TetheredInSpace:
             "turn": ("part", [turn.real, -turn.imag], {"units": "rad"}),
         }
         return xr.Dataset(data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)})
-
-
-def _servos(robot: Robot) -> tuple[str, ...]:
-    place = layout(robot)
-    return (*trunk_yaws(robot), *(place.servos[i] for i in place.cables))
-
-
-def _at_servos(outline: Outline, torques: np.ndarray) -> np.ndarray:
-    """Return what the water asks of the yaw servos and of the cable's servo, shape (moment, servo) [N m].
-
-    The cable bends its joints alike, so that its servo takes the mean of their moments, over the ratio of half the
-    cords' distance to the pulley.
-    """
-    robot, yaws = outline.robot, len(trunk_yaws(outline.robot))
-    behind = torques[:, yaws : yaws + len(cable_joints(robot))].mean(axis=1)
-    cable = behind * robot.tail.pulley / (0.5 * robot.tail.cord_spacing)
-    return np.column_stack([torques[:, :yaws], cable])

@@ -13,12 +13,12 @@ from suchus.design import Robot
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
 from suchus.flow.setup import LAYER_CELLS
-from suchus.motion import Swim, check_swim
+from suchus.motion import Gait, check_limits, check_speeds
 from suchus.water.immersed import half_heights, immersed, trunk
 from suchus.water.outline import Outline
 from suchus.water.setting import DENSITY, FINEST, GROWS, SwimSetting
 from suchus.water.slender import cycle, recoil
-from suchus.water.undulation import STILL, Motion
+from suchus.water.undulation import Motion, still
 
 SLACK = 1e-6
 """Rounding of the phase [cycle]."""
@@ -104,8 +104,9 @@ class ResolvedSwim:
                 f"sway and turn of the head are {self.sway:.3g} m and {self.turn:.3g} rad, and the body is free: it "
                 "finds them itself. Leave them out, or tether the body with free=TETHERED."
             )
-        if isinstance(self.motion, Swim):
-            check_swim(self.robot, self.motion)
+        if isinstance(self.motion, Gait):
+            check_limits(self.robot, self.motion)
+            check_speeds(self.robot, self.motion)
         self._check_layer()
         self.setting.check_margin()
         self.setup.check()
@@ -162,7 +163,7 @@ def box_sides(setting: SwimSetting) -> flow.Sides:
 def straight_body(outline: Outline, setting: SwimSetting) -> flow.Body:
     """Return the straight body at rest, its limbs left out."""
     bare = replace(setting, limbs=False)
-    shape = body_shape(outline, STILL, bare, sway=0j, turn=0j, grow=0.0)
+    shape = body_shape(outline, still(outline), bare, sway=0j, turn=0j, grow=0.0)
     return flow.Body(shape=replace(shape, deforms=False))
 
 

@@ -1,20 +1,19 @@
 """How a robot swims by the models that cost nothing: one motion in full, or many in a few numbers each."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
-from suchus.design import ARTICLE_BODY, GRAVITY, WATER_DENSITY, Robot, check_needs
+from suchus.design import GRAVITY, WATER_DENSITY, Robot
 from suchus.design.water import Water
 from suchus.errors import OutsideLimits
-from suchus.motion import Swim, check_swim
+from suchus.motion import Gait, check_limits, check_speeds
 from suchus.robots import ROBOTS
 from suchus.water.measures import efficiency
 from suchus.water.outline import MidlineCurve, Outline
 from suchus.water.slender import Model, cruise, cycle, reactive, recoil, resistive
-from suchus.water.undulation import STILL, Motion, undulation
+from suchus.water.undulation import Motion, still, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""
@@ -31,7 +30,7 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
 
     Args:
         robot: who swims, or its name on the shelf.
-        motion: of its joints; or a wave that the midline follows exactly, joints or not.
+        motion: a gait; or a wave that the midline follows exactly, joints or not.
         water: density, viscosity and coefficients; fresh water if None.
         stations: points along the midline.
 
@@ -43,22 +42,23 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
         OutsideLimits: the joints or servos cannot follow the motion.
         NotConverged: thrust and drag never balance.
     """
-    found = check_needs(ROBOTS.resolve(robot), ARTICLE_BODY, "swimming in the outline of a crocodile")
-    if isinstance(motion, Swim):
-        check_swim(found, motion)
-    outline, still = Outline(found, stations), water or Water()
+    swimmer, around = ROBOTS.resolve(robot), water or Water()
+    if isinstance(motion, Gait):
+        check_limits(swimmer, motion)
+        check_speeds(swimmer, motion)
+    outline = Outline(swimmer, stations)
     bent = undulation(outline, motion)
-    held = cycle(outline, bent, *recoil(outline, bent, 0.0, still))
+    held = cycle(outline, bent, *recoil(outline, bent, 0.0, around))
     per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
     curves = []
     for model in MODELS.values():
-        free = cruise(outline, bent, model, still)
+        free = cruise(outline, bent, model, around)
         curve = cycle(outline, bent, free.sway, free.turn)
         curves.append(curve)
-        values = _numbers(found, motion, outline, curve, free.speed, free.power)
-        for name, value in {"thrust_held": model(outline, held, 0.0, still).thrust, **values}.items():
+        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power)
+        for name, value in {"thrust_held": model(outline, held, 0.0, around).thrust, **values}.items():
             per_model[name].append(value)
-    return _record(outline, motion, still, curves, per_model)
+    return _record(outline, motion, around, curves, per_model)
 
 
 _PER_MODEL = {
@@ -137,19 +137,7 @@ def _record(
     return data
 
 
-def scaled(motion: Swim, amplitude: float, frequency: float) -> Swim:
-    """Return a motion with its angles multiplied, at another frequency.
-
-    Args:
-        motion: to be changed.
-        amplitude: factor of every angle [-].
-        frequency: [Hz].
-    """
-    first, second, third = (amplitude * angle for angle in motion.yaw)
-    return replace(motion, yaw=(first, second, third), tail=amplitude * motion.tail, frequency=frequency)
-
-
-def survey(robot: Robot, motions: Sequence[Swim], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
+def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
     """Return what both slender-body models say of motions, and which of them the robot can follow.
 
     Args:
@@ -161,14 +149,14 @@ def survey(robot: Robot, motions: Sequence[Swim], *, water: Water | None = None,
     Returns:
         ``VALUES`` along ``model`` and ``motion``, and ``possible`` along ``motion``: joints and servos can follow it.
     """
-    outline, still = Outline(robot, stations), water or Water()
-    found = np.array([[_one(outline, motion, model, still) for motion in motions] for model in MODELS.values()])
+    outline, around = Outline(robot, stations), water or Water()
+    found = np.array([[_one(outline, motion, model, around) for motion in motions] for model in MODELS.values()])
     data = {name: (("model", "motion"), found[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
     possible = [_possible(robot, motion) for motion in motions]
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
-def greatest(robot: Robot, motion: Swim, *, most: float = 4.0) -> float:
+def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
     """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
 
     Args:
@@ -176,26 +164,25 @@ def greatest(robot: Robot, motion: Swim, *, most: float = 4.0) -> float:
         motion: how.
         most: factor that is not gone beyond [-].
     """
-    largest = max(*motion.yaw, motion.tail)
-    low, high = 0.0, min(most, np.pi / largest) if largest > 0 else most  # no angle beyond half a turn
-    if _possible(robot, scaled(motion, high, motion.frequency)):
+    low, high = 0.0, most
+    if _possible(robot, motion.bent(high)):
         return high
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        if _possible(robot, scaled(motion, middle, motion.frequency)):
+        if _possible(robot, motion.bent(middle)):
             low = middle
         else:
             high = middle
     return low
 
 
-def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[float, ...]:
+def _one(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
     """Return ``VALUES`` of one motion by one model."""
     free = cruise(outline, motion, model, water)
     if free.speed == 0.0:
         return 0.0, 0.0, float("nan"), float("nan"), 0.0
     curve = cycle(outline, motion, free.sway, free.turn)
-    straight = undulation(outline, replace(STILL, frequency=motion.frequency))
+    straight = still(outline, motion.frequency)
     drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
     swing = float(np.ptp(curve.y[:, -1]))
     return (
@@ -207,9 +194,10 @@ def _one(outline: Outline, motion: Swim, model: Model, water: Water) -> tuple[fl
     )
 
 
-def _possible(robot: Robot, motion: Swim) -> bool:
+def _possible(robot: Robot, motion: Gait) -> bool:
     try:
-        check_swim(robot, motion)
+        check_limits(robot, motion)
+        check_speeds(robot, motion)
     except OutsideLimits:
         return False
     return True

@@ -4,8 +4,8 @@ Both are the same thing to the flow and to the models: tangent angles along the 
 Places and velocities follow by summing tangents from the snout, so that the midline keeps its length whatever the wave,
 and velocities are exact derivatives.
 
-A cable fixes the sum of its joints only, and a passive end bends as the water lets it; a ``Swim`` commands them and
-cannot see that. So a motion can also be taken from the angles of every lateral joint of a run (``taken``).
+A cable fixes the sum of its joints only, and a passive end bends as the water lets it; a gait commands them and cannot
+see that. So a motion can also be taken from the angles of every lateral joint of a run (``taken``).
 """
 
 from dataclasses import dataclass, replace
@@ -14,10 +14,10 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Complex, Float
 
-from suchus.design import Robot, cable_joints
-from suchus.design.layout import fin_joints
+from suchus.design import layout
 from suchus.errors import InvalidDesign
-from suchus.motion import Swim
+from suchus.kinematics import tail as tail_kinematics
+from suchus.motion import Gait, cycle_targets, movement
 from suchus.water.outline import MidlineCurve, Outline, summed
 from suchus.water.waves import BodyWave, along
 
@@ -104,22 +104,20 @@ class Undulation:
         return turning, turning * rates
 
 
-Motion = Swim | ExactWave | Undulation
+Motion = Gait | ExactWave | Undulation
 """What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
-
-STILL = Swim(name="still", frequency=1.0, yaw=(0.0, 0.0, 0.0), yaw_lag=(0.0, 0.0, 0.0), tail=0.0, tail_lag=0.0)
-"""A motion that is none."""
 
 
 def undulation(outline: Outline, motion: Motion) -> Undulation:
-    """Return how the midline bends in a motion; the head of a ``Swim`` stays straight and in place.
+    """Return how the midline bends in a motion; in a gait the snout stays in place and the head straight.
 
     Args:
         outline: of the robot.
-        motion: of its joints, or a wave that is followed exactly, or a bend that was worked out before.
+        motion: a gait, or a wave that is followed exactly, or a bend that was worked out before.
 
     Raises:
         InvalidDesign: a bend that was worked out for other stations.
+        OutsideLimits: a gait for other limbs.
     """
     if isinstance(motion, Undulation):
         if motion.outline.stations != outline.stations:
@@ -131,17 +129,44 @@ def undulation(outline: Outline, motion: Motion) -> Undulation:
         return motion
     if isinstance(motion, ExactWave):
         return _of_wave(outline, motion)
-    lag = np.array([*motion.yaw_lag, motion.tail_lag])
-    angles = np.array([*motion.yaw, motion.tail]) * np.exp(-2j * np.pi * lag)
-    middles, stations = outline.bending @ angles, outline.bending_at(outline.s) @ angles
+    return _of_joints(outline, motion.name, motion.frequency, _commanded(outline, motion))
+
+
+def still(outline: Outline, frequency: float = 1.0) -> Undulation:
+    """Return the motion that is none."""
+    return _of_joints(outline, "still", frequency, np.zeros((2, len(outline.joints)), complex))
+
+
+def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndarray) -> Undulation:
+    """Return the motion of a midline whose joints have such harmonics, shape (harmonic, joint) [rad]."""
+    middle = 0.5 * (outline.s[1:] + outline.s[:-1])
     return Undulation(
-        name=motion.name,
-        frequency=motion.frequency,
+        name=name,
+        frequency=frequency,
         outline=outline,
-        middles=np.stack([np.zeros_like(middles), middles]),
-        stations=np.stack([np.zeros_like(stations), stations]),
-        sway=np.zeros(2, complex),
+        middles=harmonics @ outline.joints_at(middle).T,
+        stations=harmonics @ outline.joints_at(outline.s).T,
+        sway=np.zeros(len(harmonics), complex),
     )
+
+
+def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic joint"]:
+    """Return the harmonics of the joints in a gait, a cable's bend shared evenly, without their means [rad]."""
+    here, place = movement(outline.robot, gait), layout(outline.robot)
+    harmonics = np.zeros((HARMONICS if gait.curves else 2, len(outline.joints)), complex)
+    if gait.curves:
+        angles = cycle_targets(outline.robot, gait, np.arange(_INSTANTS) / _INSTANTS)
+        for servo in outline.servos:
+            number = place.servos.index(servo.name)
+            bend = angles[:, number]
+            if number in place.cables:
+                bend = tail_kinematics.bend_of_servo(place.cable(number), bend) / len(servo.joints)
+            harmonics[1:, list(servo.joints)] = _harmonics(bend)[1:HARMONICS, None]
+        return harmonics
+    hinges = here.yaw.hinges
+    order = [outline.joints.index(name) for name in hinges.names]
+    harmonics[1, order] = np.array(hinges.signs) * here.harmonics()[0]
+    return harmonics
 
 
 def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
@@ -164,12 +189,6 @@ def _harmonics(values: np.ndarray) -> np.ndarray:
     found = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
     found[0] *= 0.5
     return np.asarray(found)
-
-
-def lateral_joints(robot: Robot) -> tuple[str, ...]:
-    """Return the joints that bend the midline, in the order of ``Outline.places``: trunk, cable, passive end."""
-    trunk = tuple(f"spine_yaw_{i}" for i in (1, 2, 3))
-    return (*trunk, *cable_joints(robot), *fin_joints(robot)[::2])
 
 
 def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
@@ -200,16 +219,11 @@ def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int
             f"a cycle of {period:.3g} s has {period / step:.3g} samples; {2 * HARMONICS} are needed: keep more samples."
         )
     last = time > time[-1] - cycles * period + 0.5 * step
-    angles = record.joint_angle.sel(joint=list(lateral_joints(outline.robot))).transpose("time", "joint").values[last]
+    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[last]
     turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[last]))
     harmonics = 2.0 * turning @ angles / last.sum()
     harmonics[0] = 0.0
-    middle = 0.5 * (outline.s[1:] + outline.s[:-1])
-    middles, stations = harmonics @ outline.joints_at(middle).T, harmonics @ outline.joints_at(outline.s).T
-    return Undulation(
-        name=name, frequency=frequency, outline=outline, middles=middles, stations=stations,
-        sway=np.zeros(HARMONICS, complex),
-    )  # fmt: skip
+    return _of_joints(outline, name, frequency, harmonics)
 
 
 def unevenness(motion: Undulation, meant: Undulation) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from suchus.design import Robot
 from suchus.kinematics import wave as wave_kinematics
 from suchus.kinematics.wave import READINGS, TravellingWave
+from suchus.water.outline import tail_root
 
 _FINE = 2049
 """Points along a wave from which its arc length is found [-]."""
@@ -108,8 +109,7 @@ def printed_wave(
         sign=sign,
         waves_per_body=waves_per_body,
     )
-    root = robot.head.snout + robot.spine.length + robot.tail.offset
-    return PrintedWave(wave=wave, origin=root if READINGS[reading].tail_only else 0.0)
+    return PrintedWave(wave=wave, origin=tail_root(robot) if READINGS[reading].tail_only else 0.0)
 
 
 def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -10,20 +10,17 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import Robot, crocodile_like
+from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.floating import cases
 from suchus.experiments.floating.figure import draw_checks, draw_righting
-from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Lake, Run, simulate
 from suchus.model.hydrostatics import hydrostatics
-from suchus.motion import Swim
+from suchus.motion import LIMBS_UP, cycle_targets, still
 from suchus.robots import ROBOTS
 
-STILL = Swim(name="still", frequency=1.0, yaw=(0, 0, 0), yaw_lag=(0, 0, 0), tail=0.0, tail_lag=0.0)
-"""No motion."""
 _UPRIGHT = 0.035
 """Heel within which it counts as upright [rad]; 2 degrees."""
 
@@ -148,18 +145,18 @@ class Floating(Experiment):
             found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
         return found
 
-    def _posture(self, robot: Robot) -> np.ndarray | None:
-        return Swimming(swim=STILL).targets(robot, np.zeros(1))[0] if crocodile_like(robot) else None
+    @staticmethod
+    def _posture(robot: Robot) -> np.ndarray:
+        return cycle_targets(robot, still(robot, limbs=LIMBS_UP), np.zeros(1))[0]
 
     def _let_go(self, progress: Any) -> xr.Dataset:
-        crawl = GAITS["belly_crawl"]
-        gait = crawl if suits(self.robot, crawl) else own_gait(self.robot)
+        gait = still(self.robot, limbs=LIMBS_UP)
         runs = [
             Run(
                 robot=self.robot,
                 gait=gait,
                 lake=Lake(level=3.0, heel=heel),
-                control=Swimming(swim=STILL),
+                control=Swimming(),
                 label=f"{np.degrees(heel):.0f} degrees",
             )
             for heel in self.heels

@@ -21,7 +21,7 @@ from suchus.gaits.belly_crawl import LIMBS
 from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.metrics.energy import METRES
-from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, Swim
+from suchus.motion import Gait, GaitInMetres
 from suchus.robots import ROBOTS
 from suchus.water import fit, printed_wave
 
@@ -180,16 +180,17 @@ class Shore(Experiment):
         ]
         return cases
 
-    def _swim(self) -> Swim:
+    def _swim(self) -> Gait:
         robot = with_values(self.robot, {"hull": None})
-        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).swim
+        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).gait
 
     def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
         """Return a run: up a shore from the water, or down into it where the slope falls."""
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
         control = Amphibious(
-            swim=Swimming(swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold(direction=course)),
+            swim=self._swim(),
+            swimming=Swimming(heading=HeadingHold(direction=course)),
             begins="swimming" if uphill > 0 else "walking",
             wade=self.wade if gait == self.gait else None,
             air_released=out,
@@ -208,13 +209,13 @@ class Shore(Experiment):
 
     def _metres(self, progress: Progress) -> xr.Dataset:
         """Return speed and power of the servos on level dry land, at the surface and at depth."""
-        plain = partial(Swimming, swim=self._swim(), limb_pitch=LIMBS_BACK[1], heading=HeadingHold())
-        controls: Mapping[str, Control] = {
-            "land": OpenLoop(), "surface": plain(), "deep": plain(depth=DepthHold(depth=self.depth)),
-        }  # fmt: skip
+        level, deep = Swimming(heading=HeadingHold()), DepthHold(depth=self.depth)
+        controls: Mapping[str, Control] = {"land": OpenLoop(), "surface": level, "deep": replace(level, depth=deep)}
         runs = [
-            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY if name == "land" else _DEEP), control=one)
-            for name, one in controls.items()
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY), control=control)
+            if name == "land"
+            else Run(robot=self.robot, gait=self._swim(), lake=Lake(level=_DEEP), control=control)
+            for name, control in controls.items()
         ]
         last = self.cycles * self.gait.period
         record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)

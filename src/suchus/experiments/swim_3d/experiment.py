@@ -21,7 +21,7 @@ from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
 from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.kinematics.wave import READINGS
-from suchus.motion import Swim
+from suchus.motion import Gait
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
 from suchus.water import (
@@ -156,9 +156,9 @@ class Swim3d(Experiment):
         forget_kept(self.keep)
         return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
 
-    def _motion(self, sign: int) -> Swim:
+    def _motion(self, sign: int) -> Gait:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
-        return fit(self.robot, wave, name=f"(20), reading {self.reading}").swim
+        return fit(self.robot, wave, name=f"(20), reading {self.reading}").gait
 
     @property
     def viscosity(self) -> float:
@@ -171,7 +171,7 @@ class Swim3d(Experiment):
         return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
     def _runs(
-        self, ours: Swim, printed: Swim, bent: Sequence[TakenMidline] = ()
+        self, ours: Gait, printed: Gait, bent: Sequence[TakenMidline] = ()
     ) -> Sequence[tuple[str, Motion, SwimSetting]]:
         """Return name, motion, grid and time of every swim in space."""
 
@@ -189,7 +189,8 @@ class Swim3d(Experiment):
             runs.append(("compared", ours, compared))
         runs.append(("held", ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT)))
         if self.tail_heights:
-            arms = {"trunk only": ours.trunk_only(), "tail only": ours.tail_only(), "as printed": printed}
+            trunk, tail = ours.straightened("tail"), ours.straightened("trunk")
+            arms = {"trunk only": trunk, "tail only": tail, "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
             runs.append((findings.LIMBS, ours, replace(compared, limbs=True)))
         runs += [(one.name, one.motion, compared) for one in bent]

@@ -18,10 +18,9 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
-from suchus.gaits import GAITS
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
-from suchus.motion import LIMBS_BACK, Swim
+from suchus.motion import LIMBS_BACK, Gait
 from suchus.robots import ROBOTS
 from suchus.water import Outline, fit, printed_wave, swim
 from suchus.water.sections import likely
@@ -112,11 +111,12 @@ class SwimFree(Experiment):
         motion = fit(
             with_values(self.robot, {"hull": None}),
             printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1),
-        ).swim
+            limbs=(LIMBS_BACK[0], self.limb_pitch),
+        ).gait
         motions = {
             "whole": motion,
-            "tail_only": motion.tail_only(),
-            "trunk_only": motion.trunk_only(),
+            "tail_only": motion.straightened("trunk"),
+            "trunk_only": motion.straightened("tail"),
             "reversed": motion.reversed(),
         }
         by_table = self._by_table(motion)
@@ -138,45 +138,43 @@ class SwimFree(Experiment):
             depth=self.depth,
             frequency=self.frequency,
             cable=list(cable_joints(self.robot)),
-            meant=motion.tail / len(cable_joints(self.robot)),
+            meant=motion.number("tail_bend") / len(cable_joints(self.robot)),
             **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
         return Simulated(record=record, replays=self._replays(record))
 
-    def _deep(self, motion: Swim, progress: Any) -> list[xr.Dataset]:
+    def _deep(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
         """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
-        swim = Swimming(swim=motion, limb_pitch=self.limb_pitch)
-        runs = submerged.deep_runs(self.robot, swim, Lake(level=self.level), self.depth)
+        runs = submerged.deep_runs(self.robot, motion, Lake(level=self.level), self.depth)
         duration = (self.dive + self.cycles) / self.frequency
         return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
 
-    def _by_table(self, motion: Swim) -> Mapping[str, float]:
+    def _by_table(self, motion: Gait) -> Mapping[str, float]:
         """Return the factors by which the table of sections differs from the coefficients of the swims [-]."""
         outline = Outline(with_values(self.robot, {"hull": None}))
         swum = cruise(outline, motion, reactive, Water())
         side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
         return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
 
-    def _runs(self, motions: Mapping[str, Swim], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
+    def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
-        lake, gait = Lake(level=self.level), GAITS["belly_crawl"]
+        lake, whole = Lake(level=self.level), motions["whole"]
         stiff = with_spring(self.robot, cable_joints(self.robot), self.stiffness)
-        plain = partial(Swimming, limb_pitch=self.limb_pitch)
         runs = [
-            Run(robot=robot, gait=gait, lake=lake, control=plain(swim=one), label=name + ending)
+            Run(robot=robot, gait=gait, lake=lake, control=Swimming(), label=name + ending)
             for robot, ending in ((self.robot, ""), (stiff, "_stiff"))
-            for name, one in motions.items()
+            for name, gait in motions.items()
         ]
-        steered = plain(swim=motions["whole"], turn=self.turn, trunk_turn=self.trunk_turn)
-        runs.append(Run(robot=self.robot, gait=gait, lake=lake, control=steered, label="steered"))
+        steered = whole.with_numbers(tail_offset=self.turn, trunk_offset=self.trunk_turn)
+        runs.append(Run(robot=self.robot, gait=steered, lake=lake, control=Swimming(), label="steered"))
         for name, ends in factors.items():
             for factor in ends:
                 other = _other(lake, name, factor)
-                control = plain(swim=motions["whole"])
-                runs.append(Run(robot=self.robot, gait=gait, lake=other, control=control, label=f"{name} x {factor:g}"))
+                label = f"{name} x {factor:g}"
+                runs.append(Run(robot=self.robot, gait=whole, lake=other, control=Swimming(), label=label))
         return runs
 
-    def _models(self, motions: Mapping[str, Swim]) -> xr.Dataset:
+    def _models(self, motions: Mapping[str, Gait]) -> xr.Dataset:
         """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
         bare = with_values(self.robot, {"hull": None})
         found = {name: swim(bare, one) for name, one in motions.items()}

@@ -9,12 +9,12 @@ import xarray as xr
 from suchus import rotation
 from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.control.holding import neutral_air_fraction
-from suchus.design import Robot, crocodile_like, with_values
+from suchus.design import Robot, with_values
 from suchus.design.pieces import chambers, volumes
 from suchus.experiment import Measure
-from suchus.gaits import GAITS
 from suchus.land import Lake, Run
 from suchus.model.hydrostatics import hydrostatics
+from suchus.motion import Gait, cycle_targets
 
 DEEP = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
@@ -33,28 +33,25 @@ def hovers(robot: Robot, lake: Lake) -> bool:
     return 0.0 < spare <= sum(chambers(robot))
 
 
-def deep_runs(robot: Robot, swim: Swimming, lake: Lake, depth: float) -> list[Run]:
+def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
     """Return swims that dive from the surface to a depth; none if the robot has not the air to hover.
 
     Args:
         robot: that swims.
-        swim: its motion.
+        gait: in which it swims.
         lake: in which it swims.
         depth: of its root below the level [m].
     """
     if not hovers(robot, lake):
         return []
-    plain = replace(swim, heading=HeadingHold(), depth=DepthHold(depth=depth))
+    plain = Swimming(heading=HeadingHold(), depth=DepthHold(depth=depth))
     cases: dict[str, tuple[Robot, Swimming]] = {"deep": (robot, plain)}
     if min(chambers(robot)) > 0.0:
         cases["held"] = robot, replace(plain, pitch=PitchHold())
         cases["pitched"] = robot, replace(plain, pitch=PitchHold(dive=_DIVE))
     if robot.hull is not None and robot.hull.chambers:
         cases["in_foam"] = with_values(robot, {"hull.chambers": ()}), plain
-    return [
-        Run(robot=one, gait=GAITS["belly_crawl"], lake=lake, control=control, label=name)
-        for name, (one, control) in cases.items()
-    ]
+    return [Run(robot=one, gait=gait, lake=lake, control=control, label=name) for name, (one, control) in cases.items()]
 
 
 def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
@@ -88,9 +85,7 @@ def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
 
 def _hovering(run: Run) -> float:
     """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
-    assert isinstance(run.control, Swimming)
-    assert crocodile_like(run.robot)
-    posture = run.control.targets(run.robot, np.zeros(1))[0]
+    posture = cycle_targets(run.robot, run.gait, np.zeros(1), np.zeros(1))[0]
     return -hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
 
 

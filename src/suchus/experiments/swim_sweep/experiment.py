@@ -16,9 +16,9 @@ from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
 from suchus.jobs import at_scheduler, conduct_sweep
-from suchus.motion import Swim
+from suchus.motion import Gait, movement
 from suchus.robots import ROBOTS
-from suchus.water import MODELS, Swum, fit, greatest, printed_wave, scaled, survey
+from suchus.water import MODELS, Swum, fit, greatest, printed_wave, survey
 from suchus.water.resolved import SwimSetting, resolved_swim
 
 _PEERS = (
@@ -33,7 +33,7 @@ _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1",
 """What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
 
-def swum_point(robot: Robot, setting: SwimSetting, motion: Swim, progress: Progress) -> xr.Dataset:
+def swum_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
@@ -117,19 +117,19 @@ class SwimSweep(Experiment):
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
         fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
-        by_frequency = self._map("frequency", self.frequencies, lambda a, f: scaled(fitted[1.0], a, f))
+        by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(fitted[1.0].bent(a), period=1 / f))
         progress("slender-body models", 0.15)
-        by_waves = self._map("waves", self.waves, lambda a, w: scaled(fitted[w], a, 1.0))
+        by_waves = self._map("waves", self.waves, lambda a, w: fitted[w].bent(a))
         progress("slender-body models", 0.3)
         points = self._points(staged(progress, "CFD", 0.3, 1.0), client)
         record = xr.merge([by_frequency, by_waves, points], join="exact", combine_attrs="no_conflicts")
         return Simulated(record=record, tables={"peers.md": self._peers(record)})
 
-    def _fit(self, waves: float) -> Swim:
+    def _fit(self, waves: float) -> Gait:
         wave = printed_wave(self.robot, self.reading, waves_per_body=waves)
-        return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").swim
+        return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").gait
 
-    def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Swim]) -> xr.Dataset:
+    def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Gait]) -> xr.Dataset:
         """Return the results of the slender-body models on a grid of amplitude and another quantity."""
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
         flat = survey(self.robot, motions)
@@ -151,7 +151,7 @@ class SwimSweep(Experiment):
 
     def _points(self, progress: Progress, client: Any) -> xr.Dataset:
         """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
-        motions = [scaled(self._fit(waves), amplitude, 1.0) for amplitude, waves in self.points]
+        motions = [self._fit(waves).bent(amplitude) for amplitude, waves in self.points]
         setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
         work = partial(swum_point, self.robot, setting)
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
@@ -200,9 +200,8 @@ class SwimSweep(Experiment):
         motion = self._fit(1.0)
         slips = record.point_slip.values
         ours = (
-            f"1 Hz; trunk {motion.yaw[0]:.2f}, {motion.yaw[1]:.2f}, {motion.yaw[2]:.2f} rad per yaw joint, tail "
-            f"{motion.tail / self.robot.tail.joints:.2f} rad per cable joint; one wave per body; slip "
-            f"{slips.min():.2f} to {slips.max():.2f}"
+            f"1 Hz; {', '.join(_amplitudes(self.robot, motion))}; one wave per body; slip {slips.min():.2f} to "
+            f"{slips.max():.2f}"
         )
         rows = [(self.robot.name, ours, "this run"), *_PEERS]
         lines = ["| who | what | source |", "|---|---|---|", *(f"| {a} | {b} | {c} |" for a, b, c in rows)]
@@ -231,6 +230,17 @@ def _order(record: xr.Dataset, model: str) -> float:
     pairs = [(i, j) for i in range(cfd.size) for j in range(i)]
     agree = [(cfd[i] - cfd[j]) * (slender[i] - slender[j]) > 0.0 for i, j in pairs]
     return float(np.mean(agree)) if agree else float("nan")
+
+
+def _amplitudes(robot: Robot, gait: Gait) -> list[str]:
+    """Return how far the joints of trunk and tail bend to either side, from the root on, in words."""
+    yaw, words = movement(robot, gait).yaw, []
+    for part in ("trunk", "tail"):
+        bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(part)]]
+        from_root = bends[::-1] if part == "trunk" else bends
+        if from_root:
+            words.append(f"{part} {', '.join(dict.fromkeys(from_root))} rad per joint")
+    return words
 
 
 experiment = SwimSweep()

@@ -22,7 +22,7 @@ from suchus.experiments.swimming.figure import (
 )
 from suchus.experiments.swimming.findings import ARMS
 from suchus.kinematics.wave import READINGS
-from suchus.motion import Swim
+from suchus.motion import Gait
 from suchus.progress import portion
 from suchus.robots import ROBOTS
 from suchus.water import (
@@ -138,9 +138,9 @@ class PlaneSwims(Experiment):
         ours, printed = (self._fit(sign) for sign in (-1, 1))
         held = self._held("ours", ours, staged(progress, "tethered", 0.0, 0.08))
         printed_swim = self._held("as printed", printed, staged(progress, "as printed", 0.08, 0.16))
-        free = self._free("ours", ours.swim, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
+        free = self._free("ours", ours.gait, self.cells, self.free_cycles, staged(progress, "free", 0.16, 0.5))
         conditions = self._conditions(ours, printed, free, staged(progress, "trunk and tail separately", 0.5, 0.8))
-        bent = self._taken(ours.swim, staged(progress, "midline of the joints", 0.8, 0.92)) if self.taken else []
+        bent = self._taken(ours.gait, staged(progress, "midline of the joints", 0.8, 0.92)) if self.taken else []
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
@@ -155,8 +155,8 @@ class PlaneSwims(Experiment):
             ],
             join="exact",
         )
-        record["model_speed"] = swim(self.robot, ours.swim).speed
-        record["printed_model_speed"] = swim(self.robot, printed.swim).speed
+        record["model_speed"] = swim(self.robot, ours.gait).speed
+        record["printed_model_speed"] = swim(self.robot, printed.gait).speed
         record["towed_drag"] = ((), drag, {"units": "N/m"})
         record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
         record.servo_limit.attrs["units"] = "N m"
@@ -182,7 +182,7 @@ class PlaneSwims(Experiment):
 
     def _held(self, name: str, fitted: Fit, progress: Progress) -> xr.Dataset:
         kept, setting = kept_in(self.keep, f"held {name}"), self._setting(TETHERED, self.cells, self.cycles)
-        return resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, checkpoint=kept, progress=progress)
+        return resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, checkpoint=kept, progress=progress)
 
     def _free(self, name: str, motion: Motion, cells: int, cycles: int, progress: Progress) -> xr.Dataset:
         kept, setting = kept_in(self.keep, f"free {name}"), self._setting(FREE, cells, cycles)
@@ -195,7 +195,7 @@ class PlaneSwims(Experiment):
             for name, sign in zip(ARMS[4:], (-1, 1), strict=True)
         ]
         motions: tuple[Motion, ...] = (
-            ours.swim, ours.swim.trunk_only(), ours.swim.tail_only(), printed.swim, *exact,
+            ours.gait, ours.gait.straightened("tail"), ours.gait.straightened("trunk"), printed.gait, *exact,
         )  # fmt: skip
         speeds = []
         for i, (arm, motion) in enumerate(zip(ARMS, motions, strict=True)):
@@ -206,7 +206,7 @@ class PlaneSwims(Experiment):
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), np.array(speeds), {"units": "m/s"})})
         return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
 
-    def _taken(self, motion: Swim, progress: Progress) -> list[xr.Dataset]:
+    def _taken(self, motion: Gait, progress: Progress) -> list[xr.Dataset]:
         """Return speeds of the midlines that joints take in six degrees of freedom, and the error of their angles."""
         speeds, away = [], []
         bent = midlines(self.robot, motion, self.coarse_cells + 1)
@@ -231,7 +231,7 @@ class PlaneSwims(Experiment):
             if fitted is None:
                 thrust.append(float("nan"))
                 continue
-            held = resolved_swim(self.robot, fitted.swim, setting, turn=fitted.head, progress=part)
+            held = resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, progress=part)
             thrust.append(float(held.cycle_thrust[1:].mean()))
         thrusts = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
