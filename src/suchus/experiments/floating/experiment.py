@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import Robot
+from suchus.design import Robot, with_values
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
@@ -37,12 +37,9 @@ class Floating(Experiment):
 
     title = "Does it float as Archimedes says, and does it right itself?"
     shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
-    needs = ("legs", "shells", "spine", "cable_tail")  # as the controller that holds the limbs out
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
-    bare: Robot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot without its hull, whose hydrostatics are set beside."""
     heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
     """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
     duration: float = 20.0
@@ -136,7 +133,10 @@ class Floating(Experiment):
         return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in found.items()})
 
     def _levers(self) -> xr.Dataset:
-        both = [hydrostatics(one, self._posture(one), heels=self.angles) for one in (self.robot, self.bare)]
+        both = [
+            hydrostatics(one, self._posture(one), heels=self.angles)
+            for one in (self.robot, with_values(self.robot, {"hull": None}))
+        ]
         found = xr.Dataset(
             {"lever": (("hull", "heel"), np.array([one.lever for one in both]), {"units": "m"})},
             coords={"hull": ["floating", "bare"], "heel": ("heel", both[0].heel, {"units": "rad"})},

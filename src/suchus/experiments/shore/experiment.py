@@ -56,7 +56,7 @@ class Shore(Experiment):
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
     shows = "Section I, whose robot is amphibious; beyond the article"
     reproduces: ClassVar[bool] = False
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("legs", "axis")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot; it must float, and have air to let out."""

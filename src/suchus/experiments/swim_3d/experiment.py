@@ -60,7 +60,7 @@ class Swim3d(Experiment):
 
     title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
     shows = "Beyond the article: Section IV.B, whose flow is a slice"
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("axis",)
     reproduces: ClassVar[bool] = False
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

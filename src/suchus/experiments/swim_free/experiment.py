@@ -49,7 +49,7 @@ class SwimFree(Experiment):
 
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("axis", "cable_tail")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""

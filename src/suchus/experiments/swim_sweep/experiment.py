@@ -60,7 +60,7 @@ class SwimSweep(Experiment):
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
     shows = "Section IV.B, eq. (20); beyond the article"
     reproduces: ClassVar[bool] = False
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("axis",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""

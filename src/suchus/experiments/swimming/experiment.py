@@ -70,7 +70,7 @@ class PlaneSwims(Experiment):
 
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("axis",)
     judged_with = ("robot", "reading", "frequency", "reynolds")
     judged_from: ClassVar[Mapping[str, float]] = {
         "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,
