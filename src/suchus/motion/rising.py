@@ -19,6 +19,7 @@ from suchus.motion.posture import (
     tail_down,
     upright,
 )
+from suchus.paper import LIMB_REACH
 
 PELVIS_PITCH = radians(80)
 """Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""
@@ -33,7 +34,7 @@ The servos give way under the load and the tail pushes, so that it settles at 0.
 STRETCH = 0.937
 """Height of the hips over the feet when standing, as a share of the hind leg [-]; a straight knee cannot push."""
 _STANCE = 0.03  # [m] outside the hips, of the article's robot; farther apart the feet reach less far ahead
-_LEG = 0.086 + 0.089  # [m]; the hind leg for which the lengths of this module were chosen
+_LEG = LIMB_REACH  # [m]; the hind leg for which the lengths of this module were chosen
 _NOT_QUITE = 0.99  # of the leg's length: a straight knee has no strength
 _ARMS_LYING = {"arm_yaw": 0.0, "arm_pitch": -0.1, "arm_knee": 0.5}  # spread, so that the shoulders come down
 _ARMS_RAISED = {"arm_yaw": 0.2, "arm_pitch": -0.3, "arm_knee": 1.2}  # off the ground and near the trunk

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from math import pi, radians, sin, tan
 from typing import Any, ClassVar
 
