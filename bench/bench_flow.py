@@ -233,7 +233,7 @@ def main():
 def tell_swim(cells, far):
     """Print what a cycle of the robot's free swim in space takes on each number of threads in ``far`` [s]."""
     swim, found = Swim3d(), {}
-    motion = fit(swim.robot, printed_wave(swim.robot, swim.reading, frequency=1.0, sign=-1)).swim
+    motion = fit(swim.robot, printed_wave(swim.robot, swim.reading, frequency=1.0, sign=-1)).gait
     basin = Basin(cells=cells, viscosity=swim.robot.length**2 / swim.reynolds, cycles=2)
     for threads in far:
         sim = flow.Simulation(space.setup_of(swim.robot, motion, basin), thread_count=threads)

@@ -26,7 +26,7 @@ from suchus.water.immersed import folded, half_heights, trunk
 from suchus.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
-MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).swim
+MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
 
 
 def test_the_trunk_is_the_robots_own_body_divided_at_its_joints():

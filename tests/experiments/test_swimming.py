@@ -111,7 +111,7 @@ def test_a_wave_and_its_envelope_are_read_from_the_free_body(robot):
 
 
 def test_the_erratum_on_the_sign_says_what_the_resistive_model_does(robot):
-    printed = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=1)).swim
+    printed = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=1)).gait
     assert float(swim(robot, printed).speed.sel(model="resistive")) == pytest.approx(-0.20, abs=0.005)
     assert "tail first with it, by 0.20 m/s at 1 Hz" in ERRATA["eq_20_sign"].shows
 
@@ -128,7 +128,7 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     for name in ("_SETTLE", "_AVERAGED"):  # of which the experiment itself takes more
         monkeypatch.setattr(f"suchus.experiments._taken.{name}", 2)
     quick = replace(EXPERIMENTS["swimming"].quick(), taken=True, coarse_cells=64)
-    motion = quick._fit(-1).swim
+    motion = quick._fit(-1).gait
     (record,) = quick._taken(motion, lambda stage, share: None)
     assert [one[0] for one in swum] == list(TAKEN)
     assert [one[2:] for one in swum] == [(64, quick.arm_cycles)] * 2

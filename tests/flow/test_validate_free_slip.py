@@ -203,7 +203,7 @@ def rubbed(outline, end):
 def test_the_robot_swims_stably_but_its_sections_swing_too_far():
     """Real water without separation, no newtons of the robot: its sections swing by many of their heights."""
     robot = ROBOTS["caiman"]
-    motion = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=-1), name="(20)").swim
+    motion = fit(robot, printed_wave(robot, "I", frequency=1.0, sign=-1), name="(20)").gait
     outline = Outline(robot, 57)
     swing = np.abs(cycle(outline, motion, *recoil(outline, motion, 0.0, Water())).y_rate).max(axis=0)
     high = outline.silhouette.half_height

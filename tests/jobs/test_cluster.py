@@ -130,7 +130,7 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
 @pytest.fixture
 def swims(robot):
     """Name, calculation and items of a sweep of one small swim in three dimensions."""
-    wave = fit(robot, printed_wave(robot, "I", sign=-1)).swim
+    wave = fit(robot, printed_wave(robot, "I", sign=-1)).gait
     return (
         "swims",
         partial(swum_in_space, robot),
