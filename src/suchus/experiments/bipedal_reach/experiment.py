@@ -144,7 +144,7 @@ class BipedalReach(Experiment):
 
     def _facts(self) -> dict[str, float]:
         """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
-        plausible = {one.field: one.high for one in GAITS.beside("belly_crawl", "chosen", ())}
+        plausible = {chosen.field: chosen.high for chosen in GAITS.beside("belly_crawl", "chosen", ())}
         return {
             "least": self.least,
             "hold": self.hold,
@@ -164,11 +164,11 @@ class BipedalReach(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
-        _, at, up, leave, down, _ = record.attrs["stages"]
+        _, rise_at, up, leave, down, _ = record.attrs["stages"]
         facts, height, margin = record.attrs, record.reach.isel(run=0), record.margin.isel(run=0)
         stood = float(held(height, facts["least"]))
         highest = int(np.argmax(record.crawl_reach.values))
-        found = {
+        measures = {
             **_heights(record),
             "held": Measure(stood, "s"),
             "held_share": Measure(stood / facts["hold"], "-"),
@@ -187,9 +187,11 @@ class BipedalReach(Experiment):
             "pitch_torque": Measure(facts["pitch_torque"], "N m"),
             "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
         }
-        for name, torque in zip(record.servo.values, peak_torque(record.isel(run=0), at, leave).values, strict=True):
-            found[f"torque_rising_{name}"] = Measure(float(torque), "N m")
-        return found | _pushes(record) | _gains(record)
+        for name, torque in zip(
+            record.servo.values, peak_torque(record.isel(run=0), rise_at, leave).values, strict=True
+        ):
+            measures[f"torque_rising_{name}"] = Measure(float(torque), "N m")
+        return measures | _pushes(record) | _gains(record)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         return replayed(
@@ -357,42 +359,44 @@ class BipedalReach(Experiment):
 
 def _heights(record: xr.Dataset) -> dict[str, Measure]:
     """Return the heights that are reached crawling and standing and their ratio, each with the ends of its repeats."""
-    start, at, up, leave, _, _ = record.attrs["stages"]
+    start, rise_at, up, leave, _, _ = record.attrs["stages"]
     calm, noisy = record.reach.isel(run=0), record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
-    found = {}
-    for end, one in (("", calm), ("_repeated_low", noisy), ("_repeated_high", noisy)):
-        crawl = one.sel(time=slice(start, at)).max("time")
-        stand = one.sel(time=slice(up, leave)).min("time")
+    heights = {}
+    for end, reached in (("", calm), ("_repeated_low", noisy), ("_repeated_high", noisy)):
+        crawl = reached.sel(time=slice(start, rise_at)).max("time")
+        stand = reached.sel(time=slice(up, leave)).min("time")
         for name, unit, value in (("crawl", "m", crawl), ("standing", "m", stand), ("ratio", "-", stand / crawl)):
-            found[f"reach_{name}{end}"] = Measure(float(value.max() if end == "_repeated_high" else value.min()), unit)
-    return found
+            heights[f"reach_{name}{end}"] = Measure(
+                float(value.max() if end == "_repeated_high" else value.min()), unit
+            )
+    return heights
 
 
 def _pushes(record: xr.Dataset) -> dict[str, Measure]:
     """Return whether it stays up with noise, and the smallest pushes that topple it, with feedback and without."""
     _, _, up, leave, _, _ = record.attrs["stages"]
-    found = {}
+    measures = {}
     for feedback in ("on", "off"):
         reach = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
         stays = (reach > record.attrs["least"]).all("repeat_time")
-        found[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
+        measures[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
         for direction in record.direction.values:
             force = record.push.sel(feedback=feedback, commanded=record.attrs["commanded_lead"], direction=direction)
-            found[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
-    return found
+            measures[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
+    return measures
 
 
 def _gains(record: xr.Dataset) -> dict[str, Measure]:
     """Return by how much the heights grow with the lengths of legs, spine and head [-]."""
-    found = {
+    gains = {
         f"gain_{part}_{pose}": Measure(float(record.gain.sel(part=part, pose=pose)), "-")
         for part in record.part.values
         for pose in record.pose.values
     }
     others = record.gain.sel(pose="crawling", part=["spine", "head"])
-    found["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
-    found["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")
-    return found
+    gains["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
+    gains["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")
+    return gains
 
 
 def least_lead(record: xr.Dataset) -> float:
@@ -400,8 +404,8 @@ def least_lead(record: xr.Dataset) -> float:
 
     Not a number for a robot whose front does not leave the ground before it should stand.
     """
-    _, at, up, *_ = record.attrs["stages"]
-    rising = record.isel(run=0).sel(time=slice(at, up))
+    _, rise_at, up, *_ = record.attrs["stages"]
+    rising = record.isel(run=0).sel(time=slice(rise_at, up))
     off = np.flatnonzero(rising.reach.values > _LIFTED * record.attrs["stretched"])
     return float(rising.lead[off[0] :].min()) if off.size else float("nan")
 

@@ -109,10 +109,10 @@ class CrawlStability(TwoGroups):
             self.repeated(runs), duration=end, timestep=coarse_step(self.robot), every=2, progress=progress
         )
         shape = (len(runs), self.repeats)
-        found = {"repeated_pp": height_peak_to_peak(record), "repeated_std": height_std(record)}
+        fluctuations = {"repeated_pp": height_peak_to_peak(record), "repeated_std": height_std(record)}
         data = {
             name: (("condition", "repeat"), values.values.reshape(shape), {"units": "m"})
-            for name, values in found.items()
+            for name, values in fluctuations.items()
         }
         return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
 
@@ -128,11 +128,11 @@ class CrawlStability(TwoGroups):
                 f"roll_pp_{name}": Measure(float(roll[i]), "rad"),
                 f"forward_{name}": Measure(float(displacement(record).sel(xyz="x")[i]), "m"),
             }
-        for name, one, other in _CHANGES:
-            if not {one, other} <= set(arms):
+        for name, arm, without in _CHANGES:
+            if not {arm, without} <= set(arms):
                 continue
-            here, there = (record.repeated_pp.sel(condition=c, drop=True) for c in (one, other))
-            change, repeats = pp[arms.index(one)] / pp[arms.index(other)] - 1, here / there - 1
+            repeats_of_arm, repeats_without = (record.repeated_pp.sel(condition=c, drop=True) for c in (arm, without))
+            change, repeats = pp[arms.index(arm)] / pp[arms.index(without)] - 1, repeats_of_arm / repeats_without - 1
             measures |= ranged(name, change, repeats, "-")
         equal = float(pp[0] / pp[len(arms)] - 1)
         measures |= {
@@ -171,14 +171,14 @@ def _looked_at(name: str, record: xr.Dataset) -> dict[str, Measure]:
     apart, stands = line_distance(record), loaded(record).sum("leg")
     measures = {f"line_distance_max_{name}": Measure(float(line_distance_max(record)), "m")}
     for time in SNAPSHOT_TIMES:
-        at, lean = f"{name}_{1000 * time:.0f}_ms", _lean(record, time)
+        moment, lean = f"{name}_{1000 * time:.0f}_ms", _lean(record, time)
         feet = int(stands.sel(time=time, method="nearest"))
         measures |= {
-            f"support_distance_{at}": Measure(support_distance(record, time), "m"),
-            f"line_distance_{at}": Measure(float(apart.sel(time=time, method="nearest")), "m"),
-            f"standing_feet_{at}": Measure(feet, "-"),
-            f"lean_{at}": Measure(lean, "rad"),
-            f"lean_on_two_feet_{at}": Measure(lean if feet == 2 else float("nan"), "rad"),
+            f"support_distance_{moment}": Measure(support_distance(record, time), "m"),
+            f"line_distance_{moment}": Measure(float(apart.sel(time=time, method="nearest")), "m"),
+            f"standing_feet_{moment}": Measure(feet, "-"),
+            f"lean_{moment}": Measure(lean, "rad"),
+            f"lean_on_two_feet_{moment}": Measure(lean if feet == 2 else float("nan"), "rad"),
         }
     return measures
 

@@ -300,10 +300,10 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     """
     error = phase_error(record.start_phase, gait).rename(start_time="time")
     period = gait.period
-    found = cycles_until(error, period, start=START, hold=hold)
+    cycles_taken = cycles_until(error, period, start=START, hold=hold)
     measures = {}
     for law in record.law.values:
-        taken = found.sel(law=law).values
+        taken = cycles_taken.sel(law=law).values
         measures[f"converged_{law}"] = Measure(float(np.isfinite(taken).mean()), "-")
         measures[f"phase_error_{law}"] = Measure(float(_ending(error.sel(law=law), hold * period).mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
@@ -312,7 +312,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
     measures["converged_closed"] = measures["converged_cross_load"]
     measures["converged_open"] = measures["converged_off"]
-    converged = np.isfinite(found.sel(law="cross_load").values)
+    converged = np.isfinite(cycles_taken.sel(law="cross_load").values)
     shares = [float(group.mean()) for group in np.array_split(converged, max(converged.size // _GROUP, 1))]
     measures |= ends("converged_cross_load", shares, "-")
     distances = _ending(record.start_way.rename(start_time="time"), hold * period)
@@ -333,8 +333,8 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
         hold: for how long phases stay to count as recovered, at most [cycle].
         after: how many cycles were walked after it [-].
     """
-    at = START + gait.period
-    part = record.sel(time=slice(at - 1e-9, None))
+    disturbed_at = START + gait.period
+    part = record.sel(time=slice(disturbed_at - 1e-9, None))
     change = part.isel(time=-1) - part.isel(time=0)
     moved = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
     distance = {key: float(value.x) for key, value in moved.items()}
@@ -344,7 +344,7 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
             measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
             measures[f"heading_{name}_{arm}"] = Measure(float(moved[name, arm].heading), "rad")
     error = phase_error(record.limb_phase.sel(disturbance="kick", arm="closed"), gait)
-    back = float(cycles_until(error, gait.period, start=at, hold=min(hold, 0.5)))
+    back = float(cycles_until(error, gait.period, start=disturbed_at, hold=min(hold, 0.5)))
     shares = {
         "kick_kept_open": distance["kick", "open"] / distance["none", "open"],
         "kick_kept_closed": distance["kick", "closed"] / distance["none", "closed"],
@@ -372,19 +372,19 @@ def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     first = part.time[0] + gait.period
     missing = {arm: _rms(_ending(stuck.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
     begun = _rms(stuck.sel(arm="spine", time=slice(None, first)))
-    found = {
+    measures = {
         "spine_lacking_open": Measure(missing["open"], "rad"),
         "spine_lacking_spine": Measure(missing["spine"], "rad"),
         "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
     }
     if "tail_load" not in part:
-        return found
+        return measures
     uphill = part.sel(disturbance="uphill")
     load = {arm: abs(float(_ending(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")}
     pitch = uphill.tail_pitch.sel(arm="tail")
     before = pitch.sel(time=slice(None, float(pitch.time[-1]) - gait.period))
     drift = abs(float(_ending(pitch, gait.period).mean() - _ending(before, gait.period).mean()))
-    return found | {
+    return measures | {
         "tail_load_open": Measure(load["open"], "N m"),
         "tail_load_tail": Measure(load["tail"], "N m"),
         "tail_pitch_drift": Measure(drift, "rad"),
@@ -397,16 +397,16 @@ def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     change = part.isel(time=-1) - part.isel(time=0)
     distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
     clock = change.limb_phase.mean("leg")
-    found = {
+    measures = {
         "distortion": Measure(abs(distance["limbs"] / distance["open"] - 1.0), "-"),
         "kept_undisturbed_spine": Measure(distance["spine"] / distance["open"], "-"),
         "way_gained": Measure(distance["closed"] / distance["open"] - 1.0, "-"),
         "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
     }
     if "tail_pitch" not in record:
-        return found
+        return measures
     pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)
-    return found | {
+    return measures | {
         "kept_undisturbed_tail": Measure(distance["tail"] / distance["open"], "-"),
         "tail_pitch_level": Measure(float(pitch.sel(disturbance="none")), "rad"),
         "tail_pitch_uphill": Measure(float(pitch.sel(disturbance="uphill")), "rad"),

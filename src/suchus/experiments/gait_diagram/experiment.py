@@ -163,14 +163,14 @@ def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
 def _commanded(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return the commanded angles of those parts that a servo bends [rad]."""
     place, commanded = layout(robot), record.servo_target.transpose("time", "servo").values
-    found: dict[str, np.ndarray] = {}
+    bends: dict[str, np.ndarray] = {}
     if place.trunk_yaw:
-        found["spine"] = -commanded[:, list(place.trunk_yaw)].sum(axis=1)
+        bends["spine"] = -commanded[:, list(place.trunk_yaw)].sum(axis=1)
     if place.tail_yaw or place.cables:
         pulled = sum(bend_of_servo(place.cable(i), commanded[:, i]) for i in place.cables)
-        found["tail"] = commanded[:, list(place.tail_yaw)].sum(axis=1) + pulled
+        bends["tail"] = commanded[:, list(place.tail_yaw)].sum(axis=1) + pulled
     vertical = {f"{part}_vertical": commanded[:, list(pitch)].sum(axis=1) for part, pitch in _pitching(robot).items()}
-    return found | vertical
+    return bends | vertical
 
 
 def _pitching(robot: Robot) -> dict[str, tuple[int, ...]]:

@@ -138,20 +138,20 @@ class GallopLimits(Experiment):
         return with_servos(self.robot, changed)
 
     def _replays(
-        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], found: xr.Dataset
+        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
     ) -> Mapping[str, Replay]:
         """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
-        bound = found.speed.isel(gait=found.kind.values == "bound").values.reshape(len(cells), -1)
+        bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
         best = int(np.argmax(bound.max(1)))
-        own = min(
+        nearest = min(
             range(len(cells)),
             key=lambda i: (
                 abs(cells[i][0] - self._own.torque) / self._own.torque
                 + abs(cells[i][1] - self._own.speed) / self._own.speed
             ),
         )
-        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, own)]
-        runs = [i * found.sizes["gait"] + int(np.argmax(bound[i])) for i in (best, own)]
+        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, nearest)]
+        runs = [i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i])) for i in (best, nearest)]
         return replayed(
             "gallop_replay.html",
             record.isel(run=runs[0]),
@@ -166,16 +166,16 @@ class GallopLimits(Experiment):
         """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
         bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
         own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
-        here, there = (one.sel(own, method="nearest") for one in (bound, walks))
+        own_bound, own_walk = (kind.sel(own, method="nearest") for kind in (bound, walks))
         gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
         pays = gallops.sel(torque=own["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
         return {
-            "speed_bound": Measure(float(here.speed), "m/s"),
-            "flight_bound": Measure(float(here.flight), "-"),
-            "joint_speed_bound": Measure(float(here.joint_speed), "rad/s"),
-            "speed_walk": Measure(float(there.speed), "m/s"),
-            "bound_over_walk": Measure(float(here.speed / there.speed), "-"),
+            "speed_bound": Measure(float(own_bound.speed), "m/s"),
+            "flight_bound": Measure(float(own_bound.flight), "-"),
+            "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
+            "speed_walk": Measure(float(own_walk.speed), "m/s"),
+            "bound_over_walk": Measure(float(own_bound.speed / own_walk.speed), "-"),
             "speed_bound_best": Measure(float(best.speed), "m/s"),
             "flight_bound_best": Measure(float(best.flight), "-"),
             "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
@@ -232,10 +232,12 @@ def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figur
     with styled():
         figure, axes = panels(1, 2, width=11.0, height=4.6)
         for shade, torque in zip(shades, bound.torque.values, strict=True):
-            one, other = bound.sel(torque=torque), walk.sel(torque=torque)
-            axes[0, 0].plot(one.servo_speed, one.speed, marker="o", color=shade, label=f"bound, {torque:g} N m")
-            axes[0, 0].plot(one.servo_speed, other.speed, color=shade, linestyle=(0, (4, 2)))
-            axes[0, 1].plot(one.servo_speed, 100 * one.flight, marker="o", color=shade)
+            bounding, walking = bound.sel(torque=torque), walk.sel(torque=torque)
+            axes[0, 0].plot(
+                bounding.servo_speed, bounding.speed, marker="o", color=shade, label=f"bound, {torque:g} N m"
+            )
+            axes[0, 0].plot(bounding.servo_speed, walking.speed, color=shade, linestyle=(0, (4, 2)))
+            axes[0, 1].plot(bounding.servo_speed, 100 * bounding.flight, marker="o", color=shade)
         for ax in axes.flat:
             ax.set_xscale("log")
             ax.set_xticks(bound.servo_speed.values, [f"{speed:g}" for speed in bound.servo_speed.values])

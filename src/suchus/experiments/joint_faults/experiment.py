@@ -150,32 +150,32 @@ class JointFaults(Experiment):
         """Return what every loss costs in every reading, how far faults are borne, and what carries the body."""
         reading = f"{record.attrs['judged_kind']}_{record.attrs['judged_legs']}"
         ours = record.intact_forward.sel(arm="coordinated", drop=True)
-        found: dict[str, Measure] = {}
+        measures: dict[str, Measure] = {}
         for arm in ARMS:
-            found[f"forward_{arm}"] = Measure(float(record.intact_forward.sel(arm=arm)[0]), "m")
+            measures[f"forward_{arm}"] = Measure(float(record.intact_forward.sel(arm=arm)[0]), "m")
         lifts, steers = "lifted_forward" in record, "steered_forward" in record
         if lifts:
-            found["forward_limbs_tail_lifted"] = Measure(float(record.lifted_intact_forward[0]), "m")
-        found |= _over_variations(
+            measures["forward_limbs_tail_lifted"] = Measure(float(record.lifted_intact_forward[0]), "m")
+        measures |= _over_variations(
             "loss_intact_limbs_only", loss(record.intact_forward.sel(arm="limbs_only"), ours), "-"
         )
         if lifts:
-            found |= _over_variations("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
-        found |= _readings(record)
+            measures |= _over_variations("loss_intact_limbs_tail_lifted", loss(record.lifted_intact_forward, ours), "-")
+        measures |= _readings(record)
         for joint in record.lost.values:
             name = f"loss_{joint}_{reading}"
             if steers:
-                found |= _over_variations(f"{name}_steered", loss(record.steered_forward, ours).sel(lost=joint), "-")
+                measures |= _over_variations(f"{name}_steered", loss(record.steered_forward, ours).sel(lost=joint), "-")
                 turned = record.steered_turn.sel(lost=joint).median()
-                found[f"turn_{joint}_{reading}_steered"] = Measure(float(turned), "rad")
+                measures[f"turn_{joint}_{reading}_steered"] = Measure(float(turned), "rad")
             if lifts:
-                found |= _over_variations(
+                measures |= _over_variations(
                     f"{name}_limbs_tail_lifted", loss(record.lifted_forward, ours).sel(lost=joint), "-"
                 )
             for arm in ARMS:
                 losses = loss(record.repeat_forward.sel(arm=arm), record.repeat_intact_forward.sel(arm="coordinated"))
-                found |= ends(f"{name}_{arm}_repeated", losses.sel(lost=joint), "-")
-        return found | _effects(record) | tolerance(record) | _support_measures(record)
+                measures |= ends(f"{name}_{arm}_repeated", losses.sel(lost=joint), "-")
+        return measures | _effects(record) | tolerance(record) | _support_measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say which choice of reading decides most, what walking without the trunk costs, and what steering does."""
@@ -456,25 +456,25 @@ def support(lost_pitch: xr.Dataset) -> xr.Dataset:
 def _readings(record: xr.Dataset) -> dict[str, Measure]:
     """Return what every reading of every failure costs in both conditions."""
     change = _changes(record)
-    found: dict[str, Measure] = {}
+    measures: dict[str, Measure] = {}
     for cell in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
-        at, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
-        found |= _over_variations(f"loss_{name}", change["forward"].sel(at), "-")
-        found[f"net_loss_{name}"] = Measure(float(change["net"].sel(at).median()), "-")
-        found[f"path_loss_{name}"] = Measure(float(change["path"].sel(at).median()), "-")
-        found[f"turn_{name}"] = Measure(float(record.turn.sel(at).median()), "rad")
-    return found
+        reading, name = dict(zip(_CELLS, cell, strict=True)), "_".join(cell)
+        measures |= _over_variations(f"loss_{name}", change["forward"].sel(reading), "-")
+        measures[f"net_loss_{name}"] = Measure(float(change["net"].sel(reading).median()), "-")
+        measures[f"path_loss_{name}"] = Measure(float(change["path"].sel(reading).median()), "-")
+        measures[f"turn_{name}"] = Measure(float(record.turn.sel(reading).median()), "rad")
+    return measures
 
 
 def _effects(record: xr.Dataset) -> dict[str, Measure]:
     """Return by how much the change with spine and tail differs on average between two readings of one thing [-]."""
     change = _changes(record)["forward"].sel(arm="coordinated", joint=record.lost.values).median("variation")
-    found = {}
+    effects = {}
     for name, dim in (("kind", "kind"), ("joint", "joint"), ("legs", "legs")):
         pairs = combinations(change[dim].values, 2)
         apart = [float(abs(change.sel({dim: a}) - change.sel({dim: b})).mean()) for a, b in pairs]
-        found[f"effect_of_{name}"] = Measure(float(np.mean(apart)), "-")
-    return found
+        effects[f"effect_of_{name}"] = Measure(float(np.mean(apart)), "-")
+    return effects
 
 
 def tolerance(record: xr.Dataset) -> dict[str, Measure]:
@@ -484,34 +484,34 @@ def tolerance(record: xr.Dataset) -> dict[str, Measure]:
     variations, by the mean over all faults of the article's joints.
     """
     failed = record.lost.values if "lost" in record.coords else record.joint.values
-    kept = _kept(record).sel(joint=failed)
-    ours, bare = (kept.sel(arm=arm, drop=True) for arm in ARMS)
+    share_kept = _kept(record).sel(joint=failed)
+    ours, bare = (share_kept.sel(arm=arm, drop=True) for arm in ARMS)
     better, gain = ours > bare, (ours - bare).mean(("joint", "kind", "legs"))
     won, decided = int((gain > 0).sum()), int((gain != 0).sum())
     chance = float(stats.binomtest(won, decided, 0.5, alternative="greater").pvalue) if decided else 1.0
     ahead = record.forward.sel(arm="coordinated") > record.forward.sel(arm="limbs_only")
-    found = {
+    measures = {
         "share_spine_and_tail_bear_better": Measure(float(better.mean()), "-"),
-        "share_variations_bear_better": Measure(won / kept.sizes["variation"], "-"),
+        "share_variations_bear_better": Measure(won / share_kept.sizes["variation"], "-"),
         "chance_spine_and_tail_bear_better": Measure(chance, "-"),
         "share_spine_and_tail_ahead": Measure(float(ahead.sel(joint=failed).mean()), "-"),
         "share_limbs_only_beyond_intact": Measure(float((bare > 1.0).mean()), "-"),
         "greatest_limbs_only_over_intact": Measure(float(bare.median("variation").max()), "-"),
     }
     for joint in failed:
-        found[f"share_bear_better_{joint}"] = Measure(float(better.sel(joint=joint).mean()), "-")
-    return found
+        measures[f"share_bear_better_{joint}"] = Measure(float(better.sel(joint=joint).mean()), "-")
+    return measures
 
 
 def _support_measures(record: xr.Dataset) -> dict[str, Measure]:
     """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
-    found: dict[str, Measure] = {}
+    measures: dict[str, Measure] = {}
     height, parts = record.swing_height, [str(part) for part in record.part.values]
     legs = [part for part in parts if part not in ("tail", "belly")]
     carriers = ["tail", *([legs[-3]] if len(legs) > 2 else []), legs[-2]]  # beside the last leg and ahead of it
     for state in (str(one) for one in record.state.values):
         load = record.support.sel(state=state)
-        found |= {
+        measures |= {
             f"support_share_{state}": Measure(float(load.sel(part=carriers).sum() / load.sum()), "-"),
             f"tail_load_{state}": Measure(float(load.sel(part="tail")), "N"),
             f"foot_lift_{state}": Measure(float(record.lifted.sel(state=state)), "m"),
@@ -519,28 +519,28 @@ def _support_measures(record: xr.Dataset) -> dict[str, Measure]:
             f"com_height_{state}": Measure(float(height.sel(state=state)), "m"),
             f"com_rise_{state}": Measure(float(height.sel(state=state) - height.sel(state="intact")), "m"),
         }
-    return found
+    return measures
 
 
 def table(record: xr.Dataset) -> str:
     """Return one row per fault and condition: medians over the variations, with ranges where a paper needs them."""
-    change, own = _changes(record), loss(record.forward, record.intact_forward)
+    change, change_of_own = _changes(record), loss(record.forward, record.intact_forward)
     head = "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
     rows = [head + "turn_deg,printed_change"]
     for cell in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
-        at = dict(zip(_CELLS, cell, strict=True))
-        forward = change["forward"].sel(at)
+        reading = dict(zip(_CELLS, cell, strict=True))
+        forward = change["forward"].sel(reading)
         numbers = (
-            record.forward.sel(at).median(),
+            record.forward.sel(reading).median(),
             forward.median(),
             forward.min(),
             forward.max(),
-            own.sel(at).median(),
-            change["net"].sel(at).median(),
-            change["path"].sel(at).median(),
+            change_of_own.sel(reading).median(),
+            change["net"].sel(reading).median(),
+            change["path"].sel(reading).median(),
         )
         medians = [f"{float(number):.3f}" for number in numbers]
-        turned = f"{float(np.degrees(record.turn.sel(at).median())):.1f}"
+        turned = f"{float(np.degrees(record.turn.sel(reading).median())):.1f}"
         claim = CLAIMS.get(f"fault_{cell[0]}_{cell[3]}")  # of the knee the article says nothing
         printed = f"{claim.value:.2f}" if claim is not None else ""
         rows.append(",".join((*cell, *medians, turned, printed)))

@@ -110,13 +110,13 @@ class JointLoops(Experiment):
         """Return the joint's angle in each test with each gain [rad]."""
         step = physics_step(self.robot)
         free, held = round(self.seconds / step), round(self.gripped / step)
-        none, at = np.zeros(free), np.full(free, self.step)
+        none, stepped = np.zeros(free), np.full(free, self.step)
         never = np.zeros(free, dtype=bool)
-        found: list[list[np.ndarray]] = [[], [], []]
+        angles: list[list[np.ndarray]] = [[], [], []]
         for robot in robots:
-            one = on_stand(robot, self.joint, target=at, load=none, gripped=never, timestep=step)
-            two = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
-            three = on_stand(
+            step_test = on_stand(robot, self.joint, target=stepped, load=none, gripped=never, timestep=step)
+            load_test = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
+            release_test = on_stand(
                 robot,
                 self.joint,
                 target=np.full(held + free, self.step),
@@ -124,25 +124,27 @@ class JointLoops(Experiment):
                 gripped=np.arange(held + free) < held,
                 timestep=step,
             )
-            for kept, angle in zip(found, (one.angle, two.angle, three.angle[held:]), strict=True):
-                kept.append(angle)
-        return found
+            for of_test, angle in zip(
+                angles, (step_test.angle, load_test.angle, release_test.angle[held:]), strict=True
+            ):
+                of_test.append(angle)
+        return angles
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
         step, last = record.attrs["step"], len(record.ki) - 1
         measures: dict[str, Measure] = {}
         for i, ki in enumerate(record.ki.values):
-            here, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
+            with_gain, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
             measures |= {
                 f"rise_time_{name}": Measure(
-                    rise_time(record.time.values, here.angle.sel(test="step").values, step), "s"
+                    rise_time(record.time.values, with_gain.angle.sel(test="step").values, step), "s"
                 ),
-                f"overshoot_{name}": Measure(overshoot(here.angle.sel(test="step").values, step), "-"),
-                f"overshoot_let_go_{name}": Measure(overshoot(here.angle.sel(test="let_go").values, step), "-"),
-                f"droop_{name}": Measure(abs(float(here.angle.sel(test="load")[-1])), "rad"),
-                f"tracking_error_{name}": Measure(float(np.sqrt(here.error_ms.mean())), "rad"),
-                f"forward_{name}": Measure(float(here.forward), "m"),
+                f"overshoot_{name}": Measure(overshoot(with_gain.angle.sel(test="step").values, step), "-"),
+                f"overshoot_let_go_{name}": Measure(overshoot(with_gain.angle.sel(test="let_go").values, step), "-"),
+                f"droop_{name}": Measure(abs(float(with_gain.angle.sel(test="load")[-1])), "rad"),
+                f"tracking_error_{name}": Measure(float(np.sqrt(with_gain.error_ms.mean())), "rad"),
+                f"forward_{name}": Measure(float(with_gain.forward), "m"),
             }
         tail = record.angle.isel(ki=last).sel(time=slice(record.time[-1] - 0.5, None))
         droops = np.abs(record.angle.sel(test="load").isel(time=-1))

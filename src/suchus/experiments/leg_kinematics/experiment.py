@@ -135,9 +135,9 @@ def _misses(hind: LegMeasures, foot: np.ndarray, *, knee: int, side: int) -> np.
     return np.asarray(np.linalg.norm(leg.forward(hind, angles) - foot, axis=-1))
 
 
-def _printed_miss(one: LegMeasures, foot: np.ndarray) -> np.ndarray:
+def _printed_miss(limb: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return how far from each point (14) sets the foot, infinitely far where it has no value [m]."""
-    missed = np.linalg.norm(leg.forward(one, printed.leg_inverse(one, foot)) - foot, axis=-1)
+    missed = np.linalg.norm(leg.forward(limb, printed.leg_inverse(limb, foot)) - foot, axis=-1)
     return np.asarray(np.where(np.isfinite(missed), missed, np.inf))
 
 

@@ -130,13 +130,15 @@ class PatternGeneratorExperiment(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return frequencies, lags and indices over the drive, locks, strides and turns."""
-        found = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim")
+        measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim")
         for arm in record.arm.values:
-            one, unit = record.sel(arm=arm), "rad/cycle"
-            found[f"turn_{arm}"] = Measure(float(one.turned / one.walked), unit)
+            turning, unit = record.sel(arm=arm), "rad/cycle"
+            measures[f"turn_{arm}"] = Measure(float(turning.turned / turning.walked), unit)
             if arm in STRAIGHT:
-                found[f"stride_{arm}"] = Measure(float(one.forward / one.walked / record.attrs["length"]), "L/cycle")
-        return found | one_drive.measures(record)
+                measures[f"stride_{arm}"] = Measure(
+                    float(turning.forward / turning.walked / record.attrs["length"]), "L/cycle"
+                )
+        return measures | one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the drive does, what steers, and how order comes about."""

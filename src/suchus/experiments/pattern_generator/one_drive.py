@@ -65,13 +65,13 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
     silent = np.diff(late.shore_limbs.sel(shore_arm="felt").values) / step < _SILENT
     speed = np.diff(ahead) / step
     parts = {"swim": silent, "walk": ~silent}
-    found = {
+    measures_of_arm = {
         f"drive_{name}_speed": Measure(float(speed[part].mean()) if part.any() else float("nan"), "m/s")
         for name, part in parts.items()
     }
     unfelt = late.shore_ahead.sel(shore_arm="unfelt").values
     return {
-        **found,
+        **measures_of_arm,
         "drive_changes": Measure(float(np.count_nonzero(np.diff(silent.astype(int)))), "-"),
         "drive_afloat_share": Measure(float(silent.mean()), "-"),
         "drive_ashore": Measure(float(ahead[-1]), "m"),

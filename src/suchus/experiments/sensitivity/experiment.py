@@ -72,16 +72,16 @@ class Sensitivity(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Run every sample in every condition, and judge each by the rules of the verdicts."""
-        asked = Claims(robot=self.robot, gait=self.gait, samples=self.samples, cycles=self.cycles, seed=self.seed)
-        study = asked.study(self.samples, self.timestep)
-        record = asked.record(study, conducted(study, progress))
+        claims = Claims(robot=self.robot, gait=self.gait, samples=self.samples, cycles=self.cycles, seed=self.seed)
+        study = claims.study(self.samples, self.timestep)
+        record = claims.record(study, conducted(study, progress))
         record.attrs["shipped"] = int(self.comparable())
         return Simulated(record=record, tables={"sensitivity.csv": table(_rows(record))})
 
     def comparable(self) -> bool:
         """Whether the shipped table asks the same of the same robots and gaits."""
-        here = replace(self, samples=2, seed=0)
-        return here == replace(Sensitivity(), samples=2, seed=0)
+        reduced = replace(self, samples=2, seed=0)
+        return reduced == replace(Sensitivity(), samples=2, seed=0)
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return what became of the samples, the share in which each claim holds, and how it agrees with the table."""
@@ -89,11 +89,11 @@ class Sensitivity(Experiment):
         measures = {measure: Measure(count[name], "-") for name, measure in _COUNTS.items()}
         chances = []
         for key in (str(claim) for claim in record.claim.values):
-            one = record.sel(claim=key)
-            there = np.isfinite(one.number.values)
-            judged, true = int(there.sum()), int(one.holds.values[there].sum())
+            of_claim = record.sel(claim=key)
+            answered = np.isfinite(of_claim.number.values)
+            judged, true = int(answered.sum()), int(of_claim.holds.values[answered].sum())
             low, high = share_interval(true, judged)
-            median = float(np.median(one.number.values[there])) if judged else float("nan")
+            median = float(np.median(of_claim.number.values[answered])) if judged else float("nan")
             measures |= {
                 f"share_{key}": Measure(true / judged if judged else float("nan"), "-"),
                 f"share_{key}_low": Measure(low, "-"),
@@ -131,11 +131,12 @@ class Sensitivity(Experiment):
         if not record.attrs["shipped"] or not SHARES:
             return {"sensitivity_shares": draw_shares(rows, turned(rows))}
         words = {
-            key: f"{spoken(one.turned_by)} {'above' if one.above else 'below'} {one.at:.3g} {units[one.turned_by]}"
-            for key, one in SHARES.items()
-            if one.turned_by in units and one.at is not None and max(one.share, 1 - one.share) < ROBUST
+            key: f"{spoken(share.turned_by)} {'above' if share.above else 'below'} {share.at:.3g} "
+            f"{units[share.turned_by]}"
+            for key, share in SHARES.items()
+            if share.turned_by in units and share.at is not None and max(share.share, 1 - share.share) < ROBUST
         }
-        shipped = {key: (one.share, one.low, one.high) for key, one in SHARES.items()}
+        shipped = {key: (share.share, share.low, share.high) for key, share in SHARES.items()}
         return {"sensitivity_shares": draw_shares(rows, words, shipped)}
 
 

@@ -81,9 +81,9 @@ class SpeedRange(Experiment):
 
     def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
         """Return the replay of the first gait and the last."""
-        until = min(float(one.time[-1]) for one in fastest)
-        pair = [one.sel(time=slice(None, until)) for one in (fastest[0], fastest[-1])]
-        names = [str(one.gait.item()).replace("_", " ") for one in pair]
+        until = min(float(walked.time[-1]) for walked in fastest)
+        pair = [walked.sel(time=slice(None, until)) for walked in (fastest[0], fastest[-1])]
+        names = [str(walked.gait.item()).replace("_", " ") for walked in pair]
         return replayed(
             "speed_replay.html",
             pair[0],
@@ -126,20 +126,20 @@ class SpeedRange(Experiment):
         looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
         return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
 
-    def _look(self, one: xr.Dataset, run: Run) -> list[float]:
+    def _look(self, walked: xr.Dataset, run: Run) -> list[float]:
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
-        part = between(one, start, end)
-        speed = float(displacement(one, start, end).sel(xyz="x")) / (end - start)
+        part = between(walked, start, end)
+        speed = float(displacement(walked, start, end).sel(xyz="x")) / (end - start)
         legs = [i for limb in layout(run.robot).limbs for i in range(limb.servos.start, limb.servos.stop)]
         fastest = float(abs(part.servo_velocity.isel(servo=legs)).quantile(0.99, "time").max())
         height = hip_height(run.robot, run.gait)
         return [
             run.gait.period,
             speed,
-            float(duty_factor(one, start, end).mean()),
-            float(cost_of_transport(one, start, end)),
+            float(duty_factor(walked, start, end).mean()),
+            float(cost_of_transport(walked, start, end)),
             speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
-            float(roll_peak_to_peak(one, start, end)),
+            float(roll_peak_to_peak(walked, start, end)),
             fastest,
             float((part.tail_force.sel(xyz="z") > _LOADED * run.robot.mass * GRAVITY).mean()),
             _lying(run.robot, part),
@@ -164,19 +164,19 @@ class SpeedRange(Experiment):
         usual = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
         for name in record.gait.values:
             both = record.sel(gait=name)
-            one, line = (both.sel(servo_model=model) for model in ("slew", "line"))
-            at = one.isel(slower=usual)
+            slew, line = (both.sel(servo_model=model) for model in ("slew", "line"))
+            usual_cycle = slew.isel(slower=usual)
             measures |= {
-                f"speed_{name}": Measure(float(at.speed), "m/s"),
+                f"speed_{name}": Measure(float(usual_cycle.speed), "m/s"),
                 f"speed_{name}_speed_line": Measure(float(line.isel(slower=usual).speed), "m/s"),
-                **ranged(f"speed_{name}_slowest", one.speed.min(), both.speed.min("slower"), "m/s"),
-                **ranged(f"speed_{name}_fastest", one.speed.max(), both.speed.max("slower"), "m/s"),
-                f"cost_{name}": Measure(float(at.cost), "-"),
-                f"cost_{name}_least": Measure(float(one.cost.min()), "-"),
-                f"duty_{name}": Measure(float(at.duty), "-"),
-                f"froude_{name}": Measure(float(at.froude), "-"),
-                f"roll_{name}": Measure(float(at.rolled), "rad"),
-                f"joint_speed_{name}": Measure(float(at.joint_speed), "rad/s"),
+                **ranged(f"speed_{name}_slowest", slew.speed.min(), both.speed.min("slower"), "m/s"),
+                **ranged(f"speed_{name}_fastest", slew.speed.max(), both.speed.max("slower"), "m/s"),
+                f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
+                f"cost_{name}_least": Measure(float(slew.cost.min()), "-"),
+                f"duty_{name}": Measure(float(usual_cycle.duty), "-"),
+                f"froude_{name}": Measure(float(usual_cycle.froude), "-"),
+                f"roll_{name}": Measure(float(usual_cycle.rolled), "rad"),
+                f"joint_speed_{name}": Measure(float(usual_cycle.joint_speed), "rad/s"),
             }
         animals = ANIMAL["high_walk_speed"]
         measures["animals_high_walk_slowest"] = Measure(animals.low, "m/s")
@@ -268,11 +268,11 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
         for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
             for gait in record.gait.values:
                 for model, width in (("line", _THIN), ("slew", _THICK)):
-                    one = record.sel(gait=gait, servo_model=model)
+                    of_gait = record.sel(gait=gait, servo_model=model)
                     style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
                     if model == "line":
                         style |= {"label": f"_{style['label']}, {_SERVOS[1]}", "alpha": 0.7}
-                    ax.plot(one.period, scale * one[name], **style)
+                    ax.plot(of_gait.period, scale * of_gait[name], **style)
             ax.set_xscale("log")
             ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
             ax.minorticks_off()

@@ -96,9 +96,12 @@ class TailBending(Experiment):
         """Return the worst error of (17) at the ends of the plausible ranges of gap and cord spacing [-]."""
         ranges = {c.field: (c.low, c.high) for c in ROBOTS.beside("caiman", "chosen", ())}
         cases = product(ranges["tail.gap"], ranges["tail.cord_spacing"])
-        own = self.robot.tail
-        designs = (own._replace(gap=gap, pitch=own.plate + gap, cord_spacing=spacing) for gap, spacing in cases)
-        worst = [_errors(one, min(furthest, tail.bend_limit(one))).error_at_end.max() for one in designs]
+        plates = self.robot.tail
+        designs = (plates._replace(gap=gap, pitch=plates.plate + gap, cord_spacing=spacing) for gap, spacing in cases)
+        worst = [
+            _errors(plates_varied, min(furthest, tail.bend_limit(plates_varied))).error_at_end.max()
+            for plates_varied in designs
+        ]
         return float(max(worst))
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
@@ -107,7 +110,7 @@ class TailBending(Experiment):
         miss = np.linalg.norm(record.joints_ours - record.joints_printed, axis=-1)[:, -1]
         bent = record.isel(bend=slice(1, None))
         opposed = (bent.toward < 0) & (bent.away > 0)
-        found = {
+        measures = {
             "error_of_eq_17_max": Measure(float(np.nanmax(np.abs([record.error_toward, record.error_away]))), "-"),
             "error_of_eq_17_plausible": Measure(facts["plausible_error"], "-"),
             "cable_section_length": Measure(facts["section"], "m"),
@@ -123,15 +126,15 @@ class TailBending(Experiment):
             **{name: Measure(float(facts[name]), "-") for name in ("tail_joints", "tail_actuators", "tail_share")},
         }
         for degrees in record.at.values:
-            here = record.sel(at=degrees)
-            found |= {
-                f"cord_toward_{degrees}": Measure(float(here.cord_toward), "m"),
-                f"cord_away_{degrees}": Measure(float(here.cord_away), "m"),
-                f"slack_{degrees}": Measure(float(-here.cord_toward - here.cord_away), "m"),
-                f"error_of_eq_17_toward_{degrees}": Measure(float(here.error_17_toward), "-"),
-                f"error_of_eq_17_away_{degrees}": Measure(float(here.error_17_away), "-"),
+            at_bend = record.sel(at=degrees)
+            measures |= {
+                f"cord_toward_{degrees}": Measure(float(at_bend.cord_toward), "m"),
+                f"cord_away_{degrees}": Measure(float(at_bend.cord_away), "m"),
+                f"slack_{degrees}": Measure(float(-at_bend.cord_toward - at_bend.cord_away), "m"),
+                f"error_of_eq_17_toward_{degrees}": Measure(float(at_bend.error_17_toward), "-"),
+                f"error_of_eq_17_away_{degrees}": Measure(float(at_bend.error_17_away), "-"),
             }
-        return found | _spreads(record)
+        return measures | _spreads(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how large the dropped term is, what it does to the cords, and how alike the joints turn."""
@@ -235,12 +238,14 @@ def _facts(robot: Robot) -> dict[str, float]:
 def _spreads(record: xr.Dataset) -> dict[str, Measure]:
     """Return how far the joints differ at most in each crawl [rad], and how often by more than ``ALIKE`` [-]."""
     spread = tail_joint_spread(record.crawl_angle, [str(name) for name in record.joint.values])
-    found = {}
+    measures = {}
     for crawl, end in (("gait", ""), ("straight", "_straight")):
-        one = spread.sel(crawl=crawl)
-        found[f"tail_joint_spread{end}"] = Measure(float(one.max()), "rad")
-        found[f"tail_joint_spread_share{end}"] = Measure(float((one > ALIKE).where(one.notnull()).mean()), "-")
-    return found
+        of_crawl = spread.sel(crawl=crawl)
+        measures[f"tail_joint_spread{end}"] = Measure(float(of_crawl.max()), "rad")
+        measures[f"tail_joint_spread_share{end}"] = Measure(
+            float((of_crawl > ALIKE).where(of_crawl.notnull()).mean()), "-"
+        )
+    return measures
 
 
 experiment = TailBending()

@@ -121,15 +121,15 @@ class Terrain(Experiment):
         Raises:
             UnsuitedRobot: its own gait puts no feet at a height.
         """
-        own = own_gait(robot)
-        if not own.has("foot paths"):
-            raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {own.name!r}.")
-        more = own.period / self.semi_erect.period * _STEPS
+        usual = own_gait(robot)
+        if not usual.has("foot paths"):
+            raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {usual.name!r}.")
+        more = usual.period / self.semi_erect.period * _STEPS
         found: dict[str, Any] = {"walked": round(self.walked * more, 2)}
         for name, share in _LADDER.items():
-            heights = [own.height * (1.0 + part * (share - 1.0)) for part in (1.0, 0.5, 0.25, 0.0)]
-            tried = [replace(own, name=f"{own.name}_{name}", height=height) for height in heights]
-            found[name] = own if share == 1.0 else next(gait for gait in tried if suits(robot, gait))
+            heights = [usual.height * (1.0 + part * (share - 1.0)) for part in (1.0, 0.5, 0.25, 0.0)]
+            tried = [replace(usual, name=f"{usual.name}_{name}", height=height) for height in heights]
+            found[name] = usual if share == 1.0 else next(gait for gait in tried if suits(robot, gait))
         return found
 
     def simulate(self, progress: Progress = silent) -> Simulated:
@@ -142,25 +142,25 @@ class Terrain(Experiment):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
         rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
-        found: dict[str, Measure] = {}
+        measures: dict[str, Measure] = {}
         for arm in record.arm.values:
-            one = record.sel(arm=arm)
-            flat = one.isel(ground=0, seed=0)
-            found |= {
+            of_arm = record.sel(arm=arm)
+            flat = of_arm.isel(ground=0, seed=0)
+            measures |= {
                 f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
                 f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
-                f"falls_{arm}": Measure(float(one.fell.sum()), "-"),
+                f"falls_{arm}": Measure(float(of_arm.fell.sum()), "-"),
                 f"falls_rough_{arm}": Measure(float(rough.fell.sel(arm=arm).sum()), "-"),
-                f"belly_{arm}": Measure(float(one.belly.mean()), "-"),
-                f"aside_{arm}": Measure(float(abs(one.aside).mean()), "m"),
+                f"belly_{arm}": Measure(float(of_arm.belly.mean()), "-"),
+                f"aside_{arm}": Measure(float(abs(of_arm.aside).mean()), "m"),
             }
             for kind in dict.fromkeys(record.kind.values):
-                covered = one.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
-                found[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
-                found[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
+                covered = of_arm.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
+                measures[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
+                measures[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
         low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
         share = _share_of_best(record)
-        return found | {
+        return measures | {
             **_flat(record),
             **_rough(rough),
             "switching_share_of_best_worst": Measure(float(share.min()), "-"),
@@ -173,8 +173,8 @@ class Terrain(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what each posture keeps of its displacement on rough ground, and what switching is worth."""
-        kept = {kind: measures.get(f"kept_{kind}_low_crawl", nan) for kind in ("bumps", "step", "stone")}
-        return self.told(measures, kinds=[kind for kind, share in kept.items() if isfinite(share)])
+        shares = {kind: measures.get(f"kept_{kind}_low_crawl", nan) for kind in ("bumps", "step", "stone")}
+        return self.told(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         height = f"{1000 * self._shown_height:.3g}"

@@ -167,15 +167,17 @@ class Turning(Experiment):
         """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
         measures: dict[str, Measure] = {}
         for name in record.gait.values:
-            one = record.sel(gait=name)
-            off = abs(one.radius / one.asked - 1.0)
+            of_gait = record.sel(gait=name)
+            off = abs(of_gait.radius / of_gait.asked - 1.0)
             measures |= {
-                f"tightest_bend_{name}": Measure(_radius(one.curvature_bend), "m"),
-                f"tightest_asymmetry_{name}": Measure(_radius(one.curvature_asymmetry), "m"),
-                f"tightest_both_{name}": Measure(_radius(one.curvature_mixture), "m"),
-                f"circles_walked_{name}": Measure(float(one.radius.notnull().sum()), "-"),
+                f"tightest_bend_{name}": Measure(_radius(of_gait.curvature_bend), "m"),
+                f"tightest_asymmetry_{name}": Measure(_radius(of_gait.curvature_asymmetry), "m"),
+                f"tightest_both_{name}": Measure(_radius(of_gait.curvature_mixture), "m"),
+                f"circles_walked_{name}": Measure(float(of_gait.radius.notnull().sum()), "-"),
                 f"radius_off_{name}": Measure(float(off.max()), "-"),
-                f"bend_times_radius_{name}": Measure(float(one.bend[-1] * _radius(one.curvature_bend[-1:])), "m"),
+                f"bend_times_radius_{name}": Measure(
+                    float(of_gait.bend[-1] * _radius(of_gait.curvature_bend[-1:])), "m"
+                ),
             }
         return measures
 

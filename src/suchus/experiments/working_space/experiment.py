@@ -83,11 +83,11 @@ class WorkingSpace(Experiment):
             snout = record[f"snout_{state}"].values
             both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can
             rooms[state] = {"volume": (extent(both, cell), "m3"), "area": (extent(snout[:, [0, 2]], cell), "m2")}
-            for name, (found, unit) in rooms[state].items():
+            for name, (room, unit) in rooms[state].items():
                 measures |= {
-                    f"{name}_{state}": Measure(found.value, unit),
-                    f"{name}_{state}_low": Measure(found.low, unit),
-                    f"{name}_{state}_high": Measure(found.high, unit),
+                    f"{name}_{state}": Measure(room.value, unit),
+                    f"{name}_{state}_low": Measure(room.low, unit),
+                    f"{name}_{state}_high": Measure(room.high, unit),
                 }
             measures[f"highest_{state}"] = Measure(float(snout[:, 2].max()) if len(snout) else float("nan"), "m")
             measures[f"possible_{state}"] = Measure(len(snout) / float(record[f"tried_{state}"]), "-")
@@ -114,12 +114,12 @@ def _quotient(over: Extent, under: Extent) -> dict[str, float]:
     return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
 
 
-def _highest(robot: Robot, found: Reached, state: str) -> xr.Dataset:
+def _highest(robot: Robot, room: Reached, state: str) -> xr.Dataset:
     """Return the body's line and the left legs of the configuration that reaches highest [m]."""
-    if not len(found.snout):
+    if not len(room.snout):
         return xr.Dataset()
-    best = int(np.argmax(found.snout[:, 2]))
-    line, legs = outline(robot, found.angles[best : best + 1], found.pelvis[best : best + 1])
+    best = int(np.argmax(room.snout[:, 2]))
+    line, legs = outline(robot, room.angles[best : best + 1], room.pelvis[best : best + 1])
     metres = {"units": "m"}
     left = [LEGS.index("LF"), LEGS.index("LH")]
     return xr.Dataset(
