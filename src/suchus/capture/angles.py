@@ -57,12 +57,12 @@ def _tail_yaw(tracks: Tracks, share: float) -> Float[np.ndarray, " frame"]:
     segments = list(pairwise(tracks.tail_chain[1:]))
     lengths = np.array([np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1)) for a, b in segments])
     middles = np.cumsum(lengths) - lengths / 2
-    at = share * lengths.sum()
+    distance = share * lengths.sum()
     pelvis = azimuth(tracks, "hip", "tail_base")
-    right = int(np.clip(np.searchsorted(middles, at), 0, len(segments) - 1))
-    left = right if at >= middles[-1] or right == 0 else right - 1
+    right = int(np.clip(np.searchsorted(middles, distance), 0, len(segments) - 1))
+    left = right if distance >= middles[-1] or right == 0 else right - 1
     before, after = (wrapped(azimuth(tracks, *segments[i]) - pelvis) for i in (left, right))
-    weight = 0.0 if left == right else (at - middles[left]) / (middles[right] - middles[left])
+    weight = 0.0 if left == right else (distance - middles[left]) / (middles[right] - middles[left])
     return wrapped(before + weight * wrapped(after - before))
 
 

@@ -85,21 +85,21 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     angle = 2 * np.pi * np.multiply.outer(time, np.arange(1, harmonics + 1)) / period
     X = np.hstack([np.power.outer(t, np.arange(drift + 1)), np.cos(angle), np.sin(angle)])
     use = np.isfinite(values)
-    found = np.zeros(X.shape[1])
+    solution = np.zeros(X.shape[1])
     for _ in range(_ROUNDS):
-        found = np.linalg.lstsq(X[use].T @ X[use], X[use].T @ values[use], rcond=None)[0]
-        left = np.abs(values - X @ found)
+        solution = np.linalg.lstsq(X[use].T @ X[use], X[use].T @ values[use], rcond=None)[0]
+        left = np.abs(values - X @ solution)
         usual = 1.4826 * np.median(left[use]) + 1e-12
         keep = np.isfinite(values) & (left <= _JUMP * usual + 1e-9)
         if keep.sum() == use.sum() or keep.sum() < 2 * X.shape[1]:
             break
         use = keep
-    residual = np.where(use, values - X @ found, np.nan)
-    cos, sin = np.split(found[drift + 1 :], 2)
+    residual = np.where(use, values - X @ solution, np.nan)
+    cos, sin = np.split(solution[drift + 1 :], 2)
     return PeriodicFit(
         period=period,
-        mean=float(found[0]),
-        drift=found[1 : drift + 1] / reach ** np.arange(1, drift + 1),
+        mean=float(solution[0]),
+        drift=solution[1 : drift + 1] / reach ** np.arange(1, drift + 1),
         middle=middle,
         harmonics=cos - 1j * sin,
         residual=residual,

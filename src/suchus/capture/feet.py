@@ -91,20 +91,22 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
     Raises:
         UnusableTracks: none of its swings was filmed from stance to stance.
     """
-    found = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
-    if found is None:
+    swings = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
+    if swings is None:
         raise UnusableTracks(
             f"in {tracks.source} no step of {leg} can be seen from one stance to the next: film more cycles, track the "
             "foot again, or film it nearer."
         )
-    n = len(found.phase)
-    whole = np.angle(np.mean(np.exp(2j * np.pi * found.phase))) / (2 * np.pi)
-    apart = np.mod(found.phase - whole + 0.5, 1.0) - 0.5
+    n = len(swings.phase)
+    whole = np.angle(np.mean(np.exp(2j * np.pi * swings.phase))) / (2 * np.pi)
+    apart = np.mod(swings.phase - whole + 0.5, 1.0) - 0.5
     times = float(student.ppf(0.975, n - 1)) if n > 1 else float("nan")
-    scatter = found.scatter if n > 1 else float("nan")
-    middle_error = np.hypot(_SURE * found.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
-    phase, half = grid(), found.share / 2
-    lift_off, touch_down = (whole + found.skew - half) % 1.0, (whole + found.skew + half) % 1.0
+    scatter = swings.scatter if n > 1 else float("nan")
+    middle_error = (
+        np.hypot(_SURE * swings.middle_error, times * np.std(apart, ddof=1) / np.sqrt(n)) if n > 1 else np.nan
+    )
+    phase, half = grid(), swings.share / 2
+    lift_off, touch_down = (whole + swings.skew - half) % 1.0, (whole + swings.skew + half) % 1.0
     return FootContact(
         speed=_speed(tracks, leg, period),
         stance=(phase - touch_down) % 1.0 < (lift_off - touch_down) % 1.0,
@@ -112,7 +114,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
         touch_down=touch_down,
         middle=(whole + 0.5) % 1.0,
         middle_error=float(middle_error),
-        duty_error=float(np.hypot(_SURE * found.share_error, times * scatter / np.sqrt(n))),
+        duty_error=float(np.hypot(_SURE * swings.share_error, times * scatter / np.sqrt(n))),
         scatter=scatter,
         hidden=_hidden(tracks, leg, period),
     )
@@ -124,15 +126,15 @@ def _speed(tracks: Tracks, leg: str, period: float) -> Float[np.ndarray, " grid"
     fits = [
         fit(tracks.time, row, period, harmonics=count, drift=_drift(tracks, period)) for row in tracks.at(leg).T[:2]
     ]
-    return np.asarray(np.hypot(*(one.swing(grid() * period, derivative=1) + one.drift[0] for one in fits)))
+    return np.asarray(np.hypot(*(path.swing(grid() * period, derivative=1) + path.drift[0] for path in fits)))
 
 
 def _hidden(tracks: Tracks, point: str, period: float) -> float:
     """Return the share of the cycle in which a point is seen in less than a fifth of the frames [-]."""
-    at = np.minimum((np.mod(tracks.time / period, 1.0) * _BINS).astype(int), _BINS - 1)
+    bins = np.minimum((np.mod(tracks.time / period, 1.0) * _BINS).astype(int), _BINS - 1)
     seen = np.isfinite(tracks.at(point)[:, 0])
-    filmed = np.bincount(at, minlength=_BINS)
-    share = np.bincount(at, weights=seen, minlength=_BINS) / np.maximum(filmed, 1)
+    filmed = np.bincount(bins, minlength=_BINS)
+    share = np.bincount(bins, weights=seen, minlength=_BINS) / np.maximum(filmed, 1)
     return float(np.mean(share[filmed > 0] < _RARE))
 
 
@@ -190,8 +192,8 @@ def _paths() -> tuple[Complex[np.ndarray, "duty frequency"], Float[np.ndarray, "
 def smooth_azimuth(tracks: Tracks, ahead: str, behind: str, period: float) -> Float[np.ndarray, " frame"]:
     """Return the direction of a segment as drift and six harmonics, in every frame [rad]."""
     raw = continuous(azimuth(tracks, ahead, behind))
-    one = fit(tracks.time, raw, period, harmonics=_harmonics(tracks, ahead, period, 6), drift=_drift(tracks, period))
-    return one.trend(tracks.time) + one.swing(tracks.time)
+    course = fit(tracks.time, raw, period, harmonics=_harmonics(tracks, ahead, period, 6), drift=_drift(tracks, period))
+    return course.trend(tracks.time) + course.swing(tracks.time)
 
 
 def continuous(angle: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"]:

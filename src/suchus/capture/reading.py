@@ -121,14 +121,14 @@ def _one(data: Any, individual: str | None, name: str) -> Any:
     dim = next((d for d in data.position.dims if str(d).startswith("individual")), None)
     if dim is None:
         return data
-    there = [str(one) for one in data[dim].values]
-    if individual is None and len(there) > 1:
+    names = [str(one) for one in data[dim].values]
+    if individual is None and len(names) > 1:
         raise UnusableTracks(
-            f"{name} holds {len(there)} individuals; choose one with --individual: {', '.join(there)}."
+            f"{name} holds {len(names)} individuals; choose one with --individual: {', '.join(names)}."
         )
-    if individual is not None and individual not in there:
-        raise UnusableTracks(f"{name} holds no individual {individual!r}; it holds {', '.join(there)}.")
-    return data.isel({dim: there.index(individual) if individual else 0})
+    if individual is not None and individual not in names:
+        raise UnusableTracks(f"{name} holds no individual {individual!r}; it holds {', '.join(names)}.")
+    return data.isel({dim: names.index(individual) if individual else 0})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

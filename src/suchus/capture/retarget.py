@@ -163,14 +163,14 @@ def _bent(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:
             notes.append(f"the {word} hardly bends ({degrees(abs(seen)):.1f} degrees): its phase has no meaning")
         # concave on the right by |seen| cos 2 pi (phase of LF - its delay), which is what a bend says of the left
         lag = 0.0 if straight else _within_half(-float(np.angle(seen)) / (2 * np.pi) - touch_down)
-        asked = _rounded(abs(seen))
+        amplitude_seen = _rounded(abs(seen))
         limits = [floor(1e4 * len(most) * limit) / 1e4 for limit in most]
-        if min(limits) < asked:
+        if min(limits) < amplitude_seen:
             notes.append(
-                f"the {part} would bend by {degrees(asked):.0f} degrees, more than its joints' ranges: of "
+                f"the {part} would bend by {degrees(amplitude_seen):.0f} degrees, more than its joints' ranges: of "
                 f"{len(limits)} joints, those that cannot follow bend as far as they can"
             )
-        amplitude = tuple(min(asked, limit) for limit in limits)
+        amplitude = tuple(min(amplitude_seen, limit) for limit in limits)
         bends.append(
             Bend(part=part, amplitude=amplitude if len(set(amplitude)) > 1 else amplitude[:1], lag=(_rounded(lag),))
         )
@@ -201,22 +201,21 @@ def _stepping(walk: Walk, robot: Robot, gait: Gait, base: Gait, girdles: Girdles
     if whole is not None:
         return whole
     notes.append(f"the limbs of {robot.name} do not reach the feet's places: those and the lift are {base.name}'s")
-    asked = [one.stroke for one in feet]
+    strokes = [one.stroke for one in feet]
     for share in np.linspace(1.0, 0.1, 19):
-        shorter = [one._replace(stroke=share * stroke) for one, stroke in zip(lent, asked, strict=True)]
+        shorter = [one._replace(stroke=share * stroke) for one, stroke in zip(lent, strokes, strict=True)]
         placed = _placed(robot, gait, shorter)
         if placed is not None:
             if share < 1.0:
-                said = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(asked))
-                taken = " and ".join(f"{1000 * share * stroke:.0f} mm" for stroke in dict.fromkeys(asked))
+                said = " and ".join(f"{1000 * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
+                taken = " and ".join(f"{1000 * share * stroke:.0f} mm" for stroke in dict.fromkeys(strokes))
                 notes.append(f"half strokes of {said} are beyond the limbs; {taken} was taken")
             return placed
     still = replace(gait, limbs=base.limbs)
     check_limits(robot, still)
     raise OutsideLimits(
-        f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(asked):.0f} mm at its "
-        "size, in the posture of "
-        f"gait {base.name!r}: name another one with --base."
+        f"robot {robot.name!r} cannot follow a tenth of the strokes that were seen, {1000 * max(strokes):.0f} mm at "
+        f"its size, in the posture of gait {base.name!r}: name another one with --base."
     )
 
 
@@ -254,8 +253,8 @@ def _placed(robot: Robot, gait: Gait, feet: Sequence[_Feet]) -> Gait | None:
     reaches = [girdle.limb.reach for girdle in robot.girdles]
     try:
         limbs = tuple(
-            replace(limb, **{field: _rounded(metres / reach) for field, metres in one._asdict().items()})  # type: ignore[arg-type]
-            for limb, one, reach in zip(gait.limbs, feet, reaches, strict=True)
+            replace(limb, **{field: _rounded(metres / reach) for field, metres in path._asdict().items()})  # type: ignore[arg-type]
+            for limb, path, reach in zip(gait.limbs, feet, reaches, strict=True)
         )
     except InvalidDesign:  # a path longer than the limb
         return None
@@ -359,7 +358,7 @@ def _servo(place: Layout, joint: str) -> tuple[int, float]:
     if limb and place.limbs:
         side, part, turn = limb[1] or limb[4], limb[2] or limb[5], limb[3]
         girdle = 0 if part.lower() in _FRONT else place.limbs[-1].number
-        mine = next(one for one in place.limbs if one.number == girdle and (one.side > 0) == (side.lower() == "left"))
+        mine = next(leg for leg in place.limbs if leg.number == girdle and (leg.side > 0) == (side.lower() == "left"))
         hinges = mine.girdle.limb.hinges
         names = [hinge.name for hinge in hinges if turn is None or hinge.turn == turn.lower()]
         wanted = f"{mine.name}_{names[0] if turn else names[-1]}" if names else ""

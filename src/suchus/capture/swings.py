@@ -352,9 +352,9 @@ def _marked(time: np.ndarray, cycle: np.ndarray, weight: np.ndarray) -> Clock:
     """Put swings that follow each other together, and draw the clock through their means."""
     ones = np.ones(min(_TOGETHER, len(time) - 1))
     total = np.convolve(weight, ones, mode="valid")
-    at = np.convolve(weight * time, ones, mode="valid") / total
+    times = np.convolve(weight * time, ones, mode="valid") / total
     shows = np.convolve(weight * cycle, ones, mode="valid") / total
-    steps = [np.diff(np.maximum.accumulate(row)) > 0 for row in (at, shows)]
+    steps = [np.diff(np.maximum.accumulate(row)) > 0 for row in (times, shows)]
     rises = np.concatenate([[True], steps[0] & steps[1]])
     slope = np.polyfit(time, cycle, 1, w=np.sqrt(weight))[0]
-    return Clock(at[rises], shows[rises], float(1.0 / slope))
+    return Clock(times[rises], shows[rises], float(1.0 / slope))

@@ -121,14 +121,14 @@ def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
         )
     columns, units = [], set()
     for heading in header[1:]:
-        found = _HEADING.fullmatch(heading)
-        if found is None:
+        match = _HEADING.fullmatch(heading)
+        if match is None:
             raise UnreadableFile(
                 f"{name} has a column {heading.strip()!r}; a keypoint, an axis and a unit are needed, as in: {_EXAMPLE}"
             )
-        columns.append(_Column(found["point"], found["axis"]))
-        if found["axis"] != "confidence":
-            units.add(found["unit"].strip())
+        columns.append(_Column(match["point"], match["axis"]))
+        if match["axis"] != "confidence":
+            units.add(match["unit"].strip())
     strange = sorted(units - set(UNITS))
     if strange:
         raise UnreadableFile(f"{name} has lengths in {strange[0]!r}; {', '.join(UNITS)} are known.")
@@ -232,11 +232,11 @@ def read_angles(path: Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
     k = 2 * np.pi * np.multiply.outer(phase, np.arange(1, harmonics + 1))
     X = np.hstack([np.ones((len(phase), 1)), np.cos(k), np.sin(k)])
     angles = np.radians(values[:, 1:])
-    found = np.linalg.lstsq(X, angles, rcond=None)[0]
-    cos, sin = found[1 : harmonics + 1], found[harmonics + 1 :]
+    solution = np.linalg.lstsq(X, angles, rcond=None)[0]
+    cos, sin = solution[1 : harmonics + 1], solution[harmonics + 1 :]
     return AngleCycle(
         joints=names,
-        harmonics=np.vstack([found[:1], cos - 1j * sin]).T,
-        residual=np.sqrt(np.mean((angles - X @ found) ** 2, axis=0)),
+        harmonics=np.vstack([solution[:1], cos - 1j * sin]).T,
+        residual=np.sqrt(np.mean((angles - X @ solution) ** 2, axis=0)),
         source=path.name,
     )

@@ -104,8 +104,8 @@ class Tracks:
         return float(np.nanpercentile(np.linalg.norm(links[0], axis=-1), 95))
 
     def _numbered(self, stem: str) -> tuple[str, ...]:
-        found = [name for name in self.points if re.fullmatch(rf"{stem}_\d+", name)]
-        return tuple(sorted(found, key=lambda name: int(name.rpartition("_")[2])))
+        names = [name for name in self.points if re.fullmatch(rf"{stem}_\d+", name)]
+        return tuple(sorted(names, key=lambda name: int(name.rpartition("_")[2])))
 
 
 def _length(link: np.ndarray) -> float:

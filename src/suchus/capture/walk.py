@@ -228,9 +228,9 @@ def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
             f"ahead_{leg}": float(path.forward.mean()) / reading.trunk,
             f"lift_{leg}": path.lift / reading.trunk,
         }
-    for name, one in reading.angles.items():
-        numbers |= {name: float(abs(one.harmonics[0])), f"{name}_steady": one.mean}
-        numbers[f"{name}_overtones"] = float(np.linalg.norm(one.harmonics[1:]) / max(abs(one.harmonics[0]), 1e-12))
+    for name, angle in reading.angles.items():
+        numbers |= {name: float(abs(angle.harmonics[0])), f"{name}_steady": angle.mean}
+        numbers[f"{name}_overtones"] = float(np.linalg.norm(angle.harmonics[1:]) / max(abs(angle.harmonics[0]), 1e-12))
     if abs(spine) > _STRAIGHT:
         numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
         if abs(tail) > _STRAIGHT:
@@ -254,13 +254,13 @@ def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
 
 
 def _spread(name: str, value: float, each: list[dict[str, float]]) -> tuple[float, int]:
-    found = np.array([one[name] for one in each if name in one])
-    if len(found) < 2:
-        return float("nan"), len(found)
-    apart = found - value
+    values = np.array([numbers[name] for numbers in each if name in numbers])
+    if len(values) < 2:
+        return float("nan"), len(values)
+    apart = values - value
     if _unit(name) == "cycle":
         apart = wrapped(2 * np.pi * apart) / (2 * np.pi)
-    return float(np.std(apart, ddof=1)), len(found)
+    return float(np.std(apart, ddof=1)), len(values)
 
 
 def _unit(name: str) -> str:
@@ -281,10 +281,10 @@ def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
     """Standing index of a chain, over the joints whose bend stands out of the noise; NaN with fewer than two."""
     amplitude, phase = [], []
     for series in joint_bends(tracks, chain):
-        one = fit(tracks.time, series, period, harmonics=3)
-        if abs(one.harmonics[0]) > _SHARP * one.error:
-            amplitude.append(abs(one.harmonics[0]))
-            phase.append(np.angle(one.harmonics[0]))
+        bend = fit(tracks.time, series, period, harmonics=3)
+        if abs(bend.harmonics[0]) > _SHARP * bend.error:
+            amplitude.append(abs(bend.harmonics[0]))
+            phase.append(np.angle(bend.harmonics[0]))
     return standing_index(amplitude, phase) if len(amplitude) > 1 else float("nan")
 
 
@@ -303,12 +303,12 @@ def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContac
     phase = np.arange(GRID) / GRID
     time = (phase + zero) * reading.period
     data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(LEGS)})
-    for name, one in reading.angles.items():
+    for name, angle in reading.angles.items():
         attrs = {"units": "rad", "long_name": f"{name.replace('_', ' ')}, {_positive(name)} positive"}
-        data[name] = ("phase", one.mean + one.swing(time), attrs)
+        data[name] = ("phase", angle.mean + angle.swing(time), attrs)
         data[f"{name}_spread"] = (
             "phase",
-            _left_over(tracks, one, phase, zero),
+            _left_over(tracks, angle, phase, zero),
             {"units": "rad", "long_name": "standard deviation of the frames about the mean, camera noise included"},
         )
     back = -round(zero * GRID)
@@ -324,8 +324,8 @@ def _positive(name: str) -> str:
 
 def _left_over(tracks: Tracks, one: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
     """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
-    at = np.mod(tracks.time / one.period - zero, 1.0)
-    bins = np.minimum((at * _BINS).astype(int), _BINS - 1)
+    phases = np.mod(tracks.time / one.period - zero, 1.0)
+    bins = np.minimum((phases * _BINS).astype(int), _BINS - 1)
     use = np.isfinite(one.residual)
     count = np.bincount(bins[use], minlength=_BINS)
     power = np.bincount(bins[use], weights=one.residual[use] ** 2, minlength=_BINS)

@@ -141,16 +141,16 @@ def _how(options: CaptureOptions) -> ReadingOptions:
 
 def _draw(walk: Walk, out: Path) -> Path:
     """Draw two mean cycles one after the other."""
-    one = walk.cycle
+    cycle = walk.cycle
     figure = gait_diagram(
         [
             GaitTrack(
-                time=np.concatenate([one.phase.values, 1.0 + one.phase.values]),
-                stance=np.tile(one.stance.values, 2),
-                spine=np.tile(one.spine_lateral.values, 2),
-                tail=np.tile(one.tail_lateral.values, 2),
-                spine_spread=np.tile(one.spine_lateral_spread.values, 2),
-                tail_spread=np.tile(one.tail_lateral_spread.values, 2),
+                time=np.concatenate([cycle.phase.values, 1.0 + cycle.phase.values]),
+                stance=np.tile(cycle.stance.values, 2),
+                spine=np.tile(cycle.spine_lateral.values, 2),
+                tail=np.tile(cycle.tail_lateral.values, 2),
+                spine_spread=np.tile(cycle.spine_lateral_spread.values, 2),
+                tail_spread=np.tile(cycle.tail_lateral_spread.values, 2),
                 label=walk.source,
             )
         ],

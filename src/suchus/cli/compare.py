@@ -44,10 +44,10 @@ def compare_outcomes(words: Sequence[str]) -> int:
     check_writable(options.out.parent)
     folders = [_folder(path) for path in (options.first, options.second)]
     names = (str(folders[0]), str(folders[1]))
-    found = compare(load_result(folders[0]), load_result(folders[1]), names)
-    page = write_comparison(found, options.out)
-    _show(found)
-    print(f"figures and replays of both, and all {len(found.measures)} measures: {page}")
+    comparison = compare(load_result(folders[0]), load_result(folders[1]), names)
+    page = write_comparison(comparison, options.out)
+    _show(comparison)
+    print(f"figures and replays of both, and all {len(comparison.measures)} measures: {page}")
     return 0
 
 
@@ -65,21 +65,23 @@ def _folder(path: Path) -> Path:
     raise BadCommand(f"{path} {what}: name the folder that suchus run wrote, or the {OUTCOME} in it.")
 
 
-def _show(found: Comparison) -> None:
+def _show(comparison: Comparison) -> None:
     console = Console(highlight=False)
-    for letter, name in zip("AB", found.names, strict=True):
+    for letter, name in zip("AB", comparison.names, strict=True):
         console.print(escape(f"{letter}: {name}"), soft_wrap=True)
-    _print(console, ("setting", "A", "B"), [(one.name, one.first, one.second) for one in found.settings[:_MOST]])
-    _print(console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in found.changed])
+    _print(console, ("setting", "A", "B"), [(row.name, row.first, row.second) for row in comparison.settings[:_MOST]])
+    _print(
+        console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in comparison.changed]
+    )
     rows = [
         (
-            one.name,
-            quantity(one.first, one.unit),
-            quantity(one.second, one.unit),
-            quantity(one.difference, one.unit, 3),
-            "" if one.share is None else f"{number(100 * one.share, 3)} %",
+            row.name,
+            quantity(row.first, row.unit),
+            quantity(row.second, row.unit),
+            quantity(row.difference, row.unit, 3),
+            "" if row.share is None else f"{number(100 * row.share, 3)} %",
         )
-        for one in found.measures[:_MOST]
+        for row in comparison.measures[:_MOST]
     ]
     _print(console, ("measure", "A", "B", "B minus A", "relative to A"), rows)
 

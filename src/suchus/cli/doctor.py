@@ -81,21 +81,21 @@ def doctor(words: Sequence[str]) -> int:
     if words:
         raise BadCommand(f"suchus doctor takes no {words[0]!r}.")
     walk, swim, draw = tried("walk", "swim", "draw")
-    found = [packages(), cores(), walking(walk), compiled(swim), places(), opengl(draw), browsing(), extras()]
-    print(page(found))
-    if wrong := [one.wrong for one in found if one.wrong]:
+    findings = [packages(), cores(), walking(walk), compiled(swim), places(), opengl(draw), browsing(), extras()]
+    print(page(findings))
+    if wrong := [finding.wrong for finding in findings if finding.wrong]:
         raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
     print("suchus can run here.")
     return 0
 
 
-def page(found: Iterable[Finding]) -> str:
+def page(findings: Iterable[Finding]) -> str:
     """Return what was found as text."""
     head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
     lines = [head + f"{platform.system()} {platform.machine()}", ""]
-    for one in found:
-        for number, text in enumerate(one.lines):
-            label = one.heading if number == 0 else ""
+    for finding in findings:
+        for number, text in enumerate(finding.lines):
+            label = finding.heading if number == 0 else ""
             lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
     return "\n".join([*lines, ""])
 
@@ -107,14 +107,14 @@ def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | No
         requires: what suchus needs, as its metadata say it; by default those of the installed package.
         at: gives the version of a package, None where it is not there.
     """
-    there, wrong = [], []
+    listed, wrong = [], []
     for need in _needs(requires, ""):
         present = (at or installed)(need.name)
-        there.append(f"{need.name} {present or 'missing'}")
+        listed.append(f"{need.name} {present or 'missing'}")
         if present is None or not need.specifier.contains(present, prereleases=True):
             wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
     remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
-    return Finding(heading="packages", lines=(", ".join(there) or "unknown: suchus is not installed",), wrong=remedy)
+    return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), wrong=remedy)
 
 
 def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
@@ -132,8 +132,8 @@ def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None
 
 def cores() -> Finding:
     """Tell how many threads are used."""
-    asked = os.environ.get("SUCHUS_THREADS")
-    said = "SUCHUS_THREADS is not set" if asked is None else f"SUCHUS_THREADS={asked}"
+    setting = os.environ.get("SUCHUS_THREADS")
+    said = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
     try:
         return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
     except SuchusError as error:
@@ -177,14 +177,14 @@ def places() -> Finding:
 
 def opengl(trial: Trial) -> Finding:
     """Tell of OpenGL, which suchus does without."""
-    there = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
-    return Finding(heading="OpenGL", lines=(f"{there}; suchus needs none, browsers draw with WebGL 2",))
+    offscreen = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
+    return Finding(heading="OpenGL", lines=(f"{offscreen}; suchus needs none, browsers draw with WebGL 2",))
 
 
 def browsing() -> Finding:
     """Tell which browser opens."""
-    found = browser()
-    line = "none with a window: suchus demo writes a page" if found is None else called(found)
+    opener = browser()
+    line = "none with a window: suchus demo writes a page" if opener is None else called(opener)
     return Finding(heading="browser", lines=(line,))
 
 
@@ -205,7 +205,7 @@ def tried(*names: str) -> list[Trial]:
             begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             running.append(stack.enter_context(begun))
             stack.callback(begun.kill)  # before its end is waited for
-        return [_outcome(one) for one in running]
+        return [_outcome(process) for process in running]
 
 
 def _outcome(process: "subprocess.Popen[str]") -> Trial:
@@ -236,10 +236,10 @@ def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
         except PackageNotFoundError:
             requires = ()
     every = [parse(text) for text in requires]
-    plain = [one for one in every if one.marker is None or one.marker.evaluate({"extra": ""})]
+    plain = [need for need in every if need.marker is None or need.marker.evaluate({"extra": ""})]
     if not extra:
         return plain
-    return [one for one in every if one not in plain and one.marker and one.marker.evaluate({"extra": extra})]
+    return [need for need in every if need not in plain and need.marker and need.marker.evaluate({"extra": extra})]
 
 
 _TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
@@ -252,10 +252,10 @@ def browser() -> webbrowser.BaseBrowser | None:
     It is the one that ``BROWSER`` names, or the system's; on Linux without a display there is none.
     """
     try:
-        found = webbrowser.get()
+        system = webbrowser.get()
     except webbrowser.Error:
         return None
-    return None if called(found) in _TEXT else found
+    return None if called(system) in _TEXT else system
 
 
 def called(found: webbrowser.BaseBrowser) -> str:
@@ -288,11 +288,11 @@ def trial_swim() -> dict[str, Any]:
         return out
 
     doubled(np.ones(8))
-    kept = compiled.FOLDER
+    folder = compiled.FOLDER
     return {
         "layer": numba.threading_layer(),
-        "folder": None if kept is None else str(kept),
-        "compiled": 0 if kept is None else len(list(kept.rglob("*.nbc"))),
+        "folder": None if folder is None else str(folder),
+        "compiled": 0 if folder is None else len(list(folder.rglob("*.nbc"))),
         "missing": linking.missing(),
     }
 

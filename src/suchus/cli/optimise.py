@@ -46,14 +46,14 @@ def optimise(words: Sequence[str]) -> int:
     check_writable(folder)
     cpu = time.process_time()
     with at_scheduler(options.scheduler) as client, working() as bars:
-        found = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)
+        results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)
         bars.say("the best are run again, drawn and packed for replay")
-        result = write_results(spec, found, folder)
-    for one in found:
-        for name, i in zip(one.names, one.chosen, strict=True):
+        result = write_results(spec, results, folder)
+    for search in results:
+        for name, i in zip(search.names, search.chosen, strict=True):
             aims = ", ".join(
-                f"{aim.name} {float(one.history[f'aim_{aim.name}'][0]):.3g} to "
-                f"{float(one.history[f'aim_{aim.name}'][i]):.3g} {AIMS[aim.name].unit}"
+                f"{aim.name} {float(search.history[f'aim_{aim.name}'][0]):.3g} to "
+                f"{float(search.history[f'aim_{aim.name}'][i]):.3g} {AIMS[aim.name].unit}"
                 for aim in spec.aims
             )
             print(f"{name}: {aims}; {result / name}.toml")

@@ -100,10 +100,10 @@ def _robot(words: Sequence[str]) -> Robot | None:
     if not named or named[-1].startswith("-"):
         return None
     try:
-        found: Robot = _find(named[-1], Robot, ROBOTS, lambda path: blueprint.read(path, Robot, ROBOTS))
+        robot: Robot = _find(named[-1], Robot, ROBOTS, lambda path: blueprint.read(path, Robot, ROBOTS))
     except SuchusError:
         return None
-    return found
+    return robot
 
 
 def given(words: Sequence[str], option: str) -> list[str]:
@@ -227,10 +227,10 @@ def _find(word: str, kind: Any, shelf: Catalog[Any], read: Callable[[Path], Any]
     try:
         if word not in shelf and (word.endswith(".toml") or there(Path(word))):
             return read(Path(word))
-        found = shelf[word]
-        if not isinstance(found, kind):
-            raise BadCommand(_unsuited(found, kind, shelf))
-        return found
+        thing = shelf[word]
+        if not isinstance(thing, kind):
+            raise BadCommand(_unsuited(thing, kind, shelf))
+        return thing
     except UnknownName as error:
         raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
@@ -247,7 +247,7 @@ def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
 
 def named(kind: Any) -> str:
     """Return the name of a type, or of each of a union."""
-    return " or ".join(one.__name__ for one in get_args(kind) or (kind,) if one is not NoneType)
+    return " or ".join(member.__name__ for member in get_args(kind) or (kind,) if member is not NoneType)
 
 
 def _sentence(box: str, owner: str) -> str:

@@ -51,7 +51,7 @@ def make_replay(words: Sequence[str]) -> int:
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
     named = str(shown.robot.item()) if "robot" in shown.coords else "caiman"
     robot = ROBOTS[named] if options.robot is None else options.robot
-    labels = [_label(one).replace("_", " ") for one in (shown, ghost) if one is not None]
+    labels = [_label(run).replace("_", " ") for run in (shown, ghost) if run is not None]
     save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
     print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")
     return 0
@@ -76,6 +76,6 @@ def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
     raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {choices}.")
 
 
-def _label(one: xr.Dataset) -> str:
-    found = one.coords.get("label", one.coords.get("gait"))
-    return "this run" if found is None else str(found.values)
+def _label(run: xr.Dataset) -> str:
+    name = run.coords.get("label", run.coords.get("gait"))
+    return "this run" if name is None else str(name.values)

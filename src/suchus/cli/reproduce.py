@@ -171,8 +171,8 @@ def reproduce(words: Sequence[str]) -> int:
     jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
         outcomes = [done.result for done in _reproduced(tasks, bars, jobs=jobs, anew=options.anew)]
-        results = [one for one in outcomes if isinstance(one, Result)]
-        failures = [one for one in outcomes if isinstance(one, Failure)]
+        results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
+        failures = [outcome for outcome in outcomes if isinstance(outcome, Failure)]
         page = write_page(results, failures, options.out / "report.html")
     print(page)
     return 1 if failures else 0

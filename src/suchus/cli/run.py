@@ -118,8 +118,8 @@ def run(words: Sequence[str]) -> int:
         print(_help())
         return 0
     if not words or words[0].startswith("-"):
-        there = ", ".join(EXPERIMENTS)
-        raise BadCommand(f"the name of the experiment comes first, as in suchus run NAME --quick; there is {there}.")
+        names = ", ".join(EXPERIMENTS)
+        raise BadCommand(f"the name of the experiment comes first, as in suchus run NAME --quick; there is {names}.")
     name, *options = words
     choice = choose(EXPERIMENTS[name], name, options)
     check_writable(choice.out)

@@ -54,16 +54,16 @@ def study(words: Sequence[str]) -> int:
         raise BadCommand("--jobs and --scheduler exclude each other: the workers of a cluster are started with it.")
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
-    asked = read_study(options.file)
+    spec = read_study(options.file)
     if options.finished:
         raise BadCommand("--finished is for claims only; other studies write their results when they are complete.")
     if options.samples is not None:
-        asked = replace(asked, samples=options.samples)
+        spec = replace(spec, samples=options.samples)
     if options.out is None:
-        check_name(asked.name, "study")
-    folder = options.out or Path("out") / "studies" / asked.name
+        check_name(spec.name, "study")
+    folder = options.out or Path("out") / "studies" / spec.name
     with at_scheduler(options.scheduler) as client, working() as bars:
-        results = conduct(asked, folder, progress=bars.reporter(asked.name), client=client, jobs=options.jobs)
+        results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client, jobs=options.jobs)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
     print(f"{results.sizes['sample']} runs, {len(failed)} failed: {folder / RESULTS}, {folder / TABLE}")
     if options.csv:
@@ -75,13 +75,13 @@ def study(words: Sequence[str]) -> int:
 
 def _claims(options: StudyOptions) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
-    asked = Claims() if options.samples is None else Claims(samples=options.samples)
+    claims = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
     if options.finished:
-        return _answered(answer_finished(asked, folder), folder)
+        return _answered(answer_finished(claims, folder), folder)
     with at_scheduler(options.scheduler) as client, working() as bars:
         progress = bars.reporter(CLAIMS)
-        record = conduct_claims(asked, folder, progress=progress, client=client, jobs=options.jobs)
+        record = conduct_claims(claims, folder, progress=progress, client=client, jobs=options.jobs)
         return _answered(record, folder)
 
 

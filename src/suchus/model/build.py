@@ -324,7 +324,7 @@ def add_foam(spec: Any, place: Layout) -> None:
     hull = place.robot.hull
     if hull is None:
         return
-    at = foam_centres(place.robot)
+    centres = foam_centres(place.robot)
     for foam in hull.foam:
         if foam.volume * hull.density < _LEAST:
             continue
@@ -332,7 +332,7 @@ def add_foam(spec: Any, place: Layout) -> None:
             name=f"{foam.body}_foam",
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             size=[(3 * foam.volume / (4 * pi)) ** (1 / 3), 0, 0],
-            pos=list(at[foam.body]),
+            pos=list(centres[foam.body]),
             mass=hull.density * foam.volume,
             contype=0,
             conaffinity=0,

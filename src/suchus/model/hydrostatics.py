@@ -156,14 +156,14 @@ def hydrostatics(
         InvalidDesign: a density or air fraction that cannot be, or another number of servo angles.
     """
     require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
-    kept = _both(air_fraction)
+    fractions = _both(air_fraction)
     require("hydrostatics", "heels", heels, 3, 1000, "")
     angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
     if len(angles) != len(servo_names(robot)):
         raise InvalidDesign(
             f"{len(angles)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
         )
-    body = _Rigid(robot, angles, density, kept)
+    body = _Rigid(robot, angles, density, fractions)
     floats = body.volume * density > body.mass
     trim, _, level = body.rest(0.0, 0.0)
     heel = np.linspace(0.0, np.pi, int(heels))

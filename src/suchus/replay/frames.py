@@ -57,11 +57,11 @@ def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
         raise IncompatibleRecord(
             f"the record is of robot {record.robot.item()!r}, not of {robot.name!r}: give the robot that was recorded."
         )
-    found, expected = [str(name) for name in record.joint.values], list(joint_names(robot))
-    if found != expected:
-        odd = sorted(set(found) ^ set(expected)) or found
+    joints, expected = [str(name) for name in record.joint.values], list(joint_names(robot))
+    if joints != expected:
+        odd = sorted(set(joints) ^ set(expected)) or joints
         raise IncompatibleRecord(
-            f"the record's {len(found)} joints are not the {len(expected)} of {robot.name!r}: {', '.join(odd[:4])} "
+            f"the record's {len(joints)} joints are not the {len(expected)} of {robot.name!r}: {', '.join(odd[:4])} "
             f"{'is' if len(odd) == 1 else 'are'} not in both; give the robot that was recorded."
         )
     limbs = layout(robot).limb_names
@@ -69,12 +69,12 @@ def checked(record: xr.Dataset, robot: Robot) -> xr.Dataset:
         raise IncompatibleRecord(
             f"the record's legs are {', '.join(map(str, record.leg.values))}, not {', '.join(limbs) or 'none'}."
         )
-    kept = record[[*_NEEDED, *(name for name in ("water_level",) if name in record)]]
-    values = np.concatenate([_rows(kept[name]) for name in _NEEDED], axis=1)
+    needed = record[[*_NEEDED, *(name for name in ("water_level",) if name in record)]]
+    values = np.concatenate([_rows(needed[name]) for name in _NEEDED], axis=1)
     count = int(np.logical_and.accumulate(np.isfinite(values).all(axis=1)).sum())
     if count == 0:
         raise IncompatibleRecord("the record has no frame to show: run for longer than one sample.")
-    return kept.isel(time=slice(0, count))
+    return needed.isel(time=slice(0, count))
 
 
 def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frames:
@@ -91,10 +91,12 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
         step = span / max(len(time) - 1, 1)
         every = max(1, round(1.0 / RATE / step), int(np.ceil(len(time) / MOST))) if step > 0 else 1
         rate = 1.0 / (every * step) if step > 0 else RATE
-    at = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
-    nearest = np.clip(np.searchsorted(time, at - 0.5 * np.median(np.diff(time, append=time[-1] + 1))), 0, len(time) - 1)
-    kept = record.isel(time=nearest)
-    values = {name: kept[name].values.astype(float) for name in _NEEDED}
+    wanted = time[0] + np.arange(int(span * rate + 1e-6) + 1) / rate
+    nearest = np.clip(
+        np.searchsorted(time, wanted - 0.5 * np.median(np.diff(time, append=time[-1] + 1))), 0, len(time) - 1
+    )
+    sampled = record.isel(time=nearest)
+    values = {name: sampled[name].values.astype(float) for name in _NEEDED}
     return Frames(
         start=float(time[0]),
         rate=float(rate),
@@ -103,7 +105,7 @@ def frames(record: xr.Dataset, robot: Robot, rate: float | None = None) -> Frame
         feet=values["foot_position"],
         forces=values["foot_force"],
         tail=np.column_stack([values["tail_tip"], values["tail_force"][:, 2]]),
-        level=_level(kept),
+        level=_level(sampled),
     )
 
 

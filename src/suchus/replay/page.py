@@ -50,8 +50,8 @@ def replay(
     Raises:
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
     """
-    runs = [checked(one, robot) for one in (record, ghost) if one is not None]
-    grounds = [ground_of(one) or Ground() for one in (record, ghost) if one is not None]
+    runs = [checked(given, robot) for given in (record, ghost) if given is not None]
+    grounds = [ground_of(given) or Ground() for given in (record, ghost) if given is not None]
     first = frames(runs[0], robot)
     moving = [first, *(frames(run, robot, first.rate) for run in runs[1:])]
     overlaid = overlaid or grounds[0].relief is not None
@@ -87,19 +87,19 @@ def save(page: str, path: Path) -> Path:
 
 def environment() -> Environment:
     """Return the templates of the pages, which hold styles and players as globals."""
-    found = Environment(
+    templates = Environment(
         loader=PackageLoader("suchus.replay"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    loader = found.loader
+    loader = templates.loader
     assert loader is not None
     files = {"style": "player.css", "shared": "shared.js", "player": "player.js", "wake_player": "wake.js"}
     for name, file in files.items():
-        found.globals[name] = Markup(loader.get_source(found, file)[0])
-    return found
+        templates.globals[name] = Markup(loader.get_source(templates, file)[0])
+    return templates
 
 
 def _script(meta: Mapping[str, Any]) -> Markup:
@@ -123,8 +123,8 @@ def _on(grounds: Sequence[Ground]) -> str:
 def _in_words(robot: Robot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
     """Return the replay in words, for those who cannot see it."""
     paths = [
-        f"{label}: {one.mass[-1, 0] - one.mass[0, 0]:.2f} m forward in {(len(one.mass) - 1) / one.rate:.1f} s"
-        for one, label in zip(moving, labels, strict=False)
+        f"{label}: {run.mass[-1, 0] - run.mass[0, 0]:.2f} m forward in {(len(run.mass) - 1) / run.rate:.1f} s"
+        for run, label in zip(moving, labels, strict=False)
     ]
     where = "on the ground" if moving[0].level is None else "in water"
     return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(paths)}."
@@ -199,15 +199,15 @@ def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
 
 def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, Any]:
     limit = vortices.colour_limit(record)
-    found = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
+    surfaces = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
     middle = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])
-    scale = max(float(np.abs(one.points - middle).max(initial=0.0)) for one, _ in found) or 1.0
+    scale = max(float(np.abs(mesh.points - middle).max(initial=0.0)) for mesh, _ in surfaces) or 1.0
     frames = []
-    for one, spin in found:
-        whole = np.round((one.points - middle) / scale * np.iinfo(np.int16).max).astype(np.int16)
+    for mesh, spin in surfaces:
+        whole = np.round((mesh.points - middle) / scale * np.iinfo(np.int16).max).astype(np.int16)
         shades = np.round(127.0 * np.clip(spin / limit, -1.0, 1.0)).astype(np.int8)
         small = len(whole) <= np.iinfo(np.uint16).max
-        faces = pack.add(one.faces.astype(np.uint16 if small else np.uint32))
+        faces = pack.add(mesh.faces.astype(np.uint16 if small else np.uint32))
         frames.append({"points": pack.add(whole), "spin": pack.add(shades), "faces": faces})
     lines = {
         name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES

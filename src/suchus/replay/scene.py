@@ -74,7 +74,7 @@ def scene(
         overlaid: whether two runs begin in the same place.
     """
     pack, surface, relief = PackedArrays(), footed(robot), ground.relief
-    x = np.concatenate([one.mass[:, 0] for one in moving])
+    x = np.concatenate([run.mass[:, 0] for run in moving])
     meta = {
         "start": moving[0].start,
         "rate": moving[0].rate,
@@ -93,7 +93,7 @@ def scene(
         "colours": {name: _rgb(text) for name, text in KEYS.items()}
         | {"legs": [_rgb(colour) for _, colour in limb_colours(robot)]},
         "skin": _packed_skin(surface, pack),
-        "actors": [_packed(robot, one, name, relief, pack) for one, name in zip(moving, labels, strict=False)],
+        "actors": [_packed(robot, run, name, relief, pack) for run, name in zip(moving, labels, strict=False)],
         "relief": None if relief is None else _packed_relief(relief, pack),
     }
     return meta, pack.text()

@@ -76,17 +76,18 @@ class Comparison:
     @property
     def of_both(self) -> tuple[Compared, ...]:
         """Measures of which both outcomes have a number."""
-        return tuple(one for one in self.measures if one.first is not None and one.second is not None)
+        return tuple(measure for measure in self.measures if measure.first is not None and measure.second is not None)
 
     @property
     def of_one(self) -> tuple[Compared, ...]:
         """Measures of which only one outcome has a number, or none."""
-        return tuple(one for one in self.measures if one.first is None or one.second is None)
+        return tuple(measure for measure in self.measures if measure.first is None or measure.second is None)
 
     @property
     def changed(self) -> tuple[Judged, ...]:
         """Claims that both judge, and differently."""
-        return tuple(one for one in self.verdicts if one.first and one.second and one.first != one.second)
+        judged = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
+        return tuple(verdict for verdict in judged if verdict.first != verdict.second)
 
 
 def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:

@@ -219,10 +219,10 @@ def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
 
     A robot that this version of suchus cannot build any more does not count.
     """
-    found = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
-    if not found:
+    robots = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
+    if not robots:
         return ROBOTS[ARTICLES], {}
-    (most, _), *others = Counter(found).most_common()
+    (most, _), *others = Counter(robots).most_common()
     return most, {robot.name: count for robot, count in others}
 
 
@@ -265,14 +265,14 @@ class ChosenNumber:
 def parts(design: Any) -> dict[str, tuple[Row, ...]]:
     """Return the rows of each part of a robot, by the part's name."""
     about = meanings(type(design))
-    found: dict[str, tuple[Row, ...]] = {}
+    tables: dict[str, tuple[Row, ...]] = {}
     for f in fields(design):
         part = getattr(design, f.name)
         if is_dataclass(part):
             meaning = about.get(f.name, "")
             title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
-            found[title] = tuple(rows(part, f.name))
-    return found
+            tables[title] = tuple(rows(part, f.name))
+    return tables
 
 
 def rows(design: Any, path: str = "") -> Iterator[Row]:
@@ -289,13 +289,13 @@ def rows(design: Any, path: str = "") -> Iterator[Row]:
 
 def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
     """Return a row for every number that the article does not give."""
-    return tuple(_choice(design, one) for one in chosen)
+    return tuple(_choice(design, free) for free in chosen)
 
 
 def _choice(design: Any, one: Chosen) -> ChosenNumber:
-    value, own = value_at(design, one.field), unit_at(design, one.field)
+    value, unit = value_at(design, one.field), unit_at(design, one.field)
     return ChosenNumber(
-        field=one.field, value=_shown(value, own), low=number(one.low), high=number(one.high), why=one.why
+        field=one.field, value=_shown(value, unit), low=number(one.low), high=number(one.high), why=one.why
     )
 
 

@@ -192,19 +192,19 @@ def load_result(folder: Path) -> Result:
 
 def whole(result: Result) -> bool:
     """Return whether every file that an outcome names is in its folder: record, films and replays too."""
-    names = [RECORD, *(one["name"] for part in ("films", "replays") for one in result.outcome.get(part, ()))]
+    names = [RECORD, *(file["name"] for part in ("films", "replays") for file in result.outcome.get(part, ()))]
     return all(_inside(result.folder, name).is_file() for name in names)
 
 
 def _wide(svg: Path) -> bool:
     """Return whether a drawing is wider than a figure that fills one column of text."""
-    found = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', read_text(svg)[:2000])
-    return found is not None and float(found[1]) > _COLUMN
+    width = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', read_text(svg)[:2000])
+    return width is not None and float(width[1]) > _COLUMN
 
 
 def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
-    found = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in outcome)
-    return tuple(one for one in found if one.file.is_file())
+    files = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in outcome)
+    return tuple(one for one in files if one.file.is_file())
 
 
 def _inside(folder: Path, name: str) -> Path:

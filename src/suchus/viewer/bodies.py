@@ -47,9 +47,9 @@ class BodyPoses:
             relief: what stands up from the ground; None where it is even.
         """
         places, turns = zip(*map(self.body, bone_names(self.robot)), strict=True)
-        found = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
-        at = zip(found.positions[0], found.quaternions[0], strict=True)
-        return dict(zip(footed(self.robot).bones, at, strict=True))
+        feet_flat = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
+        poses = zip(feet_flat.positions[0], feet_flat.quaternions[0], strict=True)
+        return dict(zip(footed(self.robot).bones, poses, strict=True))
 
     def geoms(self) -> list[int]:
         """Return the numbers of the geoms that belong to the robot."""
@@ -107,25 +107,25 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     centres, group = kmeans2(of_faces, count, minit="++", seed=0)
     dense = np.zeros((len(whole.vertices), len(whole.bones)))
     np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
-    found = []
+    parts = []
     for number, centre in enumerate(centres):
-        mine = whole.faces[group == number]
-        if len(mine) == 0:
+        faces_of_colour = whole.faces[group == number]
+        if len(faces_of_colour) == 0:
             continue
-        kept, faces = np.unique(mine, return_inverse=True)
-        used = np.flatnonzero(dense[kept].any(axis=0))
+        vertices, faces = np.unique(faces_of_colour, return_inverse=True)
+        used = np.flatnonzero(dense[vertices].any(axis=0))
         red, green, blue = (round(float(value)) for value in centre)
-        found.append(
+        parts.append(
             SkinPiece(
-                vertices=whole.vertices[kept],
+                vertices=whole.vertices[vertices],
                 faces=faces.reshape(-1, 3),
-                weights=dense[np.ix_(kept, used)],
+                weights=dense[np.ix_(vertices, used)],
                 bones=tuple(whole.bones[bone] for bone in used),
                 rest=whole.rest[used],
                 colour=(red, green, blue),
             )
         )
-    return tuple(found)
+    return tuple(parts)
 
 
 def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:

@@ -83,10 +83,10 @@ class DrawnRobot:
         """Move to an instant, by the names of ``record.VARIABLES``."""
         self.posture.put(now)
         if self._look == "skin":
-            at = self.posture.bones(self.relief)
+            bones = self.posture.bones(self.relief)
             for piece, handle in self._skin:
                 for bone, name in zip(handle.bones, piece.bones, strict=True):
-                    bone.position, bone.wxyz = at[name]
+                    bone.position, bone.wxyz = bones[name]
         else:
             for number, handle in self._geoms.items():
                 handle.position, handle.wxyz = self.posture.geom(number)

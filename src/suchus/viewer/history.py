@@ -60,7 +60,7 @@ def table_of(record: xr.Dataset, origin: np.ndarray) -> dict[str, np.ndarray]:
     """
     com, feet = record.centre_of_mass.values, record.foot_force.sel(xyz="z").values
     displaced = com - origin
-    found = [record.time.values, com[:, 2], displaced[:, 0], displaced[:, 1], *feet.T]
-    found += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
+    values = [record.time.values, com[:, 2], displaced[:, 0], displaced[:, 1], *feet.T]
+    values += [record.belly_force.sel(xyz="z").sum("segment").values, record.tail_force.sel(xyz="z").values]
     names = columns([str(limb) for limb in record.leg.values])
-    return dict(zip(names, (np.asarray(column, dtype=float) for column in found), strict=True))
+    return dict(zip(names, (np.asarray(column, dtype=float) for column in values), strict=True))

@@ -47,16 +47,16 @@ class Knob:
             now: which stands, and stays where what is asked for is no number.
         """
         try:
-            asked = float(value)  # type: ignore[arg-type]
+            number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
             return now, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.said(now)}."
-        if not isfinite(asked):
-            return now, f"{self.label}: {asked} is no finite number; it stays at {self.said(now)}."
-        held = min(max(asked, self.low), self.high)
-        if held != asked:
+        if not isfinite(number):
+            return now, f"{self.label}: {number} is no finite number; it stays at {self.said(now)}."
+        held = min(max(number, self.low), self.high)
+        if held != number:
             allowed = f"{self.low:g} to {self.said(self.high)}"
-            return held, f"{self.label}: {self.said(asked)} is outside {allowed}; it is {self.said(held)} now."
-        return asked, ""
+            return held, f"{self.label}: {self.said(number)} is outside {allowed}; it is {self.said(held)} now."
+        return number, ""
 
 
 _DEGREE = radians(1.0)
@@ -210,19 +210,19 @@ def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str
         value: asked for, in the knob's unit; anything.
     """
     knob, now = knobs_of(robot, gait)[name], shown(gait, name)
-    asked, notice = knob.within(value, now)
-    if notice and asked == now:
+    aim, notice = knob.within(value, now)
+    if notice and aim == now:
         return gait, notice
-    wanted, why = _tried(robot, gait, name, asked * knob.scale)
+    wanted, why = _tried(robot, gait, name, aim * knob.scale)
     if not why:
         return wanted, notice
     fits, reached = gait, now
     for i in range(1, _HALVINGS + 1):
-        between = reached + (asked - now) / 2**i
+        between = reached + (aim - now) / 2**i
         trial, refused = _tried(robot, gait, name, between * knob.scale)
         if not refused:
             fits, reached = trial, between
-    return fits, f"{knob.label}: the robot cannot follow {knob.said(asked)}; it is {knob.said(reached)} now. {why}"
+    return fits, f"{knob.label}: the robot cannot follow {knob.said(aim)}; it is {knob.said(reached)} now. {why}"
 
 
 def _tried(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:

@@ -114,12 +114,12 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take
 
 def _robot(path: Path, name: str) -> Robot:
     try:
-        found: Robot = ROBOTS[name]
+        robot: Robot = ROBOTS[name]
     except UnknownName as error:
         raise IncompatibleRecord(
             f"{path} was walked by robot {name!r}, which is not on the shelf: give its file with --robot FILE.toml."
         ) from error
-    return found
+    return robot
 
 
 class Player:
@@ -148,12 +148,12 @@ class Player:
     def seek(self, time: object) -> None:
         """Jump to a time, as near as there is one; what is no number changes nothing [s]."""
         try:
-            asked = float(time)  # type: ignore[arg-type]
+            seconds = float(time)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
             return
         with self._lock:
-            if np.isfinite(asked):
-                self.time = min(max(asked, self._start), self._end)
+            if np.isfinite(seconds):
+                self.time = min(max(seconds, self._start), self._end)
 
 
 _ASIDE = 0.35

@@ -215,8 +215,8 @@ class Session:
         """
         knob = plain_knobs(self.robot)[name]
         with self._lock:
-            asked, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
-            changes: dict[str, Any] = {name: asked * knob.scale}
+            number, notice = knob.within(value, getattr(self.settings, name) / knob.scale)
+            changes: dict[str, Any] = {name: number * knob.scale}
             before, self.settings = self.settings, replace(self.settings, **changes)
             if name == "bumps" and self.settings.bumps != before.bumps:
                 self._begin()
@@ -250,8 +250,8 @@ class Session:
             for fault in self.settings.broken:
                 if part in (None, fault.part):
                     self._live.mend(fault.part)
-            kept = () if part is None else tuple(fault for fault in self.settings.broken if fault.part != part)
-            self.settings = replace(self.settings, broken=kept)
+            left_broken = () if part is None else tuple(fault for fault in self.settings.broken if fault.part != part)
+            self.settings = replace(self.settings, broken=left_broken)
 
     def push(self) -> None:
         """Push the trunk as the settings say, now."""

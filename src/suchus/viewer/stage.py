@@ -255,8 +255,8 @@ class WalkScene:
         self._world.wxyz = turned
         x, y, z = now["centre_of_mass"]
         above = 0.0 if self._water is None or not self._water.visible else max(float(z) - self._size * _STANDS, 0.0)
-        at = np.array([x, y, above]) if follow else np.zeros(3)
-        self._world.position = -rotate(turned, at)
+        centre = np.array([x, y, above]) if follow else np.zeros(3)
+        self._world.position = -rotate(turned, centre)
 
     def show(self, now: Mapping[str, np.ndarray], pushed: tuple[float, float, float] | None = None) -> None:
         """Show an instant, by the names of ``record.VARIABLES``, and a push that lasts."""

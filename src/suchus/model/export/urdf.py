@@ -41,12 +41,12 @@ def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]
         "skin": contact.skin_friction,
         "root": place.robot.root,
     }
-    kept = [
+    fitting = [
         text
         for text in texts
         if (cables or not text.startswith(_CABLES)) and (springs or not text.startswith(_SPRINGS))
     ]
-    return tuple(text.format(**values, **own) for text in kept)
+    return tuple(text.format(**values, **own) for text in fitting)
 
 
 BALL = "meshes/ball.obj"

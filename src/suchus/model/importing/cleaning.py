@@ -96,9 +96,9 @@ def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
     for link in links:
         _add_link(made, link, mesh)
     for joint in joints:
-        kept = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
+        copy = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
         bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
-        kept.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
+        copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
     turning = [joint for joint in joints if joint.get("type") in _TURNING]
     remarks = [
         f"Joint {joint.get('name')} follows {mimic.get('joint')} (mimic): it is a hinge of its own in the draft."
@@ -156,13 +156,13 @@ def _refuse_loops(links: list[ElementTree.Element], joints: list[ElementTree.Ele
 
 
 def _linked(joint: ElementTree.Element, which: str) -> str:
-    found = joint.find(which)
-    return "" if found is None else found.get("link", "")
+    element = joint.find(which)
+    return "" if element is None else element.get("link", "")
 
 
 def _add_link(made: ElementTree.Element, link: ElementTree.Element, mesh: Mesh) -> None:
-    kept = ElementTree.SubElement(made, "link", name=link.get("name", ""))
-    kept.extend(e for e in link if e.tag == "inertial")
+    copy = ElementTree.SubElement(made, "link", name=link.get("name", ""))
+    copy.extend(e for e in link if e.tag == "inertial")
     shapes = link.findall("collision") or link.findall("visual")
     for shape in shapes:
         geometry = shape.find("geometry")
@@ -174,7 +174,7 @@ def _add_link(made: ElementTree.Element, link: ElementTree.Element, mesh: Mesh) 
             if given is None:
                 continue
             named.set("filename", given)
-        part = ElementTree.SubElement(kept, "collision")
+        part = ElementTree.SubElement(copy, "collision")
         part.extend(e for e in shape if e.tag in ("origin", "geometry"))
 
 
@@ -276,15 +276,15 @@ def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
 
 def _cleaned(element: ElementTree.Element, tags: tuple[str, ...], meshes: set[str] | None) -> ElementTree.Element:
     """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
-    kept = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
+    copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
     for child in element:
         lost = child.tag == "geom" and (
             child.get("type") in ("hfield", "sdf")
             or (meshes is not None and child.get("mesh") is not None and child.get("mesh") not in meshes)
         )
         if child.tag in tags and not lost:
-            kept.append(_cleaned(child, tags, meshes))
-    return kept
+            copy.append(_cleaned(child, tags, meshes))
+    return copy
 
 
 def _meshes(root: ElementTree.Element, made: ElementTree.Element, mesh: Mesh) -> set[str]:

@@ -185,12 +185,12 @@ def _joints(making: Making, i: int, root: int) -> list[Found]:
     """Return the hinges behind segment i from our root on."""
     axis, ahead = making.plan.axis, i < root
     near, far = (axis[i + 1], axis[i]) if ahead else (axis[i], axis[i + 1])
-    found = []
+    hinges = []
     for joint, onward in links_between(making.plan, near, far):
         turn, sense = turn_of(joint, making.turned(joint.axis), making.remarks)
         off = 0.0 if turn == "yaw" else abs(float(making.into(joint.anchor)[2]))
-        found.append((joint, turn, axial_sign(turn, sense, ahead=ahead, onward=onward), off))
-    return found
+        hinges.append((joint, turn, axial_sign(turn, sense, ahead=ahead, onward=onward), off))
+    return hinges
 
 
 def _ends(making: Making, parts: list[TreePart], places: list[float]) -> list[float]:
@@ -232,19 +232,19 @@ def _shapes(making: Making, part: TreePart, front: float, length: float, number:
         making.remarks.append(f"{part.name} has no shape that is read; the draft gives it a rod.")
         radius = min(max(_THIN * length, 1e-5), 10.0)
         return (Rod(name=part.name, start=(0.0, 0.0, 0.0), end=(-length, 0.0, 0.0), radius=radius, mass=part.mass),)
-    found: list[Rod | Shell] = []
+    shapes: list[Rod | Shell] = []
     for i, piece in enumerate(inside):
         name = part.name if i == 0 else f"{part.name}_{i + 1}"
         mass = part.mass * piece.volume / volume
         points = making.into(piece.ends) - start
         half = _half(making, piece)
         if len(points) == 2:
-            found.append(Rod(name=name, start=point(points[0]), end=point(points[1]), radius=half[0], mass=mass))
+            shapes.append(Rod(name=name, start=point(points[0]), end=point(points[1]), radius=half[0], mass=mass))
         else:
-            found.append(Shell(name=name, at=point(points[0]), half=half, mass=mass))
+            shapes.append(Shell(name=name, at=point(points[0]), half=half, mass=mass))
         if len(inside) > 1:
             making.notes[f"{place}[{i}].mass"] = "guess: the segment's mass shared among its shapes by volume"
-    return tuple(found)
+    return tuple(shapes)
 
 
 def _half(making: Making, piece: ShapePiece) -> tuple[float, float, float]:
@@ -322,23 +322,23 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
     ends = [*(anchor for anchor, _, _ in stations[1:]), foot]
     links = []
     for i, ((anchor, hinges, carried), end) in enumerate(zip(stations, ends, strict=True)):
-        at = f"{place}.links[{i}]"
+        link = f"{place}.links[{i}]"
         made = []
         for k, (n, joint) in enumerate(hinges):
             turn, sign = turns[n]
             hinge = hinge_of(labels[n], turn, sign, joint, making.size, 1.0, lone=len(turns) == 1)
-            making.note_hinge(f"{at}.hinges[{k}]", hinge, joint, sign)
+            making.note_hinge(f"{link}.hinges[{k}]", hinge, joint, sign)
             made.append(hinge)
         mass = sum(part.mass for part in carried) or 1e-3 * making.size.mass
         if not carried:
-            making.notes[f"{at}.mass"] = "guess: a thousandth of the robot; the file has none between these hinges"
+            making.notes[f"{link}.mass"] = "guess: a thousandth of the robot; the file has none between these hinges"
         last = i == len(stations) - 1
         links.append(
             Link(
                 name=_link_name(carried, i, chain, making),
                 hinges=tuple(made),
                 end=point(end - anchor),
-                radius=_radius(making, carried, float(np.linalg.norm(end - anchor)), f"{at}.radius"),
+                radius=_radius(making, carried, float(np.linalg.norm(end - anchor)), f"{link}.radius"),
                 mass=mass * (1.0 - _FOOT_SHARE) if last else mass,
             )
         )

@@ -126,11 +126,11 @@ def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
     if rule and len(set(theirs)) == len(theirs):
         return theirs
     count: dict[tuple[str, str], int] = {}
-    found = []
+    names = []
     for turn, part, _ in turns:
         count[part, turn] = count.get((part, turn), 0) + 1
-        found.append(f"{part}_{turn}_{count[part, turn]}")
-    return found
+        names.append(f"{part}_{turn}_{count[part, turn]}")
+    return names
 
 
 def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[str] | None:
@@ -140,17 +140,17 @@ def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[s
         one.startswith(heads[0]) and two.startswith(heads[1]) and one[len(heads[0]) :] == two[len(heads[1]) :]
         for one, two in zip(left, right, strict=True)
     )
-    found = [name.removeprefix(heads[0]) for name in left]
-    return found if alike and all(found) and len(set(found)) == len(found) else None
+    suffixes = [name.removeprefix(heads[0]) for name in left]
+    return suffixes if alike and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
 
 
 def numbered(turns: Sequence[str]) -> list[str]:
     """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
-    found: list[str] = []
+    names: list[str] = []
     for i, turn in enumerate(turns):
         before = list(turns[:i]).count(turn)
-        found.append(turn if not before else f"{turn}_{before + 1}")
-    return found
+        names.append(turn if not before else f"{turn}_{before + 1}")
+    return names
 
 
 def _servo(joint: Joint, size: Size) -> Servo | None:
@@ -217,11 +217,11 @@ class Making:
             known = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
             self.notes[f"{place}.drive.stiffness"] = known
             return
-        at = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
-        self.notes[f"{at}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
+        drive = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
+        self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
         for name in ("torque", "speed"):
             if joint.drive is not None and getattr(joint.drive, name):
-                self.notes[f"{at}.{name}"] = "of the file"
+                self.notes[f"{drive}.{name}"] = "of the file"
 
 
 def making_of(plan: BodyPlan, words: Words) -> Making:

@@ -306,8 +306,8 @@ def plan_of(tree: Tree, words: Words) -> BodyPlan:
 
 def without(plan: BodyPlan, pair: tuple[LimbChain, LimbChain]) -> BodyPlan:
     """Return a plan without a pair of limbs, whose mass goes to the part that carries them."""
-    pairs = tuple(one for one in plan.pairs if one is not pair)
-    used = {*plan.axis, *(i for one in pairs for chain in one for i in chain.parts)}
+    pairs = tuple(other for other in plan.pairs if other is not pair)
+    used = {*plan.axis, *(i for other in pairs for chain in other for i in chain.parts)}
     return replace(plan, tree=_lumped(plan.tree, used), pairs=pairs)
 
 
@@ -351,9 +351,9 @@ def _pruned(tree: Tree, names: Sequence[str]) -> tuple[Tree, list[str]]:
         gone |= set(tree.below(place))
     if not gone:
         return tree, []
-    kept = [i for i in range(len(tree.parts)) if i not in gone]
-    lighter = _lumped(tree, set(kept))
-    parts = tuple(replace(lighter.parts[i], parent=-1 if i == 0 else kept.index(tree.parts[i].parent)) for i in kept)
+    rest = [i for i in range(len(tree.parts)) if i not in gone]
+    lighter = _lumped(tree, set(rest))
+    parts = tuple(replace(lighter.parts[i], parent=-1 if i == 0 else rest.index(tree.parts[i].parent)) for i in rest)
     left = ", ".join(tree.parts[i].name for i in sorted(gone))
     remark = f"Left out as asked, their masses lent to what carries them: {left}."
     return Tree(parts=parts, remarks=tree.remarks), [remark]
@@ -377,10 +377,10 @@ def _place(tree: Tree, name: str, inside: Sequence[int]) -> int:
 
 
 def _upward(tree: Tree, place: int) -> list[int]:
-    found = [place]
-    while tree.parts[found[-1]].parent >= 0:
-        found.append(tree.parts[found[-1]].parent)
-    return found
+    path = [place]
+    while tree.parts[path[-1]].parent >= 0:
+        path.append(tree.parts[path[-1]].parent)
+    return path
 
 
 def _main(tree: Tree, plane: Plane, first: int) -> tuple[int, ...]:

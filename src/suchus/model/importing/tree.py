@@ -190,11 +190,11 @@ class Tree:
 
     def below(self, place: int) -> list[int]:
         """Return the places of a part and of all that hangs on it, parents first."""
-        found = [place]
+        below = [place]
         for i in range(place + 1, len(self.parts)):
-            if self.parts[i].parent in found:
-                found.append(i)
-        return found
+            if self.parts[i].parent in below:
+                below.append(i)
+        return below
 
 
 def tree_of(loaded: Loaded) -> Tree:
