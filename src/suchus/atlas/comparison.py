@@ -59,13 +59,13 @@ def compare(row: AtlasRow, curves: Curves) -> CurveComparison:
     x, y = points(row, table)
     ours = curves[name]
     at = _on_loop(ours, x, y) if row.kind == "loop" else at_abscissae(ours, x, row.period)
-    there = np.isfinite(at)
-    if there.mean() < LEAST_SHARE:
+    reached = np.isfinite(at)
+    if reached.mean() < LEAST_SHARE:
         raise IncompatibleRecord(
-            f"our curve of {row.name} reaches {there.sum()} of {x.size} published points, and at least half are "
+            f"our curve of {row.name} reaches {reached.sum()} of {x.size} published points, and at least half are "
             f"needed; run longer."
         )
-    x, y, at = x[there], y[there], at[there]
+    x, y, at = x[reached], y[reached], at[reached]
     return CurveComparison(
         x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y), curve=name,
         cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
@@ -92,11 +92,11 @@ def points(row: AtlasRow, table: PublishedCurves) -> tuple[np.ndarray, np.ndarra
     """Return the published points that a row compares, in our units, two arrays of shape (point,)."""
     x = table.values(row.x) * row.scale[0] + row.shift[0]
     y = table.values(row.y) * row.scale[1] + row.shift[1]
-    kept = (x >= row.window[0]) & (x <= row.window[1])
+    inside = (x >= row.window[0]) & (x <= row.window[1])
     if row.without is not None:
         spacing, half = row.without
-        kept &= np.abs(x - spacing * np.round(x / spacing)) > half
-    return x[kept], y[kept]
+        inside &= np.abs(x - spacing * np.round(x / spacing)) > half
+    return x[inside], y[inside]
 
 
 def rms_over_peak(a: np.ndarray, b: np.ndarray) -> float:
@@ -119,7 +119,7 @@ def _on_loop(curve: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """
     low, high = curve[0].min(), curve[0].max()
     slack = 0.01 * (high - low)
-    at = np.full(x.shape, np.nan)
+    nearest = np.full(x.shape, np.nan)
     start, end = curve, np.roll(curve, -1, axis=1)
     for k, place in enumerate(x):
         if not low - slack <= place <= high + slack:
@@ -127,9 +127,9 @@ def _on_loop(curve: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         here = np.clip(place, low, high)
         across = (np.minimum(start[0], end[0]) <= here) & (here <= np.maximum(start[0], end[0]))
         run = np.where(end[0] == start[0], 1.0, end[0] - start[0])
-        found = (start[1] + (here - start[0]) / run * (end[1] - start[1]))[across]
-        at[k] = found[np.abs(found - y[k]).argmin()]
-    return at
+        crossings = (start[1] + (here - start[0]) / run * (end[1] - start[1]))[across]
+        nearest[k] = crossings[np.abs(crossings - y[k]).argmin()]
+    return nearest
 
 
 def _numbers(table: PublishedCurves, curves: Curves) -> CurveComparison:
@@ -150,12 +150,12 @@ def _numbers(table: PublishedCurves, curves: Curves) -> CurveComparison:
 
 def _scatter(row: AtlasRow, x: np.ndarray, y: np.ndarray) -> float | None:
     """Return the largest rms difference over the peak between a row's source and another one, where both are known."""
-    found = []
+    differences = []
     for name, abscissa, ordinate, factor in row.others:
         table = published(name)
         other = np.stack([table.values(abscissa) * factor, table.values(ordinate)])
-        at = at_abscissae(other, x, row.period)
-        there = np.isfinite(at)
-        if there.sum() >= _FEWEST:
-            found.append(rms_over_peak(at[there], y[there]))
-    return max(found) if found else None
+        values = at_abscissae(other, x, row.period)
+        reached = np.isfinite(values)
+        if reached.sum() >= _FEWEST:
+            differences.append(rms_over_peak(values[reached], y[reached]))
+    return max(differences) if differences else None

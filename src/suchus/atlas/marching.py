@@ -57,14 +57,14 @@ def shedding(record: flow.Record, count: int) -> dict[str, np.ndarray]:
         NotConverged: there are fewer periods.
     """
     drag, lift = 2 * record.force().T
-    kept = last_periods(record.time, lift, count)
-    time, weights = record.time[kept], record.step[kept]
-    mean_drag, mean_lift = (np.average(series[kept], weights=weights) for series in (drag, lift))
-    swing = np.sqrt(2 * np.average((lift[kept] - mean_lift) ** 2, weights=weights))
+    late = last_periods(record.time, lift, count)
+    time, weights = record.time[late], record.step[late]
+    mean_drag, mean_lift = (np.average(series[late], weights=weights) for series in (drag, lift))
+    swing = np.sqrt(2 * np.average((lift[late] - mean_lift) ** 2, weights=weights))
     return {
         "mean drag": np.array(mean_drag), "mean lift": np.array(mean_lift), "lift amplitude": np.array(swing),
-        "Strouhal": np.array(count / (time[-1] - time[0])), "largest drag": np.array(drag[kept].max()),
-        "largest lift": np.array(lift[kept].max()),
+        "Strouhal": np.array(count / (time[-1] - time[0])), "largest drag": np.array(drag[late].max()),
+        "largest lift": np.array(lift[late].max()),
     }  # fmt: skip
 
 

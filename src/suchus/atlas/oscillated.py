@@ -89,9 +89,9 @@ def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
 
 def mean_skin(skins: list[WallValues]) -> WallValues:
     """Return the mean over several readings at the same phase."""
-    pressure = np.mean([one.pressure for one in skins], axis=0)
+    pressure = np.mean([skin.pressure for skin in skins], axis=0)
     return WallValues(
-        angle=skins[0].angle, pressure=pressure, vorticity=np.mean([one.vorticity for one in skins], axis=0)
+        angle=skins[0].angle, pressure=pressure, vorticity=np.mean([skin.vorticity for skin in skins], axis=0)
     )  # fmt: skip
 
 

@@ -48,15 +48,15 @@ def _moved(effort: RunEffort, progress: Progress, *, aspect: float, keulegan: fl
     )  # fmt: skip
     record = march(sim, effort.until, progress)
     time, force = middles(record), record.force()[:, 0]
-    found = []
+    rows = []
     for period in range(1, round(effort.until)):
         k = (time > period) & (time <= period + 1)
         drag, added = flow.morison(time[k], force[k], frequency=1.0, speed=keulegan, diameter=1.0, density=1.0)
         u, du = -keulegan * np.cos(2 * np.pi * time[k]), 2 * np.pi * keulegan * np.sin(2 * np.pi * time[k])
         left = force[k] + 0.5 * drag * np.abs(u) * u + 0.25 * np.pi * added * du
-        found.append((period + 0.5, drag, added, float(np.sqrt(np.mean(left**2) / np.mean(force[k] ** 2)))))
-    at, drag, added, left = np.array(found).T
-    return {"drag": np.stack([at, drag]), "added": np.stack([at, added]), "left": np.stack([at, left])}
+        rows.append((period + 0.5, drag, added, float(np.sqrt(np.mean(left**2) / np.mean(force[k] ** 2)))))
+    middle, drag, added, left = np.array(rows).T
+    return {"drag": np.stack([middle, drag]), "added": np.stack([middle, added]), "left": np.stack([middle, left])}
 
 
 def _case(aspect: float, keulegan: float, cells: int = _CELLS) -> Case:

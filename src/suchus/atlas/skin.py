@@ -128,8 +128,8 @@ def _velocity(sim: flow.Simulation) -> tuple[_Component, _Component]:
     faces, mids = (
         (grid.faces(0, nx, 0), grid.faces(0, ny, 1)), (grid.centres(0, nx, 0), grid.centres(0, ny, 1))
     )  # fmt: skip
-    found = []
+    components = []
     for field, along, up in ((water.u, faces[0], mids[1]), (water.v, mids[0], faces[1])):
         i, j = np.abs(along - x) < reach, np.abs(up - y) < reach
-        found.append(_Component(along[i], up[j], np.asarray(field[np.ix_(j, i)], float)))
-    return found[0], found[1]
+        components.append(_Component(along[i], up[j], np.asarray(field[np.ix_(j, i)], float)))
+    return components[0], components[1]

@@ -88,14 +88,14 @@ def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     """Return the least height reached while it is meant to stand; zero for a run that does not stand up."""
-    found = np.zeros(len(runs))
+    seconds = np.zeros(len(runs))
     for i, run in enumerate(runs):
         if isinstance(run.control, Standing):
             height = metrics.reach(run.robot, record.isel(run=i))
             up, down = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
             while_up = height.sel(time=slice(up, down))
-            found[i] = float(while_up.min()) if while_up.sizes["time"] else 0.0
-    return found
+            seconds[i] = float(while_up.min()) if while_up.sizes["time"] else 0.0
+    return seconds
 
 
 AIMS: Mapping[str, Kind] = MappingProxyType(

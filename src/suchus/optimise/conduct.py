@@ -67,17 +67,17 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
     """Search one condition."""
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
-        found = _searched(spec, store, folder, progress, place)
-        if not found.chosen:
+        result = _searched(spec, store, folder, progress, place)
+        if not result.chosen:
             raise NotConverged(
-                f"nothing of {found.history.sizes['candidate']} candidates of {name} keeps all limits; widen ranges or "
-                "limits, or raise evaluations."
+                f"nothing of {result.history.sizes['candidate']} candidates of {name} keeps all limits; widen ranges "
+                "or limits, or raise evaluations."
             )
-        write_runs(found.spec, found.runs, folder)
-        generations = int(found.history.generation.max())
-        check = _kept(store, _CHECKED + generations, lambda: checked(spec, found.runs))
-        near = _kept(store, _AROUND + generations, lambda: around(spec, found.shares[0], partial(tried, place)))
-        return found.with_checks(check, near)
+        write_runs(result.spec, result.runs, folder)
+        generations = int(result.history.generation.max())
+        check = _kept(store, _CHECKED + generations, lambda: checked(spec, result.runs))
+        near = _kept(store, _AROUND + generations, lambda: around(spec, result.shares[0], partial(tried, place)))
+        return result.with_checks(check, near)
 
 
 @contextmanager
@@ -123,24 +123,24 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
     tally = Tally(spec.evaluations, "tried", lambda stage, share: progress(f"{name}: {stage}", share))
     tables, best = [_numbered(start, 0)], np.inf
     while tally.done < spec.evaluations:
-        asked, number = driver.ask(), len(tables)
+        shares, number = driver.ask(), len(tables)
         known = store.has(number)
 
-        def tell(stage: str, share: float, number: int = number, count: int = len(asked)) -> None:
+        def tell(stage: str, share: float, number: int = number, count: int = len(shares)) -> None:
             del stage
             tally.under_way(number, share * count)
 
-        table = _generation(store, number, asked, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
+        table = _generation(store, number, shares, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
         driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
         tables.append(_numbered(table, number))
-        found = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
-        if found.min() < best:
-            i, best = int(found.argmin()), float(found.min())
+        values = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
+        if values.min() < best:
+            i, best = int(values.argmin()), float(values.min())
             tally.note = f"best {float(table[f'aim_{aim}'][i]):.3g} {AIMS[aim].unit}"
             if not spec.pareto and not known:
-                run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, asked[i], strict=True)})
+                run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, shares[i], strict=True)})
                 write_runs(spec, [titled(spec, run, name)], folder)
-        tally.finished(number, len(asked), fresh=not known)
+        tally.finished(number, len(shares), fresh=not known)
     whole = xr.concat(tables, "candidate")
     return SearchResult(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
 

@@ -50,9 +50,9 @@ def evaluate(
         except SuchusError:
             beyond[i] = np.inf
     table = {name: np.full(count, np.nan) for name in columns(spec)}
-    for i, found in _walked(spec, runs, progress, timestep or spec.timestep).items():
-        status[i] = APART if found is None else WALKED
-        for name, value in (found or {}).items():
+    for i, numbers in _walked(spec, runs, progress, timestep or spec.timestep).items():
+        status[i] = APART if numbers is None else WALKED
+        for name, value in (numbers or {}).items():
             table[name][i] = value
     return xr.Dataset(
         {
@@ -83,11 +83,13 @@ def _walked(
     record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
-    found: dict[int, dict[str, float] | None] = {}
+    measures_of: dict[int, dict[str, float] | None] = {}
     for row, i in enumerate(runs):
-        at = slice(row * len(scales), (row + 1) * len(scales))
-        found[i] = None if broken[row] else {name: _joined(name, values[at]) for name, values in measured.items()}
-    return found
+        rows = slice(row * len(scales), (row + 1) * len(scales))
+        measures_of[i] = (
+            None if broken[row] else {name: _joined(name, values[rows]) for name, values in measured.items()}
+        )
+    return measures_of
 
 
 def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
@@ -146,11 +148,11 @@ def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarr
     signs = np.array([-1.0 if AIMS[aim.name].good == "more" else 1.0 for aim in spec.aims])
     values = np.column_stack([table[f"aim_{aim.name}"].values for aim in spec.aims])
     penalty = _PENALTY * np.maximum(excesses(spec, table), 0.0).sum(axis=1)
-    found = signs * values / parts + penalty[:, None]
+    weighted = signs * values / parts + penalty[:, None]
     status, beyond = table.status.values, table.beyond.values
     worst = np.where(status == APART, _APART, np.where(np.isfinite(beyond), _REFUSED + np.minimum(beyond, 1e3), _NEVER))
-    bad = (status != WALKED) | ~np.isfinite(found).all(axis=1)
-    return np.where(bad[:, None], worst[:, None], found)
+    bad = (status != WALKED) | ~np.isfinite(weighted).all(axis=1)
+    return np.where(bad[:, None], worst[:, None], weighted)
 
 
 def score(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:

@@ -37,19 +37,21 @@ def label(name: str) -> str:
     return f"{name.removeprefix('control, ')} (control)" if name.startswith("control, ") else name
 
 
-def draw_convergence(found: Sequence[SearchResult]) -> Figure:
+def draw_convergence(searches: Sequence[SearchResult]) -> Figure:
     """Draw the first aim of the best so far of every condition over the candidates tried."""
-    kind, name = AIMS[found[0].spec.aims[0].name], label(found[0].spec.aims[0].name)
+    kind, name = AIMS[searches[0].spec.aims[0].name], label(searches[0].spec.aims[0].name)
     with styled():
         figure, axes = panels(1, 1, height=4.0)
         ax = axes[0, 0]
-        for i, one in enumerate(found):
-            colour, values = COLOURS[role(i)], one.history[f"aim_{one.spec.aims[0].name}"].values
-            kept = allowed(one.spec, one.history)
+        for i, search in enumerate(searches):
+            colour, values = COLOURS[role(i)], search.history[f"aim_{search.spec.aims[0].name}"].values
+            kept = allowed(search.spec, search.history)
             ax.plot(np.flatnonzero(kept), values[kept], ".", color=colour, markersize=3, alpha=0.35)
-            ax.plot(one.best_so_far(), color=colour, drawstyle="steps-post", label=label(one.arm))
-            ax.plot(0, float(one.start[f"aim_{one.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black")
-        _limit_axis(ax, found)
+            ax.plot(search.best_so_far(), color=colour, drawstyle="steps-post", label=label(search.arm))
+            ax.plot(
+                0, float(search.start[f"aim_{search.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black"
+            )
+        _limit_axis(ax, searches)
         ax.set_xlabel("candidates tried [-]")
         ax.set_ylabel(f"{name} [{kind.unit}]")
         ax.legend(loc="lower right" if kind.good == "more" else "upper right")
@@ -60,9 +62,9 @@ def draw_convergence(found: Sequence[SearchResult]) -> Figure:
     )
 
 
-def _limit_axis(ax: Axes, found: Sequence[SearchResult]) -> None:
+def _limit_axis(ax: Axes, searches: Sequence[SearchResult]) -> None:
     """Leave wild candidates out of the picture."""
-    shown = np.concatenate([one.best_so_far() for one in found])
+    shown = np.concatenate([search.best_so_far() for search in searches])
     shown = shown[np.isfinite(shown)]
     if shown.size:
         low, high = float(shown.min()), float(shown.max())
@@ -70,11 +72,11 @@ def _limit_axis(ax: Axes, found: Sequence[SearchResult]) -> None:
         ax.set_ylim(low - pad, high + pad)
 
 
-def draw_front(found: SearchResult) -> Figure:
+def draw_front(search: SearchResult) -> Figure:
     """Draw the two aims of every candidate that keeps all limits, and the front."""
-    first, second = (f"aim_{aim.name}" for aim in found.spec.aims)
-    kinds = [AIMS[aim.name] for aim in found.spec.aims]
-    kept, table, front, chosen = allowed(found.spec, found.history), found.history, found.front, found.chosen
+    first, second = (f"aim_{aim.name}" for aim in search.spec.aims)
+    kinds = [AIMS[aim.name] for aim in search.spec.aims]
+    kept, table, front, chosen = allowed(search.spec, search.history), search.history, search.front, search.chosen
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, width_ratios=[1.4, 1])
         ax = axes[0, 0]
@@ -86,12 +88,12 @@ def draw_front(found: SearchResult) -> Figure:
         if front:
             spread = np.ptp(y[front]) + 0.1 * abs(y[front]).max()
             ax.set_ylim(y[front].min() - 0.3 * spread, max(y[front].max() + spread, y[0] + 0.2 * spread))
-        for i, name in zip(chosen, found.names, strict=True):
+        for i, name in zip(chosen, search.names, strict=True):
             ax.annotate(name.rpartition("_")[2], (x[i], y[i]), (7, 5), textcoords="offset points")
-        for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), found.spec.aims, kinds, strict=True):
+        for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), search.spec.aims, kinds, strict=True):
             axis(f"{label(aim.name)} [{kind.unit}], {kind.good} is better")
         ax.legend(loc="best", fontsize=10)
-        areas = found.covered()
+        areas = search.covered()
         axes[0, 1].plot(areas, color=COLOURS["ours"])
         axes[0, 1].set_xlabel("generation [-]")
         axes[0, 1].set_ylabel("area that the front covers [-]")
@@ -119,10 +121,10 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
         figure, axes = panels(1, 1, width=10.5, height=1.0 + 3.8 * depth)
         ax = axes[0, 0]
         for i, run in enumerate(runs):
-            one, hue = record.isel(run=i), _shade(run.label, i)
-            draw_strip(ax, run.robot, one, times, role=hue, aside=aside[i])
-            beside = float(one.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
-            right = float(_seen(one, times)[:, 0].max())
+            walk, hue = record.isel(run=i), _shade(run.label, i)
+            draw_strip(ax, run.robot, walk, times, role=hue, aside=aside[i])
+            beside = float(walk.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
+            right = float(_seen(walk, times)[:, 0].max())
             ax.text(
                 right + _GAP, beside, f"{label(run.label)}\n{texts[i]}", color=COLOURS[hue], va="center", fontsize=13
             )
@@ -137,8 +139,8 @@ def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) ->
 
 def _seen(record: xr.Dataset, times: Sequence[float]) -> np.ndarray:
     """Return where feet, snout and tail tip are at some times, shape (point, 3) [m]."""
-    at = record.sel(time=list(times), method="nearest")
-    return np.concatenate([at[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
+    near = record.sel(time=list(times), method="nearest")
+    return np.concatenate([near[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
 
 
 def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> tuple[list[float], float]:
@@ -158,11 +160,11 @@ def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]
         ax = axes[0, 0]
         for i, run in enumerate(runs):
             assert isinstance(run.control, Standing)
-            one = record.isel(run=i)
+            walk = record.isel(run=i)
             time = (run.control.upright_from(run.robot) + run.control.upright_until(run.robot)) / 2
-            hips = float(one.position.sel(xyz="x").sel(time=time, method="nearest"))
-            moved = one.assign(
-                {name: one[name] + _beside(one, _APART * i - hips) for name in ("position", "centre_of_mass")}
+            hips = float(walk.position.sel(xyz="x").sel(time=time, method="nearest"))
+            moved = walk.assign(
+                {name: walk[name] + _beside(walk, _APART * i - hips) for name in ("position", "centre_of_mass")}
             )
             draw_posture(ax, run.robot, moved, time, view="side", support=False)
             ax.text(_APART * i, -0.05, f"{label(run.label)}\n{texts[i]}", ha="center", va="top", fontsize=12,
@@ -182,22 +184,22 @@ def _shade(name: str, number: int) -> str:
     return "neutral" if name == "start" else role(number - 1)
 
 
-def draw_around(found: SearchResult) -> Figure:
+def draw_around(search: SearchResult) -> Figure:
     """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
-    near = found.near
+    near = search.near
     assert near is not None
-    aim = found.spec.aims[0].name
+    aim = search.spec.aims[0].name
     kind: Kind = AIMS[aim]
-    fields, columns = found.fields, 4
+    fields, columns = search.fields, 4
     rows = ceil(len(fields) / columns)
     values, best = near[f"aim_{aim}"].values, float(near[f"aim_{aim}"].sel(step=0.0)[0])
     with styled(axes__labelsize=10, xtick__labelsize=9, ytick__labelsize=9):
         figure, axes = panels(rows, columns, width=10.5, height=0.7 + 1.9 * rows, sharey=True)
-        for i, vary in enumerate(found.spec.vary):
+        for i, vary in enumerate(search.spec.vary):
             ax = axes.flat[i]
-            scale, shown = scaled(found.spec.run, vary.field)
+            scale, shown = scaled(search.spec.run, vary.field)
             at = np.array([at_share(vary, float(share)) for share in near["at"].values[i]]) * scale
-            kept = _kept(found, near, i)
+            kept = _kept(search, near, i)
             ax.plot(at, values[i], color=COLOURS["ours"], linewidth=1.2)
             ax.plot(at[kept], values[i][kept], "o", color=COLOURS["ours"], markersize=5)
             ax.plot(at[~kept], values[i][~kept], "x", color=COLOURS["alarm"], markersize=6, markeredgewidth=1.6)
@@ -209,15 +211,15 @@ def draw_around(found: SearchResult) -> Figure:
             ax.set_ylabel(f"{label(aim)} [{kind.unit}]")
     return captioned(
         figure,
-        f"Around the best of {label(found.arm)}: each field alone moves by a twentieth and a tenth of its range. "
+        f"Around the best of {label(search.arm)}: each field alone moves by a twentieth and a tenth of its range. "
         "Crosses break a limit; what is missing could not be walked.",
     )
 
 
-def _kept(found: SearchResult, near: xr.Dataset, row: int) -> np.ndarray:
+def _kept(search: SearchResult, near: xr.Dataset, row: int) -> np.ndarray:
     """Tell which of the points beside the best keep all limits."""
     part = near.isel(moved=row).rename(step="candidate")
-    return allowed(found.spec, part)
+    return allowed(search.spec, part)
 
 
 def scaled(run: Run, field: str) -> tuple[float, str]:
