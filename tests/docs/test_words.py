@@ -55,7 +55,7 @@ MEANT = {
     "tools/validation_page.py": (_HELD,),
     "src/suchus/paper/claims_land.py": (_LOST,),
     "src/suchus/paper/errata.py": (_LOST,),
-    "src/suchus/record/ground.py": (_GRIP,),
+    "src/suchus/record/schema.py": (_GRIP,),
     "src/suchus/study/claims.py": (_APART,),
 }
 """Where an old word is meant: the glossary explains it; others hold the article's own words, or names in files."""

@@ -10,6 +10,8 @@ from suchus.metrics.bends import (
     spine_sine_share,
     spine_swings,
     tail_amplitude,
+    tail_joint_spread,
+    tail_joint_spread_max,
     tail_swing_least,
     tail_swings,
     vertical_bend,
@@ -38,7 +40,6 @@ from suchus.metrics.stability import (
     support_polygon,
     tilt,
 )
-from suchus.metrics.tail import tail_joint_spread, tail_joint_spread_max
 from suchus.metrics.window import between, each_cycle, first_harmonic, mean_cycle, whole
 
 __all__ = [

@@ -1,5 +1,6 @@
-"""How spine and tail bend: the angles of the article's Fig. 12, in its signs, right and down positive."""
+"""How spine and tail bend: the angles of Fig. 12 in the article's signs, and how equally the joints of a tail turn."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -8,6 +9,27 @@ import xarray as xr
 from suchus.metrics.window import between
 from suchus.motion import START
 from suchus.paper.signs import spine_lateral
+
+
+def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArray:
+    """Return over time the greatest less the least angle among the cable joints of the tail [rad].
+
+    Paper: section III.C, "the angle of rotation of each joint is the same".
+
+    Args:
+        angles: of joints by name, with the dimension ``joint`` [rad].
+        joints: names of the cable joints; see ``design.cable_joints``.
+    """
+    bends = angles.sel(joint=list(joints))
+    return (bends.max("joint") - bends.min("joint")).assign_attrs(units="rad", long_name="spread of the tail's joints")
+
+
+def tail_joint_spread_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the greatest difference between the angles of two cable joints of the tail at one time [rad]."""
+    part = between(record, start, end)
+    names = [str(name) for name in part.joint.values if str(name).startswith("tail_yaw")]
+    return tail_joint_spread(part.joint_angle, names).max("time").assign_attrs(units="rad")
+
 
 Bent = Literal["spine", "tail"]
 _WIGGLE = 0.1  # of the range of an angle: less is no change of side
@@ -104,4 +126,7 @@ def _changes(angle: np.ndarray) -> float:
     return float(np.count_nonzero(sides != np.roll(sides, 1))) if sides.size else 0.0
 
 
-measures = (spine_amplitude, spine_sine_share, spine_swings, tail_amplitude, tail_swing_least, tail_swings)
+measures = (
+    spine_amplitude, spine_sine_share, spine_swings, tail_amplitude, tail_joint_spread_max, tail_swing_least,
+    tail_swings,
+)  # fmt: skip

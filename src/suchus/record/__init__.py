@@ -1,10 +1,9 @@
 """What happened: the schema of a run, its place on disk and where it comes from."""
 
 from suchus.reading import check_file, read_json, read_text, read_toml, there
-from suchus.record.ground import ground_of, ground_text
 from suchus.record.place import check_name, check_replaceable, check_writable, new_file, new_folder, sweep
 from suchus.record.provenance import code_digest, digest, made_alike, package_digest, plain, provenance, versions
-from suchus.record.schema import PER_RUN, VARIABLES, WATER, check_land, dataset
+from suchus.record.schema import PER_RUN, VARIABLES, WATER, check_land, dataset, ground_of, ground_text
 from suchus.record.store import load, save
 from suchus.record.tables import write_tables
 
