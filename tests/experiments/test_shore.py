@@ -10,7 +10,7 @@ import xarray as xr
 from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.shore import findings
+from suchus.experiments.shore import experiment as shore
 from suchus.experiments.shore.figure import _obliquely, levelled
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
@@ -51,7 +51,7 @@ def kept(**changes):
 
 @pytest.mark.parametrize(("beyond", "time"), [(0.99, 7.5), (1.01, 8.0), (1.81, np.nan)])
 def test_it_is_ashore_as_soon_as_it_is_so_far_beyond_the_line(beyond, time):
-    found = findings.times_ashore(kept().assign_attrs(beyond=beyond))
+    found = shore.times_ashore(kept().assign_attrs(beyond=beyond))
     assert found[0] == pytest.approx(time, nan_ok=True)
 
 
@@ -60,10 +60,10 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
     tilt = np.full((3, 20), 0.1)
     tilt[0, 5] = radians(degrees)
     record = kept(tilt=tilt)
-    assert findings.fallen(record)[0] == fell
-    assert np.isnan(findings.times_ashore(record)[0]) == fell
+    assert shore.fallen(record)[0] == fell
+    assert np.isnan(shore.times_ashore(record)[0]) == fell
     tilt[0, 5] = np.nan  # diverged
-    assert findings.fallen(kept(tilt=tilt))[0]
+    assert shore.fallen(kept(tilt=tilt))[0]
 
 
 @pytest.mark.parametrize(
@@ -73,18 +73,20 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
 def test_it_is_in_the_water_if_it_swims_there_and_floats_free(ahead, share, walks, inside):
     full = np.ones((3, 20))
     record = kept(ahead=ahead * full, ground=share * full, walks=walks * full, tilt=0.1 * full)
-    assert findings.in_water(record).all() == inside
+    assert shore.in_water(record).all() == inside
     end = np.array(share * full)
     end[:, :14] = 0.5  # what was before the last seconds does not count
     other = kept(ahead=ahead * full, ground=end, walks=walks * full, tilt=0.1 * full)
-    assert findings.in_water(other).all() == inside
+    assert shore.in_water(other).all() == inside
 
 
 def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
     record = kept()
     into = kept(ahead=np.full((3, 20), -1.0), ground=np.zeros((3, 20)), walks=np.zeros((3, 20)))
     into["kind"] = ("case", np.array(["into_water"] * 3))
-    found = findings.measures(xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override"))
+    found = EXPERIMENTS["shore"].measure(
+        xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override")
+    )
     assert found["ashore_share"].value == pytest.approx(1 / 3)
     assert found["falls"].value == 1.0
     assert found["switches"].value == 2.0
@@ -99,7 +101,7 @@ def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
 
 def test_a_metre_costs_power_over_speed():
     record = kept().isel(case=[0])
-    found = findings._costs(record)
+    found = shore._costs(record)
     assert found["speed_ashore"].value == pytest.approx(0.4)
     assert found["work_per_metre_ashore"].value == pytest.approx(6.0 / 0.4)
     assert found["work_per_metre_wading"].value == pytest.approx(6.0 / 0.4)
@@ -109,8 +111,8 @@ def test_a_metre_costs_power_over_speed():
 def test_a_metre_is_measured_along_the_course():
     """Aslant by 0.6435 rad 0.4 m up are 0.5 m along, and 0.3 m aside."""
     record = kept(aside=kept().ahead.values * 0.75).isel(case=[0]).assign_attrs(approach=np.arctan2(3, 4))
-    assert findings._costs(record)["speed_ashore"].value == pytest.approx(0.5)
-    assert findings._costs(record.assign_attrs(approach=0.0))["speed_ashore"].value == pytest.approx(0.4)
+    assert shore._costs(record)["speed_ashore"].value == pytest.approx(0.5)
+    assert shore._costs(record.assign_attrs(approach=0.0))["speed_ashore"].value == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize(
@@ -122,9 +124,9 @@ def test_a_metre_is_measured_along_the_course():
     ],
 )
 def test_what_is_shown_is_said_as_it_came(shown, said):
-    assert said in findings.ending(kept().assign_attrs(shown=shown))
+    assert said in shore.ending(kept().assign_attrs(shown=shown))
     swims = kept(walks=np.zeros((3, 20)))
-    assert "does not begin to walk" in findings.ending(swims)
+    assert "does not begin to walk" in shore.ending(swims)
 
 
 @pytest.mark.parametrize("into", [True, False])
@@ -135,15 +137,15 @@ def test_down_a_shore_the_water_is_ahead_and_up_a_shore_behind(into):
         replace(run, lake=replace(run.lake, level=run.lake.level + (0.6 if into else -0.6)), control=OpenLoop())
         for run in runs
     ]
-    found = findings.paths(simulate(runs, duration=0.1), runs, 1)
+    found = shore.paths(simulate(runs, duration=0.1), runs, 1)
     found["ground"], found["walks"] = 0.0 * found.ground, 0.0 * found.walks  # as if it swam
     assert ((found.ahead < 0.0) == into).all()
     assert ((found.under > 0.5) == into).all()
-    assert (findings.in_water(found) == into).all()
+    assert (shore.in_water(found) == into).all()
 
 
 def test_a_metre_on_land_at_the_surface_and_at_depth_costs_power_over_speed_and_weight():
-    found = findings._metre_costs(kept())
+    found = shore._metre_costs(kept())
     assert [found[f"work_per_metre_{where}"].value for where in ("land", "surface", "deep")] == pytest.approx(
         [30, 6, 10]
     )
@@ -164,7 +166,7 @@ def test_metres_are_read_from_the_last_seconds_along_the_course():
         },
         {"time": time, "xyz": list("xyz")},
     )
-    found = findings.metres(record, ["deep"], 2.0)
+    found = shore.metres(record, ["deep"], 2.0)
     assert found.metre_speed.item() == pytest.approx(0.5)
     assert found.metre_power.item() == pytest.approx(3.0)
     assert found.metre_depth.item() == pytest.approx(0.6)
@@ -172,13 +174,13 @@ def test_metres_are_read_from_the_last_seconds_along_the_course():
 
 def test_limbs_whose_phase_stands_still_do_not_walk():
     phase = np.array([[0.0, 0.0, 0.1, 0.2, 0.2]])
-    assert findings.walking(phase).tolist() == [[False, False, True, True, False]]
+    assert shore.walking(phase).tolist() == [[False, False, True, True, False]]
 
 
 @pytest.mark.parametrize("uphill", [radians(10), radians(-10)])
 def test_the_water_line_is_where_the_slope_meets_the_level(uphill):
     run = SHORE._run(SHORE.gait, uphill, 1.0, 0.0, 0)
-    line = findings.water_line(run)
+    line = shore.water_line(run)
     assert line * sin(uphill) == pytest.approx(run.lake.level)
     assert line > 0.0
     assert (run.lake.level > 0.0) == (uphill > 0.0)

@@ -14,7 +14,7 @@ from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._taken import TAKEN, TakenMidline
-from suchus.experiments.swim_3d import findings
+from suchus.experiments.swim_3d.experiment import with_midlines
 from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
 from suchus.flow import grid as grids
@@ -273,12 +273,12 @@ def swum(handed=()):
          "real_model_speed": models}, coords={"model": ["resistive", "reactive"]},
     )  # fmt: skip
     swims |= {one_.name: one(speeds) for one_, speeds in zip(handed, ([0.01, 0.03], [0.0, -0.01]), strict=False)}
-    return findings.record(swims, findings.with_midlines(beside, handed), asked)
+    return asked.recorded(swims, with_midlines(beside, handed))
 
 
 def made(handed=()):
     """The measures of swims by hand."""
-    return {name: measure.value for name, measure in findings.measures(swum(handed), ROBOT, 1.0).items()}
+    return {name: measure.value for name, measure in ASKED.measure(swum(handed)).items()}
 
 
 def test_measures_are_of_the_finest_grid_and_its_last_cycle():

@@ -7,9 +7,7 @@ import xarray as xr
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._taken import TAKEN
-from suchus.experiments.swimming import findings
-from suchus.experiments.swimming.experiment import PlaneSwims
-from suchus.experiments.swimming.findings import ARMS
+from suchus.experiments.swimming.experiment import ARMS, PlaneSwims, _compared, _track, _wave
 from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
 
@@ -62,7 +60,7 @@ def test_impossible_settings_are_refused(name, fields, said):
 def test_what_tail_and_spine_add_is_what_is_missing_without_them():
     speeds = [[0.1, 0.2, 0.3], [0.0, 0.05, 0.1], [0.0, 0.3, 0.25], *[[0.0, 0.1, 0.1]] * 3]
     record = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds)}, coords={"arm": list(ARMS)})
-    found = {name: measure.value for name, measure in findings._compared(record)}
+    found = {name: measure.value for name, measure in _compared(record)}
     assert found["speed_trunk_and_tail"] == 0.3
     assert found["gain_tail_swim"] == pytest.approx(0.2)  # without the tail only the trunk is left
     assert (found["gain_tail_swim_low"], found["gain_tail_swim_high"]) == pytest.approx((0.15, 0.2))
@@ -81,12 +79,12 @@ def free_track(sway):
 
 
 def test_the_track_is_that_of_the_centre_of_mass_over_the_last_cycles(robot):
-    found = {name: m.value for name, m in findings._track(free_track(0.02), robot)}
+    found = {name: m.value for name, m in _track(free_track(0.02), robot)}
     assert found["track_cycles"] == 4
     assert found["track_sway"] == pytest.approx(0.02 / robot.length, rel=1e-3)
     assert found["track_noise"] < 1e-6
     assert found["snout_sway"] == pytest.approx(0.03 / robot.length)
-    straight = {name: m.value for name, m in findings._track(free_track(0.0), robot)}
+    straight = {name: m.value for name, m in _track(free_track(0.0), robot)}
     assert straight["track_sway"] == pytest.approx(0.0, abs=1e-9)
 
 
@@ -101,7 +99,7 @@ def test_a_wave_and_its_envelope_are_read_from_the_free_body(robot):
             "tip_share": ("single", [0.97, 0.99]),
         }
     )
-    found = {name: m.value for name, m in findings._wave(free, robot)}
+    found = {name: m.value for name, m in _wave(free, robot)}
     assert found["wave_waves_per_body"] == pytest.approx(1.1, rel=0.01)
     assert found["wave_share"] == pytest.approx(0.98, abs=0.01)
     assert found["wave_envelope_tip"] == pytest.approx(0.1, rel=0.02)
@@ -137,7 +135,7 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     # the tail alone folds more than the whole body; neither is what was commanded
     assert 0.1 < float(record.taken_away[0]) < float(record.taken_away[1]) < 1.5
     arms = _no_conditions(quick, None, None, None, None)
-    told = dict(findings._compared(xr.merge([arms, record])))
+    told = dict(_compared(xr.merge([arms, record])))
     assert told["speed_tail_only_as_taken"].value == pytest.approx(0.2)
     assert told["misfit_trunk_and_tail_as_taken"].value == float(record.taken_away[0])
-    assert "speed_tail_only_as_taken" not in dict(findings._compared(arms))
+    assert "speed_tail_only_as_taken" not in dict(_compared(arms))

@@ -1,6 +1,6 @@
 """How does the robot's own body swim in the water of three dimensions, and what would a higher tail do?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -8,14 +8,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, ClassVar
 
+import numpy as np
 import xarray as xr
 
-from suchus.design import Robot
+from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments._taken import TakenMidline, midlines
-from suchus.experiments.swim_3d import findings
+from suchus.experiments._taken import TAKEN, TakenMidline, midlines
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
@@ -36,6 +36,10 @@ from suchus.water.setting import BESIDE
 
 MOST_REYNOLDS = 2e4
 """Largest frequency times length squared over viscosity [-]."""
+WHOLE = "trunk and tail"
+"""The motion that the others are compared with."""
+LIMBS = "limbs folded"
+"""The same with the limbs in the water."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,10 +155,41 @@ class Swim3d(Experiment):
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
         swims = {name: swum for (name, *_), swum in zip(runs, found, strict=True)}
-        record = findings.record(swims, findings.with_midlines(beside, bent), self)
+        record = self.recorded(swims, with_midlines(beside, bent))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         forget_kept(self.keep)
         return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
+
+    def recorded(self, swims: Mapping[str, xr.Dataset], beside: xr.Dataset) -> xr.Dataset:
+        """Return the record of the experiment from the swims by name, and what slice and models say."""
+        grids = [swims[f"{cells} cells"] for cells in self.cells]
+        whole = swims.get("compared", swims.get(f"{self.compared_cells} cells"))
+        assert whole is not None
+        names = [name for name in ("trunk only", "tail only", "as printed", LIMBS, *TAKEN) if name in swims]
+        tails = {f"tail {high:g} m": high for high in self.tail_heights}
+        compared = {WHOLE: whole, **{name: swims[name] for name in (*names, *tails)}}
+        finest = grids[-1].drop_vars(("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle"))
+        n, held = self.compared_cycles, swims["held"]
+        speeds, powers = ([one[name].values[:n] for one in compared.values()] for name in ("speed", "power"))
+        data = xr.Dataset(
+            {
+                **{name: (("grid", "cycle"), [one[name].values for one in grids], grids[0][name].attrs)
+                   for name in ("speed", "thrust", "power")},
+                **{name: ("grid", [float(one[name]) for one in grids], grids[0][name].attrs)
+                   for name in ("steps", "million_cells", "thin")},
+                "compared_speed": (("compared", "compared_cycle"), speeds, {"units": "m/s"}),
+                "compared_power": (("compared", "compared_cycle"), powers, {"units": "W"}),
+                "tail_height": ("compared", [tails.get(name, 0.0) for name in compared], {"units": "m"}),
+                "weight_compared": ("compared", [float(one.weight) for one in compared.values()], {"units": "N"}),
+                "held_thrust": ((), float(held.thrust[-1]), {"units": "N"}),
+                "held_power": ((), float(held.power[-1]), {"units": "W"}),
+                "compared_cells": ((), float(self.compared_cells), {"units": "1"}),
+                "reynolds": ((), self.reynolds, {"units": "1"}),
+            },
+            coords={"cells": ("grid", list(self.cells)), "compared": list(compared),
+                    "cycle": grids[0].cycle.values, "compared_cycle": np.arange(1, n + 1)},
+        )  # fmt: skip
+        return data.merge(finest).merge(beside)
 
     def _motion(self, sign: int) -> Gait:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
@@ -192,7 +227,7 @@ class Swim3d(Experiment):
             trunk, tail = ours.straightened("tail"), ours.straightened("trunk")
             arms = {"trunk only": trunk, "tail only": tail, "as printed": printed}
             runs += [(name, motion, compared) for name, motion in arms.items()]
-            runs.append((findings.LIMBS, ours, replace(compared, limbs=True)))
+            runs.append((LIMBS, ours, replace(compared, limbs=True)))
         runs += [(one.name, one.motion, compared) for one in bent]
         return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
 
@@ -210,7 +245,13 @@ class Swim3d(Experiment):
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return what the body did on every grid, and beside it slice, models, motions and tails."""
-        return findings.measures(record, self.robot, self.frequency)
+        return {
+            **dict(_body(record, self.robot, self.frequency)),
+            **dict(_grids(record)),
+            **dict(_slice_and_models(record)),
+            **dict(_compared(record)),
+            **dict(_loads(record)),
+        }
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speeds over the cycles, the wake, the tails and the joints' torques."""
@@ -248,6 +289,86 @@ def _replays(record: xr.Dataset) -> dict[str, Replay]:
     )
     page = partial(wake_replay, record, title="Vortices around the swimming robot", caption=caption)
     return {"swim_3d_replay.html": Replay(caption=caption, make=page)}
+
+
+def with_midlines(beside: xr.Dataset, bent: Sequence[TakenMidline]) -> xr.Dataset:
+    """Return what stands beside the swims, with how far the midlines that the joints took are off, if there are any."""
+    if not bent:
+        return beside
+    away = ("taken_arm", [one.away for one in bent], {"units": "1", "long_name": "rms angle off, over that commanded"})
+    return beside.assign(taken_away=away).assign_coords(taken_arm=[one.name for one in bent])
+
+
+def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
+    speeds, power = record.speed.values[-1], float(record.power[-1, -1])
+    speed, weight = float(speeds[-1]), float(record.weight)
+    yield "reynolds", Measure(float(record.reynolds), "-")
+    real = frequency * robot.length**2 / Water().viscosity
+    yield "reynolds_real_water", Measure(real, "-")
+    yield "reynolds_of_speed", Measure(float(record.reynolds) * abs(speed) / (frequency * robot.length), "-")
+    yield "cells_per_length", Measure(float(record.cells[-1]), "-")
+    yield "cycles", Measure(float(record.sizes["cycle"]), "-")
+    yield "mass", Measure(weight / GRAVITY, "kg")
+    yield "speed", Measure(speed, "m/s")
+    yield "speed_lengths", Measure(speed / robot.length, "1/s")
+    yield "speed_gain", Measure(_gain(speeds), "-")
+    yield "power", Measure(power, "W")
+    yield "cost_of_transport", Measure(power / (weight * abs(speed)), "-")
+    yield "strouhal", Measure(frequency * float(record["swing"]) / abs(speed), "-")
+    yield "slip", Measure(speed / float(record.wave_speed), "-")
+    yield "head_yaw", Measure(float(record.head_yaw), "rad")
+    yield "thrust_held", Measure(float(record.held_thrust), "N")
+    yield "power_held", Measure(float(record.held_power), "W")
+
+
+def _grids(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    for i, cells in enumerate(record.cells.values):
+        yield f"speed_{cells}_cells", Measure(float(record.speed[i, -1]), "m/s")
+        yield f"power_{cells}_cells", Measure(float(record.power[i, -1]), "W")
+        yield f"thin_share_{cells}_cells", Measure(float(record["thin"][i]), "-")
+    if record.sizes["grid"] > 1:
+        last, power = record.speed.values[-2:, -1], record.power.values[-2:, -1]
+        yield "speed_over_grids", Measure(float(last[1] / last[0] - 1.0), "-")
+        yield "power_over_grids", Measure(float(power[1] / power[0] - 1.0), "-")
+
+
+def _slice_and_models(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    plane, speed = float(record.slice_speed[-1]), float(record.speed[-1, -1])
+    yield "speed_slice", Measure(plane, "m/s")
+    yield "slice_over_body", Measure(plane / speed, "-")
+    for model in record.model.values:
+        one = record.sel(model=model)
+        yield f"speed_{model}", Measure(float(one.model_speed), "m/s")
+        yield f"power_{model}", Measure(float(one.model_power), "W")
+        yield f"thrust_held_{model}", Measure(float(one.model_thrust), "N")
+        yield f"speed_{model}_real_water", Measure(float(one.real_model_speed), "m/s")
+
+
+def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    for name in record.compared.values:
+        one, key = record.sel(compared=name), _key(str(name))
+        speed, power = one.compared_speed.values, float(one.compared_power[-1])
+        yield f"speed_{key}", Measure(float(speed[-1]), "m/s")
+        yield f"speed_gain_{key}", Measure(_gain(speed), "-")
+        yield f"power_{key}", Measure(power, "W")
+        yield f"cost_of_transport_{key}", Measure(power / (float(one.weight_compared) * abs(float(speed[-1]))), "-")
+    for name in record.taken_arm.values if "taken_away" in record else ():
+        yield f"misfit_{_key(str(name))}", Measure(float(record.taken_away.sel(taken_arm=name)), "-")
+
+
+def _gain(speeds: np.ndarray) -> float:
+    """Return by how much the last cycle is faster than the one before; NaN where that stood still [-]."""
+    return float(speeds[-1] / speeds[-2] - 1.0) if speeds[-2] != 0.0 else float("nan")
+
+
+def _key(name: str) -> str:
+    return name.replace(" m", "").replace(" ", "_").replace(".", "_")
+
+
+def _loads(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    for servo in record.servo.values:
+        one = record.sel(servo=servo)
+        yield f"servo_load_peak_{servo}", Measure(float(abs(one.servo_torque).max() / one.servo_limit), "-")
 
 
 experiment = Swim3d()
