@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import ARTICLE_BODY, Cable, Hinge, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
+from suchus.design import Cable, Hinge, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
 from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -168,16 +168,17 @@ def test_a_field_of_another_kind_is_named_once():
         replace(CAIMAN.tables.tail, drive=object)
 
 
-def test_who_needs_a_crocodile_says_so():
-    assert check_needs(CAIMAN, ARTICLE_BODY, "it") is CAIMAN
+def test_who_needs_a_chain_that_a_robot_lacks_says_so():
+    chains = ("legs", "shells", "article_spine", "cable_tail")
+    assert check_needs(CAIMAN, chains, "it") is CAIMAN
     with pytest.raises(UnsuitedRobot, match=r"standing up needs four legs of yaw, pitch and knee.*'salamander'"):
-        check_needs(SALAMANDER, ARTICLE_BODY, "standing up")
+        check_needs(SALAMANDER, chains, "standing up")
     six = crocodile(replace(CAIMAN.tables, spine=replace(CAIMAN.tables.spine, joints=6)))
     with pytest.raises(UnsuitedRobot, match=r"needs the article's spine of 5 joints"):
-        check_needs(six, ARTICLE_BODY, "standing up")
+        check_needs(six, chains, "standing up")
     servos = crocodile(replace(CAIMAN.tables, tail=replace(CAIMAN.tables.tail, drive="servos")))
     with pytest.raises(UnsuitedRobot, match="the article's tail with a cable"):
-        check_needs(servos, ARTICLE_BODY, "standing up")
+        check_needs(servos, chains, "standing up")
     assert "tail_yaw_6" in servo_names(servos)
 
 

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 import suchus
 from suchus import blueprint, paper
 from suchus.design import (
+    MEASURED,
     NEEDS,
     Robot,
     Servo,
     cable_joints,
-    crocodile_like,
     fin_joints,
     lacking,
     tables_of,
@@ -92,13 +92,13 @@ def test_who_has_no_such_part_is_told_so(part):
 
 def test_legs_of_other_bodies_are_legs_too():
     assert STRIDER.hind_leg.reach == pytest.approx((0.02, 0.18))
-    assert not crocodile_like(STRIDER)
+    assert lacking(STRIDER, MEASURED) == ["shells", "spine", "tail"]
 
 
 def test_a_robot_of_another_size_is_measured_as_the_chain_it_still_is():
     small = scaled(CAIMAN, length_factor=0.3)
     assert small.tables is None
-    assert crocodile_like(small)
+    assert not lacking(small, MEASURED)
     assert small.spine.link == pytest.approx(0.3 * CAIMAN.spine.link)
     assert small.tail.length == pytest.approx(0.3 * CAIMAN.tail.length)
 

@@ -25,14 +25,13 @@ from suchus.design.layout import (
     spine_joints,
 )
 from suchus.design.limb import Foot, Girdle, Limb, Link
-from suchus.design.needs import ARTICLE_BODY, MEASURED, NEEDS, STANDING, check_needs, crocodile_like, lacking
+from suchus.design.needs import MEASURED, NEEDS, STANDING, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Rod, Segment, Shell
 from suchus.design.servos import with_servos, with_speed_lines, with_spring
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
 __all__ = [
-    "ARTICLE_BODY",
     "GRAVITY",
     "LEGS",
     "MEASURED",
@@ -73,7 +72,6 @@ __all__ = [
     "cable_joints",
     "check_needs",
     "crocodile",
-    "crocodile_like",
     "fin_joints",
     "front_segment",
     "hips_ahead",

@@ -110,13 +110,6 @@ MEASURED = ("legs", "shells", "spine", "tail")
 shapes."""
 STANDING = ("hind_legs", "trunk_pitch", "tail_root")
 """What a body needs to stand up on hind legs and tail."""
-ARTICLE_BODY = ("legs", "shells", "article_spine", "cable_tail")
-"""What the article's closed forms need of a whole body: standing up, the death roll, swimming by trunk and cable."""
-
-
-def crocodile_like(robot: Robot) -> bool:
-    """Return whether a robot has the measures of a crocodile-like body: legs, spine, tail and shells."""
-    return not lacking(robot, ("legs", "shells", "spine", "tail"))
 
 
 def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:

@@ -21,7 +21,7 @@ from suchus.envs.senses import Observer, turning
 from suchus.envs.task import AnyGoal, Task, Terms, remaining, swim_of
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Push, Run
 from suchus.land.afloat import surfaced
 from suchus.land.batch import Beginning
@@ -90,7 +90,8 @@ def _afloat(task: Task, model: Any) -> Beginning:
 @lru_cache(maxsize=16)
 def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
     """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
-    gait, period = GAITS[_STRAIGHT], control_period(robot)
+    straight, period = GAITS[_STRAIGHT], control_period(robot)
+    gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
     control = Standing(at=_SOON, hold=STILL)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
     ticks = ceil((control.upright_from(robot) + STILL) / period)

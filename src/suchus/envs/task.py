@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.design import Robot, check_needs, front_segment, layout, with_speed_lines, with_values
+from suchus.design import STANDING, Robot, check_needs, front_segment, layout, with_speed_lines, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
@@ -214,7 +214,7 @@ Start = Literal["lying", "upright", "swimming"]
 NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "lying": (),
-        "upright": ("legs", "shells", "article_spine", "cable_tail"),
+        "upright": STANDING,
         "swimming": ("axis",),
     }
 )
