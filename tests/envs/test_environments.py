@@ -15,13 +15,15 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
 from suchus import envs, rotation  # noqa: E402
-from suchus.design import layout, leg_joints, servo_names  # noqa: E402
+from suchus.design import layout, leg_joints, servo_names, with_values  # noqa: E402
+from suchus.design.scale import scaled  # noqa: E402
 from suchus.envs.pack import Pack, draw  # noqa: E402
 from suchus.envs.task import Terms  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.faults import Locked, Weak  # noqa: E402
 from suchus.gaits import GAITS, own_gait  # noqa: E402
 from suchus.motion import intended  # noqa: E402
+from suchus.motion.rising import stretched  # noqa: E402
 from suchus.robots import ROBOTS  # noqa: E402
 
 CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))
@@ -286,6 +288,16 @@ def test_a_snout_in_the_ground_is_a_fall_only_where_a_height_is_asked_for(least,
     assert any(fell) == falls
 
 
+def test_a_robot_of_another_size_stands_when_its_episode_begins_and_one_too_weak_is_refused():
+    small = scaled(ROBOTS["caiman"], length_factor=0.3, mass_factor=0.027)
+    pack = Pack(envs.TASKS["Stand"].on(small), 1)
+    pack.restart([0], [np.random.default_rng(0)])
+    assert pack.loop.sensors["snout_position"][0, 2] > 0.8 * stretched(small)
+    weak = with_values(ROBOTS["caiman"], {"spine.pitch_servo.torque": 0.5})
+    with pytest.raises(InvalidDesign, match=r"robot 'caiman' falls over as it stands up: its snout is 0\.\d+ m high"):
+        Pack(envs.TASKS["Stand"].on(weak), 1)
+
+
 def test_a_robot_on_its_back_has_fallen():
     env = gymnasium.make("suchus/Crawl-v0").unwrapped
     env.reset(seed=0)
@@ -489,7 +501,7 @@ def test_the_senses_of_the_article_s_robot_are_its_readings_over_fixed_scales():
 @pytest.mark.parametrize(
     ("changes", "text"),
     [
-        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs four legs of yaw"),
+        ({"task": "Stand", "robot": "strider"}, "a task that begins upright needs a trunk that bends up and down"),
         ({"robot": "strider", "gait": "belly_crawl"}, "choose a gait made for it"),
         ({"robot": "strider", "breaks": envs.Breaks(joints=("tail_cable",))}, "no servo named 'tail_cable'"),
         ({"robot": "strider", "timestep": 0.02}, "task.timestep is 0.02"),

@@ -15,8 +15,9 @@ from jaxtyping import Bool, Float
 
 from suchus import rotation
 from suchus.control import Command, Sensed, Standing
+from suchus.control.standing import BALANCE
 from suchus.design import Robot, layout, servo_ranges
-from suchus.design.scale import control_period
+from suchus.design.scale import control_period, scaled
 from suchus.envs.senses import Observer, turning
 from suchus.envs.task import AnyGoal, Task, Terms, remaining, swim_of
 from suchus.errors import Diverged, InvalidDesign
@@ -31,10 +32,16 @@ from suchus.land.run import check_pushes
 from suchus.model import activations, compile_model, standing
 from suchus.model.export import home
 from suchus.motion import check_limits, check_speeds, cycle_targets, hip_height
+from suchus.motion.rising import size_of, stretched
 
 STILL = 3.0
 """How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
 _SOON = 0.2  # [s]; when standing up begins, where no crawl is needed
+_STANDS = 0.6
+"""Height of the snout of a robot that stands, over that of hind leg, trunk and head in one line [-].
+
+The article's robot has 0.99 when it stands and 0.2 when it lies.
+"""
 _STRAIGHT = "limbs_only"  # the trunk is straight in its first posture
 
 
@@ -43,8 +50,8 @@ def begin(task: Task) -> Beginning:
 
     Raises:
         OutsideLimits: the robot cannot take the posture.
-        Diverged: it does not stand up.
-        InvalidDesign: it touches the ground where it should float.
+        Diverged: its simulation diverges as it stands up.
+        InvalidDesign: it falls over as it stands up, or touches the ground where it should float.
         OutsideLimits: its joints cannot follow its swimming motion.
     """
     if task.start == "upright":
@@ -57,7 +64,7 @@ def begin(task: Task) -> Beginning:
 
 
 def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
-    """Return a beginning with its its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
+    """Return a beginning with its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
 
     A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
     """
@@ -92,7 +99,8 @@ def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
     """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
     straight, period = GAITS[_STRAIGHT], control_period(robot)
     gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
-    control = Standing(at=_SOON, hold=STILL)
+    balance = scaled(BALANCE, length_factor=size_of(robot))
+    control = Standing(at=_SOON, hold=STILL, balance=balance)
     run = Run(robot=robot, gait=gait, ground=ground, control=control)
     ticks = ceil((control.upright_from(robot) + STILL) / period)
     loop = Loop([run], timestep, ticks=ticks)
@@ -104,6 +112,12 @@ def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
         raise Diverged(
             f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
             time=float(batch.ended[0]),
+        )
+    height, least = float(loop.sensors["snout_position"][0, 2]), _STANDS * stretched(robot)
+    if height < least:
+        raise InvalidDesign(
+            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and {least:.3g} m at "
+            "least are those of one that stands; an upright start needs a robot that stays up."
         )
     qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.activations))
     return Beginning(qpos, qvel, act, np.array(loop.command.targets[0]))
