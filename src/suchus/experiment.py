@@ -193,7 +193,10 @@ class Experiment(ABC):
                 f"folder {folder.name}; write one of them."
             ) from error
         except TemplateError as error:
-            raise BrokenFile(f"{folder.name}/{EXPLANATION} cannot be filled in: {error}.") from error
+            names = ", ".join(list(measures)[:20]) + ", ..." * (len(measures) > 20)
+            raise BrokenFile(
+                f"{folder.name}/{EXPLANATION} cannot be filled in: {error}. The measures, m.NAME, are {names}."
+            ) from error
         return re.sub(r" ([,.;:)])", r"\1", " ".join(text.split()))
 
     @abstractmethod
