@@ -8,8 +8,7 @@ from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.bipedal_reach.experiment import least_lead
 from suchus.experiments.bipedal_reach.figure import draw_limits, draw_side_views
-from suchus.kinematics.mass import cantilever_torque
-from suchus.motion.rising import stretched
+from suchus.motion.rising import cantilever_torque, stretched
 from suchus.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from suchus.control import Command
-from suchus.design import servo_names
+from suchus.design import GRAVITY, servo_names
 from suchus.gaits import GAITS
-from suchus.kinematics.mass import GRAVITY
 from suchus.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
 from suchus.motion import movement
 from suchus.robots import ROBOTS

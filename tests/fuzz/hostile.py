@@ -573,7 +573,7 @@ def _rooms() -> dict[Any, dict[str, Any]]:
     limb, other = layout(robot).limbs[0].girdle.limb, layout(suchus.ROBOTS["strider"]).limbs[0].girdle.limb
     wave = kinematics.wave.reading("I", length=1.0, angular_frequency=1.0)
     parts = {"leg": robot.hind_leg, "spine": robot.spine, "tail": robot.tail, "robot": robot, "limb": limb}
-    rooms = (kinematics.leg, kinematics.spine, kinematics.tail, kinematics.body, kinematics.tree, kinematics.mass)
+    rooms = (kinematics.leg, kinematics.spine, kinematics.tail, kinematics.tree)
     return {
         **dict.fromkeys(rooms, parts),
         kinematics.limb: {**parts, "limb": other, "girdle": layout(robot).limbs[0].girdle},

@@ -6,7 +6,7 @@ import pytest
 
 from suchus.design import LEGS, crocodile, joint_names, layout
 from suchus.errors import InvalidDesign
-from suchus.kinematics import body, landmarks
+from suchus.kinematics import landmarks
 from suchus.model import compile_model
 from suchus.robots import ROBOTS
 
@@ -95,19 +95,6 @@ def test_mirrored_posture_gives_mirrored_points():
     np.testing.assert_allclose(there.feet[:, [1, 0, 3, 2]], here.feet * flip, atol=1e-14)
     np.testing.assert_allclose(there.snout, here.snout * flip, atol=1e-14)
     np.testing.assert_allclose(there.tail, here.tail * flip, atol=1e-14)
-
-
-def test_leg_frames_are_left_again_where_they_were_entered():
-    p = np.random.default_rng(3).normal(size=(10, 3))
-    for leg in LEGS:
-        np.testing.assert_array_equal(body.to_leg_frame(body.from_leg_frame(p, leg), leg), p)
-
-
-def test_right_leg_needs_the_angles_of_the_mirrored_left_leg():
-    p = np.array([0.02, 0.16, -0.08])
-    left = body.to_leg_frame(p, "LH")
-    right = body.to_leg_frame(p * [1, -1, 1], "RH")
-    np.testing.assert_array_equal(left, right)
 
 
 def test_shapes_follow_the_batch_and_wrong_counts_are_refused():

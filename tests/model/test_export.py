@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from suchus import blueprint
-from suchus.design import Robot, crocodile, joint_names
+from suchus.design import GRAVITY, Robot, crocodile, joint_names
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
 from suchus.gaits import GAITS, own_gait
-from suchus.kinematics.mass import GRAVITY
 from suchus.model import compile_model, joint_addresses
 from suchus.model import sites as sensed
 from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd

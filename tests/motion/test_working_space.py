@@ -9,8 +9,7 @@ import pytest
 from suchus.design import LEGS, crocodile, joint_names
 from suchus.gaits import GAITS
 from suchus.gaits.belly_crawl import LIMBS
-from suchus.kinematics.body import landmarks
-from suchus.kinematics.mass import centre_of_mass
+from suchus.kinematics.tree import centre_of_mass, landmarks
 from suchus.motion import GaitInMetres
 from suchus.motion.working_space import extent, outline, over, reached
 

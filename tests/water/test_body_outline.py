@@ -5,7 +5,7 @@ from tests.swims import crocodile_swim
 
 from suchus.design import cable_joints, layout
 from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.kinematics import body
+from suchus.kinematics import landmarks
 from suchus.kinematics import tail as tail_kinematics
 from suchus.model import compile_model
 from suchus.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
@@ -76,7 +76,7 @@ def test_ends_stand_where_the_joints_of_the_robot_put_them(name):
         cable = place.cable(servo)
         bend = tail_kinematics.bend_of_servo(cable, targets[servo])
         angles[[place.hinges.index(hinge) for hinge in cable.hinges]] = bend / cable.joints
-    marks = body.landmarks(robot, angles)
+    marks = landmarks(robot, angles)
     apart = np.hypot(curve.x[-1] - curve.x[0], curve.y[-1] - curve.y[0])
     assert apart == pytest.approx(np.linalg.norm(marks.snout - marks.tail), abs=0.01 * robot.length)  # corners are cut
     outline = Outline(robot)

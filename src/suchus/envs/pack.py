@@ -66,13 +66,15 @@ def begin(task: Task) -> Beginning:
 def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
     """Return a beginning with its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
 
-    A lying robot is put on the ground again. One that stands keeps its tail, whose bend is no joint's alone.
+    A lying robot is put on the ground again. One that stands keeps what cables bend, which is
+    no joint's alone.
     """
     model = compile_model(task.body, task.timestep)
     if task.start == "lying":
         return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.commanded + jitter))
     qpos = at.qpos.copy()
-    qpos[model.jnt_qposadr[model.actuator_trnid[:-1, 0]]] += jitter[:-1]
+    direct = [servo for servo, hinge in enumerate(layout(task.robot).servo_hinges) if hinge >= 0]
+    qpos[model.jnt_qposadr[model.actuator_trnid[direct, 0]]] += jitter[direct]
     return at._replace(qpos=qpos)
 
 

@@ -1,7 +1,7 @@
 """The leg: a yaw and a pitch axis that meet at the hip, and a knee.
 
 All points are in the leg's D-H base frame on the midline of the body: x outward, y forward, z down; left and
-right legs share the formulas (``suchus.kinematics.body`` mirrors the right ones). Positive angles move the
+right legs share the formulas (the right ones are mirrored). Positive angles move the
 foot forward (yaw) and down (pitch) and bend the shank down (knee).
 """
 

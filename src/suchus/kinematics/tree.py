@@ -48,19 +48,25 @@ def frames(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> BodyFrame
     """
     place = layout(robot)
     angles = rows(angles, len(place.hinges), f"the posture of {robot.name}, an angle for each hinge,")
-    where = {name: i for i, name in enumerate(place.hinges)}
-    batch = angles.shape[:-1]
+    where, batch = {name: i for i, name in enumerate(place.hinges)}, angles.shape[:-1]
+    sines, cosines = np.sin(angles)[..., None], np.cos(angles)[..., None]
     places = np.zeros((*batch, len(place.bodies), 3))
     turns = np.zeros((*batch, len(place.bodies), 3, 3))
     for i, body in enumerate(place.bodies):
         if body.parent < 0:
             turns[..., i, :, :] = np.eye(3)
             continue
-        turn = turns[..., body.parent, :, :]
-        places[..., i, :] = places[..., body.parent, :] + turn @ np.array(body.offset)
-        for _, name, axis in body.hinges:
-            turn = turn @ rotation(axis, angles[..., where[name]])
-        turns[..., i, :, :] = turn
+        x, y, z = (turns[..., body.parent, :, k] for k in range(3))
+        ahead, left, up = body.offset
+        places[..., i, :] = places[..., body.parent, :] + ahead * x + left * y + up * z
+        columns = [x, y, z]
+        for _, name, axis in body.hinges:  # about one of them: the next turns towards the one after it
+            about = next(k for k in range(3) if axis[k])
+            s, c = axis[about] * sines[..., where[name], :], cosines[..., where[name], :]
+            following, last = columns[about - 2], columns[about - 1]
+            columns[about - 2], columns[about - 1] = c * following + s * last, c * last - s * following
+        for k, column in enumerate(columns):
+            turns[..., i, :, k] = column
     return BodyFrames(places, turns)
 
 
@@ -100,15 +106,15 @@ def landmarks(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Landma
 
 def centre_of_mass(robot: Robot, angles: Float[np.ndarray, "*batch joint"]) -> Float[np.ndarray, "*batch 3"]:
     """Return the centre of mass of a posture [m]; arguments as for ``landmarks``."""
-    bodies, points, masses = _masses(robot)
-    found = frames(robot, angles)
-    at = found.places[..., bodies, :] + np.einsum("...bij,bj->...bi", found.turns[..., bodies, :, :], points)
-    return np.asarray(np.einsum("b,...bi->...i", masses / masses.sum(), at))
+    masses, moments = body_masses(robot)
+    found, whole = frames(robot, angles), masses.sum()
+    turned = np.einsum("...bij,bj->...i", found.turns, moments / whole, optimize=True)
+    return np.asarray(np.einsum("b,...bi->...i", masses / whole, found.places) + turned)
 
 
 @lru_cache(maxsize=64)
-def _masses(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the body, the place in its frame [m] and the mass [kg] of every piece, foam included."""
+def body_masses(robot: Robot) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mass of each body with its foam [kg], and its mass times its centre in its own frame [kg m]."""
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     rows = []
@@ -126,7 +132,11 @@ def _masses(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if hull is not None:
         at = foam_centres(robot)
         rows += [(names.index(foam.body), at[foam.body], hull.density * foam.volume) for foam in hull.foam]
-    return np.array([row[0] for row in rows]), np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
+    masses, moments = np.zeros(len(names)), np.zeros((len(names), 3))
+    for i, centre, mass in rows:
+        masses[i] += mass
+        moments[i] += mass * np.array(centre)
+    return masses, moments
 
 
 def _point(found: BodyFrames, body: int, at: Axis) -> np.ndarray:

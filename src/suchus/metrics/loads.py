@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from suchus.kinematics.mass import GRAVITY
+from suchus.design import GRAVITY
 from suchus.metrics.gait import loaded
 from suchus.metrics.window import between
 from suchus.motion import START

@@ -18,7 +18,7 @@ from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures, leg_of
 from suchus.errors import InvalidDesign, OutsideLimits, Unreachable
 from suchus.kinematics import leg as leg_kinematics
-from suchus.kinematics.mass import centre_of_mass
+from suchus.kinematics.tree import centre_of_mass
 
 SETTLING = 12
 """Rounds that bring the centre of mass to its place [-]; each leaves a tenth of the error, since the legs are light."""

@@ -6,8 +6,8 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Robot, layout
-from suchus.kinematics.tree import landmarks
+from suchus.design import GRAVITY, Robot, layout
+from suchus.kinematics.tree import body_masses, frames, landmarks
 from suchus.motion.posture import (
     Keyed,
     Posture,
@@ -130,6 +130,20 @@ def stretched(robot: Robot) -> float:
     chains, straight = upright(robot), np.zeros(len(layout(robot).hinges))
     ahead = float(landmarks(robot, straight).snout[0]) - chains.hips[0]
     return chains.leg.femur + chains.leg.tibia + ahead
+
+
+def cantilever_torque(robot: Robot) -> float:
+    """Return what the first pitch joint of a straight trunk must give to lift the level forebody off the ground [N m].
+
+    The limbs ahead of it hang out sideways, so that their weight acts at the shoulders.
+    """
+    straight, (masses, moments) = frames(robot, np.zeros(len(layout(robot).hinges))), body_masses(robot)
+    hinge = layout(robot).hinges[upright(robot).trunk[0]]
+    bodies = layout(robot).bodies
+    joint = next(i for i, body in enumerate(bodies) if any(name == hinge for _, name, _ in body.hinges))
+    ahead = straight.places[:, 0] - straight.places[joint, 0]
+    moved = ahead + moments[:, 0] / masses > 0.0
+    return float(GRAVITY * np.sum((masses * ahead + moments[:, 0])[moved]))
 
 
 def tallest(

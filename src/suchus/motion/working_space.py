@@ -15,8 +15,7 @@ from scipy.stats import qmc
 from suchus.design import LEGS, Robot, joint_names, layout, spine_joints
 from suchus.kinematics import leg as leg_kinematics
 from suchus.kinematics import spine
-from suchus.kinematics.body import from_leg_frame, landmarks, tail_points, to_leg_frame
-from suchus.kinematics.mass import centre_of_mass
+from suchus.kinematics.tree import centre_of_mass, frames, landmarks
 from suchus.motion.forms import GaitInMetres, limb_reaches
 from suchus.motion.gait import Gait
 
@@ -116,8 +115,8 @@ def _kept(
 def _place(robot: Robot, angles: np.ndarray, good: np.ndarray, names: tuple[str, str], *feet: np.ndarray) -> None:
     """Write the angles of two legs whose feet, in the frame of their girdle, are given; note who cannot."""
     for name, foot in zip(names, feet, strict=True):
-        links, at = robot.leg(name), 3 * LEGS.index(name)
-        point = to_leg_frame(foot, name)
+        links, limb, at = robot.leg(name), layout(robot).limb(name), 3 * LEGS.index(name)
+        point = np.stack([limb.side * foot[..., 1], foot[..., 0], -foot[..., 2]], axis=-1)  # in the leg's D-H frame
         good &= leg_kinematics.reachable(links, point)
         angles[good, at : at + 3] = leg_kinematics.inverse(links, point[good])
         low, high = np.array([links.yaw_range, links.pitch_range, links.knee_range]).T
@@ -174,22 +173,15 @@ def outline(
         angles: of every hinge [rad].
         pelvis: x, z and pitch, see ``Reached``.
     """
-    first = joint_names(robot).index(spine_joints()[0])
-    trunk = angles[:, first : first + len(spine_joints())]
-    tail = tail_points(robot, angles[:, first + len(spine_joints()) :])[:, ::-1]
-    T, found = spine.forward(robot.spine, trunk), landmarks(robot, angles)
-    line = [tail, np.zeros((len(angles), 1, 3)), spine.joints(robot.spine, trunk), found.snout[:, None]]
-    legs = np.empty((len(angles), len(LEGS), 3, 3))
-    for i, name in enumerate(LEGS):
-        links, bends = robot.leg(name), angles[:, 3 * i : 3 * i + 3]
-        hip = np.broadcast_to([links.hip_offset, 0.0, 0.0], (len(angles), 3))
-        for j, point in enumerate((hip, leg_kinematics.knee_point(links, bends), leg_kinematics.forward(links, bends))):
-            at = from_leg_frame(point, name)
-            if name.endswith("F"):
-                shoulder = T[:, :3, 3] + robot.thorax.shoulder * T[:, :3, 0]
-                at = shoulder + np.einsum("nij,nj->ni", T[:, :3, :3], at)
-            legs[:, i, j] = _out(pelvis, at)
-    return _out(pelvis, np.concatenate(line, axis=1)), legs
+    place, found, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
+    names = [body.name for body in place.bodies]
+    axis = [names.index(segment.name) for segment in reversed(robot.axis)]  # from the tail; frames stand at the joints
+    line = np.concatenate([marks.tail[:, None], found.places[:, axis], marks.snout[:, None]], axis=1)
+    legs = np.empty((len(angles), len(place.limbs), 3, 3))
+    for i, limb in enumerate(place.limbs):
+        legs[:, i, :2] = _out(pelvis, found.places[:, limb.tip - 1 : limb.tip + 1])
+        legs[:, i, 2] = _out(pelvis, marks.feet[:, i])
+    return _out(pelvis, line), legs
 
 
 class Extent(NamedTuple):

@@ -24,12 +24,11 @@ from suchus.experiments.bipedal_reach.figure import (
 )
 from suchus.experiments.bipedal_reach.variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
 from suchus.gaits import GAITS
-from suchus.kinematics.mass import cantilever_torque
 from suchus.land import Run, simulate
 from suchus.land.push_search import smallest_pushes
 from suchus.metrics import held, lead, peak_torque, reach, static_margin
 from suchus.motion import START, Gait, hip_height
-from suchus.motion.rising import LEAD, size_of, stretched, tallest
+from suchus.motion.rising import LEAD, cantilever_torque, size_of, stretched, tallest
 from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from suchus import rotation
-from suchus.design import Robot, Rod, Segment, Servo, layout
+from suchus.design import GRAVITY, Robot, Rod, Segment, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos
@@ -19,7 +19,6 @@ from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import GAITS
-from suchus.kinematics.mass import GRAVITY
 from suchus.kinematics.tree import frames
 from suchus.land import Run, simulate
 from suchus.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
