@@ -47,5 +47,6 @@ def _rest(module: str, name: str) -> None:
     """
     with suppress(AttributeError):  # what is made inside a function, or is a property, has no such place
         function = reduce(getattr, name.split("."), sys.modules[module])
+        function = function.__wrapped__  # where jaxtyping looks first
         function.__no_type_check__ = True
         _resting.append(function)

@@ -1,23 +1,25 @@
 """Every example runs as it stands, and README's Python too."""
 
+import ast
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
-LONG = ("05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18")
-"""Flows, searches, studies and replays of 4 s and more of processor time."""
+LONG = ("02", "03", "05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18")
+"""Flows, searches, studies and replays, and walks of 3 s and more of processor time in a process of their own."""
 
 
 @pytest.mark.parametrize(
     "example",
     [
         pytest.param(
-            e, id=e.stem, marks=[pytest.mark.slow("a whole flow, search, study or replay")] * (e.name[:2] in LONG)
+            e, id=e.stem, marks=[pytest.mark.slow("a whole walk, flow, search, study or replay")] * (e.name[:2] in LONG)
         )
         for e in EXAMPLES
     ],
@@ -32,9 +34,26 @@ def test_examples_are_numbered_without_gaps():
     assert [path.name[:2] for path in EXAMPLES] == [f"{i + 1:02d}" for i in range(len(EXAMPLES))]
 
 
-def test_the_python_of_the_readme_runs(tmp_path):
+def readme() -> list[str]:
+    """Return the Python of the README."""
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
     assert blocks
-    for code in blocks:
+    return blocks
+
+
+def test_what_the_readme_takes_from_suchus_is_there():
+    taken = set()
+    for node in (node for code in readme() for node in ast.walk(ast.parse(code))):
+        if isinstance(node, ast.ImportFrom):
+            taken |= {(node.module, name.name) for name in node.names}
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "suchus":
+            taken.add(("suchus", node.attr))
+    assert ("suchus", "crawl") in taken
+    assert [f"{module}.{name}" for module, name in taken if not hasattr(import_module(module), name)] == []
+
+
+@pytest.mark.slow("walks and an experiment, in a process of its own")
+def test_the_python_of_the_readme_runs(tmp_path):
+    for code in readme():
         done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr

@@ -3,40 +3,33 @@
 import subprocess
 import sys
 
-import pytest
-
 RESOLVED = {"swimming", "swim_3d", "swim_sweep", "swim_free"}
 """Experiments that resolve the water, or measure against flows that were."""
 
 LOADED = """
 import importlib, sys
-for name in sys.argv[1:]:
-    importlib.import_module(name)
-print([name for name in sys.modules if name.split(".")[:2] == ["suchus", "flow"]])
+for names in sys.argv[1:]:
+    for name in names.split(","):
+        importlib.import_module(name)
+    print([name for name in sys.modules if name.split(".")[:2] == ["suchus", "flow"]])
 """
 
 
-def flow_modules_after(*names):
-    """Return what is printed of the flow solver's modules after modules were imported in a new process."""
-    done = subprocess.run([sys.executable, "-c", LOADED, *names], capture_output=True, text=True, check=True)
-    return done.stdout.strip()
+def flow_modules_after(*steps):
+    """Return what is printed of the flow solver's modules after each step of imports in a new process."""
+    command = [sys.executable, "-c", LOADED, *map(",".join, steps)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-@pytest.fixture(scope="module")
-def walking():
+def test_what_walks_loads_no_flow_solver_and_a_swim_by_cfd_would_be_noticed():
     from suchus.experiments import EXPERIMENTS  # noqa: PLC0415  its names only
 
-    return [f"suchus.experiments.{name}.experiment" for name in EXPERIMENTS if name not in RESOLVED]
-
-
-def test_what_walks_loads_no_flow_solver(walking):
+    walking = [f"suchus.experiments.{name}.experiment" for name in EXPERIMENTS if name not in RESOLVED]
     assert "suchus.experiments.displacement.experiment" in walking
     doors = ["suchus.replay", "suchus.study", "suchus.optimise", "suchus.envs", "suchus.cli.view", "suchus.viewer"]
-    assert flow_modules_after(*walking, *doors) == "[]"
-
-
-def test_a_swim_by_cfd_would_be_noticed():
-    assert "suchus.flow" in flow_modules_after("suchus.experiments.swimming.experiment")
+    walks, swims = flow_modules_after([*walking, *doors], ["suchus.experiments.swimming.experiment"])
+    assert walks == "[]"
+    assert "suchus.flow" in swims
 
 
 def test_to_save_a_record_loads_no_cluster(tmp_path):

@@ -230,10 +230,16 @@ def _modules(package: str, kind: str) -> dict[str, Path]:
         spec = find_spec(package)
         folders = list(spec.submodule_search_locations or ()) if spec else []
     return {
-        info.name: _declaring(Path(place) / info.name, kind) if info.ispkg else Path(place) / f"{info.name}.py"
+        name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
         for place in folders
-        for info in iter_modules([place])
+        for name, is_folder in _listed(place, Path(place).stat().st_mtime_ns)
     }
+
+
+@lru_cache(maxsize=64)
+def _listed(folder: str, _: int) -> tuple[tuple[str, bool], ...]:
+    """Return the modules of a package's folder, and which are folders; read anew when the folder has changed."""
+    return tuple((info.name, info.ispkg) for info in iter_modules([folder]))
 
 
 def _declaring(folder: Path, kind: str) -> Path:

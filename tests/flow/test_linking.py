@@ -118,6 +118,19 @@ def test_a_function_of_this_room_is_put_together_here():
     assert type(twice.overloads[twice.signatures[0]].library) is linking.Library
 
 
+def test_a_part_is_compiled_once_whatever_whole_numbers_it_is_called_with():
+    @compiled.part
+    def raised(x, n):
+        return x**n
+
+    @numba.njit
+    def powers(x, n):
+        return raised(x, 2), raised(x, 3), raised(x, n)
+
+    assert powers(2.0, 4) == (4.0, 8.0, 16.0)
+    assert len(raised._compiled.signatures) == 1
+
+
 def test_a_part_called_from_python_is_plain_python():
     @compiled.part
     def half(x):

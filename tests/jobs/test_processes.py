@@ -59,7 +59,6 @@ def test_our_own_errors_come_back_and_end_it():
         list(side_by_side(refused, [7, 8], 2))
 
 
-@pytest.mark.slow("processes are stopped")
 @pytest.mark.slow("processes are killed")
 @pytest.mark.parametrize(("deaths", "tries"), [(1, 1), (1, 2), (2, 2)])
 def test_a_piece_whose_process_dies_is_begun_again_as_often_as_is_said(deaths, tries, tmp_path):
@@ -80,6 +79,7 @@ def test_who_is_busy_when_it_is_stopped_is_ended(tmp_path):
         os.kill(int(started[0].name), 0)
 
 
+@pytest.mark.slow("processes are stopped")
 def test_no_process_hears_ctrl_c():
     """Not the first one either, with which Python starts a process of its own."""
     workers = [hire(squared, 1), hire(squared, 1)]

@@ -45,6 +45,7 @@ def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
     assert float(swum.cycle_power[-1]) > 0
 
 
+@pytest.mark.slow("a second and a third run of a swim")
 def test_a_swim_on_the_spot_that_was_interrupted_goes_on_to_the_same_numbers(swum, tmp_path):
     def stop(stage, share):
         if share > 0.6:
