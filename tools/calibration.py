@@ -6,7 +6,7 @@ that it may be stopped and begun again; then what the page states and its pictur
 
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -19,13 +19,13 @@ from pages.stated import keep, kept
 from pages.stated import main as write_pages
 from suchus.figures import COLOURS, panels, styled
 from suchus.jobs import conduct_sweep
-from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 from suchus.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.motion import Gait
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
-from suchus.water import Outline, Water, fit, printed_wave, recoil, scaled
+from suchus.water import Outline, Water, fit, printed_wave, recoil
 from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
+from water_coefficients import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 
 ROBOT = ROBOTS["caiman"]
 REYNOLDS = 7000.0
@@ -90,8 +90,8 @@ def motions() -> dict[str, Gait]:
     whole = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
     return {
         "whole wave": whole,
-        "half the amplitude": scaled(whole, 0.5, whole.frequency),
-        "half the frequency": scaled(whole, 1.0, 0.5 * whole.frequency),
+        "half the amplitude": whole.bent(0.5),
+        "half the frequency": replace(whole, period=2.0 * whole.period),
         "trunk only": whole.straightened("tail"),
         "tail only": whole.straightened("trunk"),
         "as printed": fit(ROBOT, printed_wave(ROBOT, "I", sign=1)).gait,

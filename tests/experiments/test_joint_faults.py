@@ -13,7 +13,7 @@ from suchus.errors import Diverged
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.joint_faults.experiment import tolerance
 from suchus.gaits import GAITS
-from suchus.land import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
+from suchus.land import FAILED_JOINTS, KINDS, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
 from suchus.metrics import displacement, loss, swing_lift, swing_loads, whole
 from suchus.motion import cycle_targets, movement
 from suchus.paper import CLAIMS
@@ -23,6 +23,7 @@ from suchus.verdict import RULES, judge
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]
 ARMS = ("coordinated", "limbs_only")
+KNEES = ("front_knee", "hind_knee")
 JOINTS = (*FAILED_JOINTS, *KNEES)
 CLAIMED = {f"fault_{joint}_{arm}" for joint in FAILED_JOINTS for arm in ARMS}
 

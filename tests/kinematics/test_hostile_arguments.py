@@ -33,7 +33,6 @@ BAD = {
     "twist that is none": (dh.transform, 0.0, {}, 0.0, 0.0),
     "turn that is none": (dh.transform, 0.0, 0.0, 0.0, b"x"),
     "limb's angles": (limb.forward, ARM, 3.0),
-    "limb's foot": (limb.within_reach, ARM, None),
     "limb's target": (limb.inverse, ARM, [1.0]),
     "length that is none": (lambda: wave.reading("I", length={}, angular_frequency=1.0),),
     "lengths": (lambda: wave.reading("I", length=np.ones(2), angular_frequency=1.0),),

@@ -1,7 +1,9 @@
 """The water of the runs on a body whose motion is given: exact answers, signs, and what a fit finds again."""
 
+import sys
 from dataclasses import replace
 from math import tau
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,10 +13,13 @@ from suchus.design.pieces import pieces
 from suchus.design.water import Water
 from suchus.hydro import column
 from suchus.land import Lake
-from suchus.land.calibration import NAMES, QUANTITIES, WaterCoefficients, composed, fitted, left, responses
 from suchus.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 from suchus.motion import still
 from suchus.robots import ROBOTS
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
+
+from water_coefficients import NAMES, QUANTITIES, WaterCoefficients, composed, fitted, left, responses
 
 ROBOT = ROBOTS["caiman"]
 TABLE = pieces(replace(ROBOT, girdles=(), hull=None))

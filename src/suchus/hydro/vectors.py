@@ -12,8 +12,6 @@ from suchus import kernel_cache
 
 Vector = tuple[float, float, float]
 """Three numbers in the world."""
-Axes = tuple[Vector, Vector, Vector]
-"""Unit axes e_a, e_b and t of a piece."""
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 """Of numba; products and sums may be computed in one instruction."""
 P = ParamSpec("P")

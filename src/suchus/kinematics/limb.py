@@ -18,7 +18,6 @@ from suchus.kinematics import leg as closed
 from suchus.kinematics.given import rows, spread_over
 from suchus.kinematics.tree import rotation
 
-_INSIDE = 1e-6  # of the reach; how far inside it a clipped target stays
 STEPS = 60
 """Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
 _STEP, _DAMPING, _NEAR = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
@@ -77,14 +76,6 @@ def reach(limb: Limb) -> tuple[float, float]:
     """
     lengths = sorted(link.length for link in limb.links)
     return max(lengths[-1] - sum(lengths[:-1]), 0.0) if len(lengths) > 1 else lengths[0], sum(lengths)
-
-
-def within_reach(limb: Limb, foot: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3"]:
-    """Return points drawn along the line to the hip into what the limb reaches [m]."""
-    foot, (near, far) = rows(foot, 3, "the foot's place"), reach(limb)
-    away = np.linalg.norm(foot, axis=-1, keepdims=True)
-    inside = _INSIDE * far
-    return np.asarray(foot * np.clip(away, near + inside, far - inside) / np.maximum(away, inside))
 
 
 def inverse(

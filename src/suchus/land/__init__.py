@@ -4,7 +4,7 @@ from suchus.design.ground import Ground
 from suchus.fault import Fault
 from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.land.arenas import ARENAS
-from suchus.land.failed import FAILED_JOINTS, KINDS, KNEES, LEGS_FAILED, angle_at, failing_joints, joint_failure
+from suchus.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live
 from suchus.land.loop import CONTROL_PERIOD
@@ -17,7 +17,6 @@ __all__ = [
     "CONTROL_PERIOD",
     "FAILED_JOINTS",
     "KINDS",
-    "KNEES",
     "LEGS_FAILED",
     "VACUUM",
     "WATER",

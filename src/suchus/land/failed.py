@@ -15,8 +15,6 @@ Kind = Literal["limp", "locked"]
 Legs = Literal["one", "both"]
 FAILED_JOINTS: tuple[Joint, ...] = ("front_yaw", "hind_yaw", "front_pitch", "hind_pitch")
 """The joints whose failure the article reports, in the order of Figs 18 to 21."""
-KNEES: tuple[Joint, ...] = ("front_knee", "hind_knee")
-"""The second pitch joint of each leg (III.D), of whose failure the article says nothing."""
 KINDS: tuple[Kind, ...] = ("limp", "locked")
 LEGS_FAILED: tuple[Legs, ...] = ("one", "both")
 
