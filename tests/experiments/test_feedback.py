@@ -152,3 +152,21 @@ def test_a_run_that_cannot_answer_says_why_it_is_not_judged(crawl_gait):
     assert faster.unjudged().startswith("Not judged: gait is another belly_crawl, and")
     assert replace(experiment, starts=15).unjudged().startswith("Not judged: starts is 15, and 16 at least")
     assert replace(experiment, starts=16).unjudged() == ""
+
+
+def test_phases_that_feel_nothing_are_those_of_a_walk_to_the_last_bit(robot, crawl_gait):
+    question = replace(experiment, gait=replace(crawl_gait, period=2.0), starts=2, seed=5)
+    laws = ("off", "own_load")
+    runs = [Run(robot=robot, gait=question.gait, control=STARTS[law], seed=5 + i) for law in laws for i in range(2)]
+    record = simulate(runs, duration=3.0, timestep=STEP, every=10)
+    walked = record.limb_phase.transpose("run", "time", "leg").values
+    assert question._phases(STARTS["off"], record.time.values).tobytes() == walked[:2].tobytes()
+    assert question._phases(STARTS["own_load"], record.time.values).tobytes() != walked[2:].tobytes()
+
+
+def test_every_start_whose_distance_is_measured_walks(quick_outcome):
+    record = quick_outcome("feedback").record
+    walked = record.start_way.notnull().all("start_time")
+    assert walked.sel(law=["closed_noisy", "isolated_noisy", "cross_load", "wrong_sign"]).all()
+    assert walked.sel(law="off").values.tolist() == [True, False]
+    assert record.start_phase.notnull().all()

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.control import LAWS, Coordinated, HeadingRule, Kick
+from suchus.control import LAWS, Coordinated, HeadingRule, Kick, Runs
 from suchus.control.topology import topology
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
@@ -30,6 +30,8 @@ STARTS: Mapping[str, Coordinated] = {
     "isolated_noisy": Coordinated(random_start=True, load_noise=0.3, sharing=False),
 }
 """What brings random limb phases in order: each law alone, then all rules with noisy feet, sharing and not sharing."""
+_DISTANCES = ("closed_noisy", "isolated_noisy")
+"""Whose distances are measured; of the others the phases are."""
 ARMS: Mapping[str, Coordinated] = {
     "open": Coordinated(limbs=LAWS["off"], **_ALONE),
     "limbs": Coordinated(**_ALONE),
@@ -182,26 +184,25 @@ class Feedback(Experiment):
 
     def _starts(self, progress: Any) -> tuple[xr.Dataset, xr.Dataset]:
         """Return limb phases and distances for every law and start, and one start as a record under two laws."""
-        runs = [
-            Run(robot=self.robot, gait=self.gait, control=self._suited(control), seed=self.seed + i)
-            for control in STARTS.values()
-            for i in range(self.starts)
-        ]
+        controls = {law: self._suited(control) for law, control in STARTS.items()}
+        deaf = [law for law, control in controls.items() if not control.feels and law not in _DISTANCES]
+        cells = [(law, i) for law in STARTS for i in range(self.starts) if i == 0 or law not in deaf]
+        runs = [Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i) for law, i in cells]
         duration = START + self.cycles * self.gait.period
         record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         shape = (len(STARTS), self.starts, record.sizes["time"])
-        dims = ("law", "start", "start_time")
-        phase = record.limb_phase.transpose("run", "time", "leg").values.reshape(*shape, -1)
-        distance = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values.reshape(shape)
-        pair = record.isel(run=[self.starts * list(STARTS).index(law) for law in ("cross_load", "off")])
+        phase, distance = np.empty((*shape, record.sizes["leg"])), np.full(shape, np.nan)
+        for law in deaf:
+            phase[list(STARTS).index(law)] = self._phases(controls[law], record.time.values)
+        walked = tuple(np.array([(list(STARTS).index(law), i) for law, i in cells]).T)
+        phase[walked] = record.limb_phase.transpose("run", "time", "leg").values
+        distance[walked] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
+        pair = record.isel(run=[cells.index((law, 0)) for law in ("cross_load", "off")])
+        dims, metre = ("law", "start", "start_time"), {"units": "m"}
         data = xr.Dataset(
             {
                 "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
-                "start_way": (
-                    dims,
-                    distance,
-                    {"units": "m", "long_name": "displacement of the centre of mass along x"},
-                ),
+                "start_way": (dims, distance, metre | {"long_name": "displacement of the centre of mass along x"}),
             },
             coords={
                 "law": list(STARTS),
@@ -210,6 +211,18 @@ class Feedback(Experiment):
             },
         )
         return data, pair
+
+    def _phases(self, control: Coordinated, time: np.ndarray) -> np.ndarray:
+        """Return the limb phases of every start under a law that feels nothing, shape (start, time, limb) [cycle].
+
+        Nothing that happens to the body changes them, so that nothing is simulated for them.
+        """
+        period, count = control_period(self.robot), self.starts
+        ticks = np.round(time / period).astype(int)
+        seeds = tuple(range(self.seed, self.seed + count))
+        runs = Runs((control,) * count, (self.robot,) * count, (self.gait,) * count, seeds, int(ticks[-1]) + 1)
+        controller = control.start(runs, period)
+        return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
 
     def _disturbed(self, progress: Any) -> xr.Dataset:
         """Return track, direction, limb phases and tail pitch over time for every disturbance and condition."""
@@ -317,7 +330,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures |= ends("converged_cross_load", shares, "-")
     distances = _ending(record.start_way.rename(start_time="time"), hold * period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
-    for name, law in (("shared", "closed_noisy"), ("isolated", "isolated_noisy")):
+    for name, law in zip(("shared", "isolated"), _DISTANCES, strict=True):
         measures[f"way_{name}"] = Measure(float(distances.sel(law=law).mean()), "m")
         measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
         measures[f"way_{name}_most"] = Measure(float(distances.sel(law=law).max()), "m")
