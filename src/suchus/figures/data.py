@@ -9,7 +9,7 @@ import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import ceil, isfinite
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -31,6 +31,25 @@ _CARRIED: Final = "suchus_values"
 
 Cells = dict[str, str]
 """One row: text by column."""
+
+
+class _Quantity(NamedTuple):
+    """What a panel shows along one of its axes."""
+
+    name: str
+    """Quantity and unit."""
+    places: np.ndarray
+    """Of the ticks on the axis."""
+    words: list[str]
+    """Beside the ticks; none on an axis of numbers."""
+
+    def word(self, value: float) -> str:
+        """Return the word beside the axis that a place on it has; empty on an axis of numbers."""
+        return self.words[int(np.argmin(np.abs(self.places - float(value))))] if self.words else ""
+
+
+_Quantities = tuple[_Quantity, _Quantity]
+"""Of a panel, along x and along y."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +85,9 @@ def table(figure: Figure) -> str:
     if not rows:
         return ""
     text = io.StringIO()
-    writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([row.get(column, "") for column in columns] for row in rows)
     return text.getvalue()
 
 
@@ -99,63 +118,63 @@ def _look(line: Line2D) -> tuple[str, ...]:
 
 def _series(ax: Axes, known: Mapping[tuple[str, ...], str]) -> Iterator[tuple[str, Iterator[Cells]]]:
     """Yield the name and the points of everything that shows numbers in a panel."""
-    names = _names(ax, "x"), _names(ax, "y")
+    names = _Quantity(_name(ax, "x"), *_ticks(ax.xaxis)), _Quantity(_name(ax, "y"), *_ticks(ax.yaxis))
     bars = [one for one in ax.containers if isinstance(one, BarContainer)]
     in_bars = {id(patch) for one in bars for patch in one.patches}
     for i, line in enumerate(ax.lines, start=1):
         yield _called(line.get_label(), known.get(_look(line), f"line {i}")), _of_line(ax, line, names)
     for i, container in enumerate(bars, start=1):
-        yield _called(container.get_label(), f"bars {i}"), _of_bars(ax, container, names)
+        yield _called(container.get_label(), f"bars {i}"), _of_bars(container, names)
     for i, collection in enumerate(ax.collections, start=1):
         yield _called(collection.get_label(), f"collection {i}"), _of_collection(ax, collection, names)
     for i, image in enumerate(ax.images, start=1):
-        yield _called(image.get_label(), f"field {i}"), _of_image(ax, image, names)
+        yield _called(image.get_label(), f"field {i}"), _of_image(image, names)
     for i, patch in enumerate(ax.patches, start=1):
         if id(patch) not in in_bars and patch.get_data_transform() == ax.transData:
-            yield _called(patch.get_label(), f"outline {i}"), _of_patch(ax, patch, names)
+            yield _called(patch.get_label(), f"outline {i}"), _of_patch(patch, names)
 
 
-def _of_line(ax: Axes, line: Line2D, names: tuple[str, str]) -> Iterator[Cells]:
+def _of_line(ax: Axes, line: Line2D, names: _Quantities) -> Iterator[Cells]:
     if line.get_transform() == ax.get_xaxis_transform(which="grid"):  # a vertical line over the whole height
-        yield _cells(ax, names, (float(np.asarray(line.get_xdata(orig=False))[0]), None))
+        yield _cells(names, (float(np.asarray(line.get_xdata(orig=False))[0]), None))
     elif line.get_transform() == ax.get_yaxis_transform(which="grid"):
-        yield _cells(ax, names, (None, float(np.asarray(line.get_ydata(orig=False))[0])))
+        yield _cells(names, (None, float(np.asarray(line.get_ydata(orig=False))[0])))
     elif line.get_transform() == ax.transData:
         for x, y in np.asarray(line.get_xydata(), dtype=float):
-            yield _cells(ax, names, (x, y))
+            yield _cells(names, (x, y))
 
 
-def _of_bars(ax: Axes, bars: BarContainer, names: tuple[str, str]) -> Iterator[Cells]:
+def _of_bars(bars: BarContainer, names: _Quantities) -> Iterator[Cells]:
     for bar in bars.patches:
         if bars.orientation == "horizontal":
-            yield _cells(ax, names, (bar.get_width(), bar.get_y() + bar.get_height() / 2))
+            yield _cells(names, (bar.get_width(), bar.get_y() + bar.get_height() / 2))
         else:
-            yield _cells(ax, names, (bar.get_x() + bar.get_width() / 2, bar.get_height()))
+            yield _cells(names, (bar.get_x() + bar.get_width() / 2, bar.get_height()))
 
 
-def _of_collection(ax: Axes, drawn: Collection, names: tuple[str, str]) -> Iterator[Cells]:
+def _of_collection(ax: Axes, drawn: Collection, names: _Quantities) -> Iterator[Cells]:
     carried = getattr(drawn, _CARRIED, None)
     if carried is not None:
-        yield from _of_field(ax, carried.x, carried.y, carried.values, (*names, _colour(drawn)))
+        yield from _of_field(carried.x, carried.y, carried.values, names, _colour(drawn))
     elif isinstance(drawn, QuadMesh):
         corners = np.asarray(drawn.get_coordinates(), dtype=float)
         middle: np.ndarray = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
         values: np.ndarray = np.ma.filled(np.ma.asarray(drawn.get_array(), dtype=float), np.nan).reshape(
             middle.shape[:2]
         )
-        yield from _of_field(ax, middle[0, :, 0], middle[:, 0, 1], values, (*names, _colour(drawn)))
+        yield from _of_field(middle[0, :, 0], middle[:, 0, 1], values, names, _colour(drawn))
     elif isinstance(drawn, PathCollection):
         coloured: Any = drawn.get_array()
         for i, (x, y) in enumerate(np.ma.filled(np.ma.asarray(drawn.get_offsets(), dtype=float), np.nan)):
             extra = {} if coloured is None else {_colour(drawn): _text(coloured[i])}
-            yield _cells(ax, names, (x, y)) | extra
+            yield _cells(names, (x, y)) | extra
     elif isinstance(drawn, (LineCollection, PolyCollection)) and drawn.get_transform() == ax.transData:
         for path in drawn.get_paths():
             for x, y in np.asarray(path.vertices, dtype=float):
-                yield _cells(ax, names, (x, y))
+                yield _cells(names, (x, y))
 
 
-def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Cells]:
+def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
     carried = getattr(image, _CARRIED, None)
     values = np.ma.filled(np.ma.asarray(image.get_array()), np.nan) if carried is None else carried.values
     if values.ndim > 2:  # colours, which are no numbers of anything
@@ -163,38 +182,38 @@ def _of_image(ax: Axes, image: AxesImage, names: tuple[str, str]) -> Iterator[Ce
     x0, x1, y0, y1 = image.get_extent()
     ny, nx = values.shape[:2]
     x, y = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in ((x0, x1, nx), (y0, y1, ny)))
-    yield from _of_field(ax, x, y if image.origin == "lower" else y[::-1], values, (*names, _colour(image)))
+    yield from _of_field(x, y if image.origin == "lower" else y[::-1], values, names, _colour(image))
 
 
-def _of_patch(ax: Axes, patch: Patch, names: tuple[str, str]) -> Iterator[Cells]:
+def _of_patch(patch: Patch, names: _Quantities) -> Iterator[Cells]:
     if isinstance(patch, Circle):
-        yield _cells(ax, names, patch.center)
+        yield _cells(names, patch.center)
     elif isinstance(patch, StepPatch):
         values, edges, _ = patch.get_data()
         for value, low, high in zip(values, edges[:-1], edges[1:], strict=True):
-            yield _cells(ax, names, (low, value))
-            yield _cells(ax, names, (high, value))
+            yield _cells(names, (low, value))
+            yield _cells(names, (high, value))
     elif isinstance(patch, Rectangle):
-        yield _cells(ax, names, patch.get_xy())
-        yield _cells(ax, names, (patch.get_x() + patch.get_width(), patch.get_y() + patch.get_height()))
+        yield _cells(names, patch.get_xy())
+        yield _cells(names, (patch.get_x() + patch.get_width(), patch.get_y() + patch.get_height()))
     elif isinstance(patch, Polygon):
         for x, y in patch.get_xy():
-            yield _cells(ax, names, (x, y))
+            yield _cells(names, (x, y))
 
 
-def _of_field(ax: Axes, x: Any, y: Any, values: np.ndarray, names: tuple[str, str, str]) -> Iterator[Cells]:
+def _of_field(x: Any, y: Any, values: np.ndarray, names: _Quantities, colour: str) -> Iterator[Cells]:
     step = max(1, ceil((values.size / MOST) ** 0.5))
     for j in range(0, values.shape[0], step):
         for i in range(0, values.shape[1], step):
-            yield _cells(ax, names[:2], (x[i], y[j])) | {names[2]: _text(values[j, i])}
+            yield _cells(names, (x[i], y[j])) | {colour: _text(values[j, i])}
 
 
-def _cells(ax: Axes, names: tuple[str, str], point: tuple[float | None, float | None]) -> Cells:
-    pairs = zip(names, (ax.xaxis, ax.yaxis), point, strict=True)
-    return {name: _category(axis, value) or _text(value) for name, axis, value in pairs if value is not None}
+def _cells(names: _Quantities, point: tuple[float | None, float | None]) -> Cells:
+    pairs = zip(names, point, strict=True)
+    return {quantity.name: quantity.word(value) or _text(value) for quantity, value in pairs if value is not None}
 
 
-def _names(ax: Axes, which: str) -> str:
+def _name(ax: Axes, which: str) -> str:
     """Return the quantity and unit of an axis; inner panels have the label of the panel whose axis they share.
 
     A panel without axes is a drawing to scale, in metres.
@@ -221,12 +240,6 @@ def _colour(drawn: Any) -> str:
 
 def _scale(drawn: Any) -> tuple[str, float | None, float | None]:
     return drawn.get_cmap().name, drawn.norm.vmin, drawn.norm.vmax
-
-
-def _category(axis: Axis, value: float) -> str:
-    """Return the word beside an axis that a place on it has; empty on an axis of numbers."""
-    places, words = _ticks(axis)
-    return words[int(np.argmin(np.abs(places - float(value))))] if words else ""
 
 
 def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
