@@ -3,14 +3,16 @@
 from math import cos, radians, sin
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Circle, Ellipse, FancyBboxPatch, Polygon
 
-from suchus.design import MEASURED, Robot, behind_hips, lacking, layout
+from suchus.design import MEASURED, Layout, LimbPlace, Robot, Rod, behind_hips, lacking, layout
 from suchus.design.measures import LegMeasures
-from suchus.figures.plan import draw_plan
 from suchus.figures.style import COLOURS, captioned, panels, styled
+from suchus.skin import bone_rest
+from suchus.skin.plain import ends
 
 _TILT = radians(20)  # of the shank outward, for the drawing only
 _BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
@@ -27,7 +29,7 @@ def dimension_drawing(robot: Robot) -> Figure:
             _from_the_side(axes[1, 0], robot)
         else:
             for ax, up in zip(axes[:, 0], (False, True), strict=True):
-                draw_plan(ax, robot, from_the_side=up)
+                _plan(ax, robot, from_the_side=up)
         for ax, title in zip(axes[:, 0], ("from above", "from the side"), strict=True):
             ax.set_aspect("equal")
             ax.set_axis_off()
@@ -39,6 +41,49 @@ def dimension_drawing(robot: Robot) -> Figure:
         f"{tail}{robot.mass:.3g} kg, {len(layout(robot).servos)} servos. "
         f"Circles are joints{'; the pale end of the tail is passive' if measured else ''}. Dimensions in mm.",
     )
+
+
+def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
+    """Draw the shapes of any body with all joints at zero, from above, or from the side with its limbs hanging down."""
+    place, rest = layout(robot), bone_rest(robot)
+    for limb in place.limbs:
+        if not from_the_side or limb.side < 0:
+            _chain(ax, place, limb, rest, hanging=from_the_side)
+    segments = {segment.name: segment for segment in place.robot.axis}
+    for body, at in zip(place.bodies, rest, strict=True):
+        for shape in segments[body.name].shapes if body.name in segments else ():
+            x = at[0] + body.shift
+            if isinstance(shape, Rod):
+                low, high = sorted((shape.start[0] + x, shape.end[0] + x))
+                r = shape.radius
+                style = f"round,pad=0,rounding_size={0.9 * r}"
+                ax.add_patch(FancyBboxPatch((low - r, -r), high - low + 2 * r, 2 * r, style, facecolor=_BODY, **_EDGE))
+            else:
+                half = shape.half[2 if from_the_side else 1]
+                ax.add_patch(Ellipse((shape.at[0] + x, 0.0), 2 * shape.half[0], 2 * half, facecolor=_BODY, **_EDGE))
+        if body.hinges and body.name in segments:
+            _joint(ax, at[0], 0.0)
+    deepest = min(ax.dataLim.y0, -0.1 * robot.length)
+    front, back = ends(place)
+    _measure(ax, back, front, deepest - 0.05 * robot.length)
+    ax.autoscale_view()
+
+
+def _chain(ax: Axes, place: Layout, limb: LimbPlace, rest: np.ndarray, *, hanging: bool) -> None:
+    links = limb.girdle.limb.links
+    first = limb.tip - len(links) + 1
+    at = rest[first]
+    points = [(at[0], 0.0 if hanging else at[1])]
+    for link in links:
+        x, y = points[-1]
+        points.append((x + link.end[0], y - link.length) if hanging else (x + link.end[0], y + limb.side * link.end[1]))
+    line = np.array(points)
+    ax.plot(*line.T, color=_LIMB, linewidth=4, solid_capstyle="round", zorder=0.5)
+    radius = limb.girdle.limb.foot.radius
+    ax.add_patch(Circle(tuple(line[-1]), radius, facecolor=COLOURS["neutral"], zorder=2, **_EDGE))
+    for (x, y), body in zip(points, place.bodies[first : limb.tip + 1], strict=False):
+        if body.hinges:
+            _joint(ax, x, y)
 
 
 def _from_above(ax: Axes, robot: Robot) -> None:
