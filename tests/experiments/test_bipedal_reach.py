@@ -3,8 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from tests.bodies import eight, six
 
-from suchus.errors import InvalidDesign
+from suchus.design import lacking, with_values
+from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.bipedal_reach.experiment import least_lead
 from suchus.experiments.bipedal_reach.figure import draw_limits, draw_side_views
@@ -120,3 +122,23 @@ def test_what_decides_follows_from_the_numbers(value):
 def test_impossible_settings_are_refused(fields, message):
     with pytest.raises(InvalidDesign, match=message):
         replace(EXPERIMENTS["bipedal_reach"], **fields)
+
+
+@pytest.mark.slow("the quick form once more, on another body")
+def test_a_body_of_six_spine_joints_stands_up_in_the_experiment_too():
+    longer = with_values(six(), {"spine.pitch_servo.torque": 9.0})
+    experiment = EXPERIMENTS["bipedal_reach"].quick().on(longer)
+    outcome = experiment.run()
+    value = {name: measure.value for name, measure in outcome.measures.items()}
+    assert outcome.verdicts == ()
+    assert 0.95 * value["stretched_length"] < value["reach_standing"] < value["ceiling"]
+    assert value["reach_after"] < 0.2
+    angles = experiment.draw(outcome)["angles"].axes[1].get_legend().get_texts()
+    assert "trunk, third pitch joint" in [text.get_text() for text in angles]
+
+
+def test_who_has_no_tables_or_cannot_stand_up_is_refused():
+    for robot in (eight(), ROBOTS["salamander"]):
+        with pytest.raises(UnsuitedRobot, match=r"^bipedal_reach needs the article's tables"):
+            EXPERIMENTS["bipedal_reach"].quick().on(robot)
+    assert lacking(six(), EXPERIMENTS["bipedal_reach"].needs) == []

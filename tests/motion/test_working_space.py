@@ -5,8 +5,11 @@ from math import pi
 
 import numpy as np
 import pytest
+from tests.bodies import six
 
 from suchus.design import LEGS, crocodile, joint_names
+from suchus.errors import UnsuitedRobot
+from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
 from suchus.gaits.belly_crawl import LIMBS
 from suchus.kinematics.tree import centre_of_mass, landmarks
@@ -109,3 +112,16 @@ def test_the_area_of_a_rectangle_and_of_nothing():
     room = extent(points, 0.01)
     assert (room.low, room.high) == pytest.approx((78 * 48 * 1e-4, 80 * 50 * 1e-4), rel=1e-3)
     assert extent(np.empty((0, 2)), 0.01) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("standing", [False, True])
+def test_how_the_tail_is_driven_changes_nothing(robot, standing):
+    servos = crocodile(replace(robot.tables, tail=replace(robot.tables.tail, drive="servos")))
+    cable, driven = (reached(body, CRAWL, standing=standing, count=2**10) for body in (robot, servos))
+    np.testing.assert_array_equal(cable.snout, driven.snout)
+    np.testing.assert_array_equal(cable.pelvis, driven.pelvis)
+
+
+def test_a_body_of_another_spine_is_refused():
+    with pytest.raises(UnsuitedRobot, match="working_space needs the article's spine of 5 joints; robot 'six' lacks"):
+        EXPERIMENTS["working_space"].on(six())

@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
-from suchus.design import Robot
+from suchus.design import STANDING, Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import scaled
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -53,7 +53,7 @@ class BipedalReach(Experiment):
 
     title = "How high does it reach, crawling and standing on two legs?"
     shows = "Section IV.D, Figs 22 to 24"
-    needs = ("tables", "article_spine", "cable_tail")
+    needs = ("tables", *STANDING)
     judged_with = ("robot", "gait", "balance", "least")
     judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 4, "hips": 3}
 

@@ -1,5 +1,6 @@
 """Standing up on hind legs and tail: postures and angles, how high it reaches, what limits it, and what topples it."""
 
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -225,6 +226,7 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
 
 
 _TOUCHES = 0.5  # [N]; less is no support
+_DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))  # of the trunk's second pitch joint, and of those after it
 _GAP = 0.06  # [m] between two robots of the strip
 
 
@@ -330,17 +332,17 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
     """
     _, at, up, leave, down, _ = record.attrs["stages"]
     one = record.isel(run=0)
-    (first, second), (tail,) = layout(robot).trunk_pitch, layout(robot).tail_pitch
-    lines = (
+    place = layout(robot)
+    first, *others = place.trunk_pitch
+    lines = [
         ("pelvis against the ground", -tilt(one)["pitch"], {"color": COLOURS["ours"]}),
         ("trunk, first pitch joint", -one.servo_angle[:, first], {"color": COLOURS["spine"]}),
-        (
-            "trunk, second pitch joint",
-            -one.servo_angle[:, second],
-            {"color": COLOURS["spine"], "linestyle": (0, (4, 1.5))},
-        ),
-        ("tail, pitch joint", -one.servo_angle[:, tail], {"color": COLOURS["tail"]}),
-    )
+    ]
+    for number, (servo, dashes) in enumerate(zip(others, cycle(_DASHES), strict=False), 2):
+        word = {2: "second", 3: "third"}.get(number, f"{number}th")
+        style = {"color": COLOURS["spine"], "linestyle": dashes}
+        lines.append((f"trunk, {word} pitch joint", -one.servo_angle[:, servo], style))
+    lines.append(("tail, pitch joint", -one.servo_angle[:, place.tail_pitch[0]], {"color": COLOURS["tail"]}))
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True)
         for ax, begin, end, zero, title, since in (
@@ -354,7 +356,7 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
             ax.set_xlabel(since)
             ax.set_xlim(begin - zero, end - zero)
         axes[0, 0].set_ylabel("angle, front end or tip up [deg]")
-        axes[0, 1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.93))
+        axes[0, 1].legend(loc="upper right", bbox_to_anchor=(1.0, min(0.93 + 0.07 * (len(lines) - 4), 1.0)))
     return captioned(
         figure,
         "Angles of pelvis, trunk and tail while standing up (left) and sitting down (right). The trunk bends up first, "
