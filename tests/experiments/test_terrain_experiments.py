@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.design.ground import Bumps, Step, Stone
+from suchus.design.ground import STONE, Bumps, Step, Stone
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.speed_range.experiment import _UNITS
 from suchus.experiments.terrain.experiment import SINGLE, _met
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
-from suchus.land.arenas import STONE
 from suchus.motion import hip_height
 from suchus.robots import ROBOTS
 

@@ -7,7 +7,7 @@ from tests.swims import crocodile_swim
 
 from suchus.errors import UnreadableFile
 from suchus.progress import silent
-from suchus.record.seal import sealed
+from suchus.record.store import sealed
 from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
 from suchus.water.samples import Samples
 

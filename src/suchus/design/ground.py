@@ -1,7 +1,10 @@
 """Ground: how it tilts, what stands up from it, how much friction it has, and how a body's surfaces meet it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from math import radians
+from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Float
@@ -210,3 +213,22 @@ def slope(uphill: float, sideways: float) -> Float[np.ndarray, "4"]:
     """
     up, aside = about(np.array([0.0, 1.0, 0.0]), -uphill), about(np.array([1.0, 0.0, 0.0]), sideways)
     return multiply(up, aside)
+
+
+BEFORE = 0.42
+"""Where bumps begin, ahead of the hips at the start [m]: just ahead of the front feet."""
+STONE = Stone(at=0.75, aside=0.0, height=0.05, length=0.06, width=0.05)
+"""A stone that fits between the feet."""
+
+ARENAS: Mapping[str, Ground] = MappingProxyType(
+    {
+        "flat": Ground(),
+        "uphill": Ground(uphill=radians(10)),
+        "downhill": Ground(uphill=radians(-10)),
+        "sideways": Ground(sideways=radians(10)),
+        "step": Ground(relief=Step(at=0.66, height=0.02)),
+        "stone": Ground(relief=STONE),
+        "bumps": Ground(relief=Bumps(height=0.03, correlation=0.06, start=BEFORE, seed=0)),
+    }
+)
+"""Grounds by name; vary one with ``dataclasses.replace``."""

@@ -1,9 +1,8 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
-from suchus.design.ground import Ground
+from suchus.design.ground import ARENAS, Ground
 from suchus.fault import Fault
 from suchus.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
-from suchus.land.arenas import ARENAS
 from suchus.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.land.lake import Lake, Wave
 from suchus.land.live import Live

@@ -1,5 +1,6 @@
 """Records on disk: NetCDF-4 files that appear complete or not at all, and are known if a bit of them flips."""
 
+import hashlib
 import io
 import json
 from pathlib import Path
@@ -15,7 +16,26 @@ from suchus.errors import IncompatibleRecord
 from suchus.reading import check_file, unreadable
 from suchus.record.place import new_file
 from suchus.record.provenance import plain
-from suchus.record.seal import holds, sealed
+
+_SEAL = b"\nsuchus sha256 "
+_SEAL_LENGTH = len(_SEAL) + 64 + 1  # [byte]
+
+
+def sealed(data: bytes) -> bytes:
+    """Return the content of a file with its seal: a checksum by which every flipped bit before it is known.
+
+    It follows the last byte of an HDF5 file, where other readers of NetCDF do not look.
+    """
+    return data + _SEAL + hashlib.sha256(data).hexdigest().encode() + b"\n"
+
+
+def holds(data: bytes) -> bool | None:
+    """Return whether a file is as it was written; None where it has no seal."""
+    body, end = data[:-_SEAL_LENGTH], data[-_SEAL_LENGTH:]
+    if not end.startswith(_SEAL):
+        return None
+    return end == sealed(body)[-_SEAL_LENGTH:]
+
 
 _PACKED = 1100
 """A byte of a file stands for fewer bytes of its content: deflate packs 1032 into one at most [-]."""

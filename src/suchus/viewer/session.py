@@ -9,13 +9,12 @@ import numpy as np
 
 from suchus.control import LAWS, Coordinated, HeadingRule, Swimming
 from suchus.design import Robot, front_segment, layout
-from suchus.design.ground import Bumps
+from suchus.design.ground import BEFORE, Bumps
 from suchus.design.scale import coarse_step, control_period
 from suchus.errors import Diverged, SuchusError
 from suchus.fault import Fault
 from suchus.faults import from_table
 from suchus.land import Ground, Lake, Live, Push, Run
-from suchus.land.arenas import BEFORE
 from suchus.motion import START, Gait, check_limits, divided
 from suchus.robots import beside_article
 from suchus.viewer.history import History

@@ -19,7 +19,7 @@ from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.progress import Progress
 from suchus.record import new_file
-from suchus.record.seal import holds, sealed
+from suchus.record.store import holds, sealed
 
 _KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
 

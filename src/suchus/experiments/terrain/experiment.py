@@ -12,7 +12,7 @@ import xarray as xr
 from suchus.control import AttitudeRule, Change, Control, SwitchRule, Walking
 from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks
-from suchus.design.ground import Bumps, Relief, Step, Stone, profile
+from suchus.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
@@ -21,7 +21,6 @@ from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.gaits import GAITS, own_gait
 from suchus.land import Ground, Run, simulate
-from suchus.land.arenas import BEFORE, STONE
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.motion import START, Gait, suits
 from suchus.robots import ROBOTS
