@@ -334,7 +334,7 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
     one = record.isel(run=0)
     place = layout(robot)
     first, *others = place.trunk_pitch
-    lines = [
+    lines: list[tuple[str, xr.DataArray, dict[str, Any]]] = [
         ("pelvis against the ground", -tilt(one)["pitch"], {"color": COLOURS["ours"]}),
         ("trunk, first pitch joint", -one.servo_angle[:, first], {"color": COLOURS["spine"]}),
     ]
