@@ -289,7 +289,7 @@ def check_scale(check: Checks, robot: str, servos: dict[str, Servo], mass: float
             share <= 0.1,
             f"servo {name} of {robot} has an armature of {servo.armature:.3g} kg m2, {share:.3g} of mass times length "
             f"squared ({mass:.3g} kg, {length:.3g} m), where up to 0.1 makes sense: it belongs to a larger robot; "
-            "see suchus.design.scaled",
+            "see suchus.design.scale.scaled",
         )
         if share > 0.1:
             break

@@ -47,7 +47,7 @@ gait = Gait(
 """The mean walking cycle of Pleurodeles waltl on the robot ``salamander``, closed with six harmonics.
 
 Karakasiliotis, Schilling, Cabelguen and Ijspeert 2013, Biol. Cybern. 107, 529, as processed in the repository
-AlexPazzaglia/SalamandraSNN (MIT licence); ``suchus.capture.to_angle_table`` made it of that table.
+AlexPazzaglia/SalamandraSNN (MIT licence); ``suchus.capture.to_curves`` made it of that table.
 """
 
 PUBLISHED = (r"^curves",)

@@ -1,4 +1,4 @@
-"""In the browser: a robot that walks live, and records played back. Only ``viewer.server`` needs viser."""
+"""In the browser: a robot that walks live, and records played back. Only what ``viewer.pages`` imports needs viser."""
 
 from suchus.viewer.session import Instant, Session, Settings
 
