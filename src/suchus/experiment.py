@@ -116,6 +116,9 @@ class Experiment(ABC):
     """The question in one line, as a person would ask it."""
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
+    answers: ClassVar[tuple[str, ...]] = ()
+    """Names of the three to six measures that carry the answer, as the terminal shows them; the first that are finite
+    where none is named."""
     needs: ClassVar[tuple[str, ...]] = ()
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     reproduces: ClassVar[bool] = True

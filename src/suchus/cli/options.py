@@ -43,6 +43,11 @@ CSV = Annotated[
     tyro.conf.arg(help="Write the record as CSV files too, into the folder csv beside it."),
 ]
 
+JSON = Annotated[
+    bool,
+    tyro.conf.FlagCreatePairsOff,
+    tyro.conf.arg(help="Print the outcome as JSON, for programs, and nothing else on standard output."),
+]
 SCHEDULER = Annotated[
     str | None,
     tyro.conf.arg(help="Address of a Dask scheduler whose workers run it, as tcp://127.0.0.1:8786."),
@@ -61,6 +66,8 @@ class RunRequest:
     """The folder for results."""
     csv: bool
     """Whether the record is wanted as CSV too."""
+    json: bool
+    """Whether the outcome is printed for programs."""
 
 
 def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunRequest:
@@ -82,13 +89,14 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
             ("quick", QUICK, field(default=False)),
             ("out", OUT, field(default=Path("out"))),
             ("csv", CSV, field(default=False)),
+            ("json", JSON, field(default=False)),
             ("experiment", Annotated[type(start), tyro.conf.arg(name="")], field(default=start)),
         ],
     )
-    names = ["quick", "out", "csv", *(f.name for f in fields(start))]  # type: ignore[arg-type]
+    names = ["quick", "out", "csv", "json", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     about = f"{start.title}\n\nAnswers: {start.shows}"
     chosen = parse(options, prog, words, about, names, robot=getattr(start, "robot", None))
-    return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv)
+    return RunRequest(experiment=chosen.experiment, quick=quick, out=chosen.out, csv=chosen.csv, json=chosen.json)
 
 
 def _robot(words: Sequence[str]) -> Robot | None:

@@ -1,10 +1,12 @@
 """``suchus run NAME``: one experiment, its results into a folder."""
 
+import re
 import shlex
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 
 import xarray as xr
@@ -17,12 +19,13 @@ from suchus.cli.options import TABLES, choose
 from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import working
 from suchus.errors import plain_warnings
-from suchus.experiment import Experiment, Outcome
+from suchus.experiment import Experiment, Measure, Outcome
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import styled
 from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
-from suchus.report import check_place, quantity, save_outcome
+from suchus.report import check_place, number, quantity, save_outcome
+from suchus.report.saving import OUTCOME
 from suchus.sources import current
 
 _COLOURS = {
@@ -33,6 +36,7 @@ _COLOURS = {
     "by construction": "cyan",
     "fitted": "cyan",
 }
+_MOST = 6  # numbers that stand below an answer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,9 +86,14 @@ def _plain_sums() -> AbstractContextManager[object]:
 
 
 def show_outcome(question: Experiment, done: Performed) -> None:
-    """Print the verdicts, and where everything else is."""
+    """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
+    console.print(escape(answer(done.outcome.decides)))
+    numbers = Table("measure", "value", "range", box=None, padding=(0, 2, 0, 0))
+    for row in carried(question, done.outcome.measures):
+        numbers.add_row(*map(escape, row))
+    console.print(numbers)
     if done.outcome.verdicts:
         table = Table(box=None, padding=(0, 2, 0, 0))
         for heading, side in (
@@ -108,6 +117,28 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)
 
 
+def answer(decides: str) -> str:
+    """Return the first two sentences of what decided."""
+    return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
+
+
+def carried(question: Experiment, measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
+    """Return name, value and range of the measures that carry an answer, in words.
+
+    A measure that a run has not, as one of another gait, or that is no finite number is left out.
+    """
+    finite = [name for name, measure in measures.items() if isfinite(measure.value)]
+    told = [name for name in question.answers if name in finite]
+    ends = ("_low", "_high")
+    rows = []
+    for name in told or [name for name in finite if not name.endswith(ends)][:_MOST]:
+        low, high = (measures.get(name + end) for end in ends)
+        unit = measures[name].unit
+        spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}" if low and high else ""
+        rows.append((name.replace("_", " "), quantity(measures[name].value, unit, 3), spread))
+    return rows
+
+
 def run(words: Sequence[str]) -> int:
     """Run one experiment and return 0.
 
@@ -125,9 +156,13 @@ def run(words: Sequence[str]) -> int:
     check_writable(choice.out)
     with working() as bar:
         done = perform(choice.experiment, name, choice.out, bar.task(name), _again(words))
+    tables = write_tables(done.outcome.record, done.folder / TABLES) if choice.csv else None
+    if choice.json:
+        print((done.folder / OUTCOME).read_text(encoding="utf-8"), end="")
+        return 0
     show_outcome(choice.experiment, done)
-    if choice.csv:
-        print(f"the record as CSV: {write_tables(done.outcome.record, done.folder / TABLES)}")
+    if tables is not None:
+        print(f"the record as CSV: {tables}")
     return 0
 
 
@@ -142,7 +177,7 @@ def _help() -> str:
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(
         (
-            "usage: suchus run NAME [--quick] [--out DIR] [--csv] [--FIELD VALUE ...]",
+            "usage: suchus run NAME [--quick] [--out DIR] [--csv] [--json] [--FIELD VALUE ...]",
             "",
             "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
             "",

@@ -53,6 +53,7 @@ class BipedalReach(Experiment):
 
     title = "How high does it reach, crawling and standing on two legs?"
     shows = "Section IV.D, Figs 22 to 24"
+    answers = ("reach_crawl", "reach_standing", "reach_ratio", "held_share", "push_lateral_on")
     needs = ("tables", *STANDING)
     judged_with = ("robot", "gait", "balance", "least")
     judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 4, "hips": 3}

@@ -56,6 +56,13 @@ class CrawlStability(TwoGroups):
 
     title = "Does it crawl more steadily with spine and tail than without?"
     shows = "Section IV.A, Figs 13 to 15"
+    answers = (
+        "com_height_pp_change",
+        "com_height_pp_coordinated",
+        "com_height_pp_limbs_only",
+        "roll_pp_coordinated",
+        "roll_pp_limbs_only",
+    )
     needs = ("limbs", "axis")
 
     def quick(self) -> "CrawlStability":

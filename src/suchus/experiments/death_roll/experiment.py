@@ -35,6 +35,13 @@ class DeathRoll(Experiment):
 
     title = "How fast does it roll about its long axis, and with what?"
     shows = "The roll that section I names; beyond the article"
+    answers = (
+        "rate_trunk_vacuum",
+        "rate_tail_vacuum",
+        "rate_c_shape_vacuum",
+        "rate_c_shape_water",
+        "power_c_shape_water",
+    )
     needs = ("trunk", "trunk_pitch", "tail_yaw", "tail_pitch")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

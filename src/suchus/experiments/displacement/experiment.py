@@ -39,6 +39,14 @@ class Displacement(TwoGroups):
 
     title = "How far does it crawl, with spine and tail and without?"
     shows = "Section IV.B, Fig. 16"
+    answers = (
+        "forward_coordinated",
+        "forward_limbs_only",
+        "forward_ratio",
+        "gain_spine_swing",
+        "gain_tail_swing",
+        "gain_tail_contact",
+    )
     needs = ("limbs", "axis")
 
     strokes: tuple[float, ...] = tuple(

@@ -73,6 +73,14 @@ class Feedback(Experiment):
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
     shows = "Sections II.B and III.D, Fig. 10"
+    answers = (
+        "converged_cross_load",
+        "cycles_to_converge",
+        "kick_kept_open",
+        "kick_kept_closed",
+        "uphill_gain_closed",
+        "turning_limp_yaw_steered",
+    )
     needs = ("limbs", "trunk")
     judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}

@@ -40,6 +40,14 @@ class Floating(Experiment):
 
     title = "Does it float as Archimedes says, and does it right itself?"
     shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
+    answers = (
+        "mass_floating",
+        "volume_floating",
+        "share_above",
+        "metacentric_height_floating",
+        "vanishing_floating",
+        "roll_at_rest",
+    )
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""

@@ -46,6 +46,14 @@ class GaitDiagram(Experiment):
 
     title = "When do the feet stand, and which way do spine and tail bend?"
     shows = "Section III.D, Fig. 12"
+    answers = (
+        "duty_factor_commanded",
+        "duty_factor_greatest",
+        "diagonal_phase_error",
+        "spine_gain",
+        "spine_lag",
+        "tail_gain",
+    )
     needs = ("limbs",)
     judged_with = ("robot", "gait", "cycles")
 

@@ -37,6 +37,7 @@ class GallopLimits(Experiment):
 
     title = "Could the robot gallop, and which servos would it take?"
     shows = "Section II.A"
+    answers = ("speed_bound", "flight_bound", "bound_over_walk", "servo_speed_needed", "gallops_share")
     needs = ("legs", "shells", "article_spine", "cable_tail")
     judged_with = ("robot", "bounds", "trots", "walks", "noise")
     judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}

@@ -69,6 +69,14 @@ class JointFaults(Experiment):
 
     title = "How far does it still crawl when joints of its legs fail?"
     shows = "Section IV.C, Figs 18 to 21"
+    answers = (
+        "forward_coordinated",
+        "loss_front_yaw_limp_one_coordinated",
+        "loss_front_pitch_limp_one_coordinated",
+        "loss_hind_yaw_limp_one_coordinated",
+        "loss_hind_pitch_limp_one_coordinated",
+        "share_spine_and_tail_bear_better",
+    )
     needs = ("limbs",)
     judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}

@@ -38,6 +38,7 @@ class JointLoops(Experiment):
 
     title = "What does an integral term in the joint controllers improve, and what does it cost?"
     shows = "Section III.D, Fig. 10"
+    answers = ("droop_taken", "step_error_pid", "ripple_pid", "tracking_by_droop", "tracking_by_damping")
     needs = ("limbs",)
     judged_with = ("robot", "gait", "joint", "step")
     judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}

@@ -31,6 +31,13 @@ class LegKinematics(Experiment):
 
     title = "Does the printed leg kinematics find the joint angles for every point in reach?"
     shows = "Section III.A: Table I, eqs (1) to (14)"
+    answers = (
+        "round_trip_error",
+        "printed_inverse_holds",
+        "printed_foot_error_median",
+        "printed_foot_error_max",
+        "reach_far",
+    )
     needs = ("legs",)
     judged_with = ("robot", "gait", "other_gait")
     judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}

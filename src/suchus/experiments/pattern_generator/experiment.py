@@ -43,6 +43,7 @@ class PatternGeneratorExperiment(Experiment):
 
     title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
+    answers = ("frequency_walk", "frequency_swim", "frequency_jump", "lag_walk", "lag_swim", "locked_share")
     needs = ("axis",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])

@@ -44,6 +44,14 @@ class Salamander(Experiment):
 
     title = "Does a salamander's own walk, played on its model, walk as the animal does?"
     shows = "Beyond the article: kinematics and foot forces of salamanders"
+    answers = (
+        "standing_index_walk",
+        "stride_walk",
+        "stride_straight_axis",
+        "foot_force_peak_fore",
+        "foot_force_peak_hind",
+        "belly_share",
+    )
     needs = ("salamander_joints",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])

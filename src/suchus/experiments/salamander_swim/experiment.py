@@ -31,6 +31,7 @@ class SalamanderSwim(Experiment):
 
     title = "How does a salamander's own swim, played joint by joint on its model, swim?"
     shows = "Beyond the article: kinematics of swimming salamanders"
+    answers = ("stride_swim", "stride_off", "strouhal", "swing_tail", "share_under")
     needs = ("salamander_joints",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])

@@ -41,6 +41,7 @@ class Sensitivity(Experiment):
 
     title = "Do the article's statements survive other choices of what it does not say?"
     shows = "Section IV, Figs 12 to 21"
+    answers = ("samples_walked", "samples_impossible")
     needs = ("tables", "article_spine", "cable_tail")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

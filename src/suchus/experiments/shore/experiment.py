@@ -72,6 +72,7 @@ class Shore(Experiment):
 
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
     shows = "Section I, whose robot is amphibious; beyond the article"
+    answers = ("ashore_share", "time_ashore", "falls", "into_water_share", "speed_swimming", "speed_ashore")
     reproduces: ClassVar[bool] = False
     needs = ("legs", "axis")
 

@@ -44,6 +44,14 @@ class SpeedRange(Experiment):
 
     title = "How fast is each gait, and what does speed cost?"
     shows = "Sections II.A and II.B, Fig. 3"
+    answers = (
+        "speed_belly_crawl",
+        "speed_low_crawl",
+        "speed_semi_erect",
+        "speed_high_walk",
+        "cost_high_walk",
+        "froude_high_walk",
+    )
     needs = ("limbs",)
     judged_with = ("robot", "gaits")
     judged_from: ClassVar[Mapping[str, float]] = {"slower": 4, "cycles": 3}

@@ -29,6 +29,13 @@ class SpineKinematics(Experiment):
 
     title = "Is the printed end of the spine where Table II puts it, and can the spine be inverted?"
     shows = "Section III.B: Table II, eq. (15)"
+    answers = (
+        "straight_length",
+        "straight_length_printed",
+        "printed_error_mean",
+        "mended_error_max",
+        "bending_saved_median",
+    )
     needs = ("shells", "article_spine")
     judged_with = ("robot",)
     judged_from: ClassVar[Mapping[str, float]] = {"postures": 10_000}

@@ -64,6 +64,14 @@ class Swim3d(Experiment):
 
     title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
     shows = "Beyond the article: Section IV.B, whose flow is a slice"
+    answers = (
+        "speed",
+        "speed_over_grids",
+        "slice_over_body",
+        "power",
+        "speed_resistive_real_water",
+        "speed_reactive_real_water",
+    )
     needs = ("axis",)
     reproduces: ClassVar[bool] = False
 

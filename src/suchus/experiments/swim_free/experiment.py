@@ -48,6 +48,14 @@ class SwimFree(Experiment):
 
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
+    answers = (
+        "speed_whole",
+        "speed_trunk_only",
+        "speed_tail_only",
+        "speed_tail_only_stiff",
+        "turn_radius",
+        "servo_power",
+    )
     needs = ("axis", "cable_tail")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])

@@ -59,6 +59,14 @@ class SwimSweep(Experiment):
 
     title = "How fast and how well does it swim at other frequencies, amplitudes and wavelengths?"
     shows = "Section IV.B, eq. (20); beyond the article"
+    answers = (
+        "speed_most_resistive",
+        "efficiency_most_resistive",
+        "error_mean_resistive",
+        "speed_most_reactive",
+        "efficiency_most_reactive",
+        "error_mean_reactive",
+    )
     reproduces: ClassVar[bool] = False
     needs = ("axis",)
 

@@ -81,6 +81,7 @@ class PlaneSwims(Experiment):
 
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
+    answers = ("speed_free", "speed_trunk_only", "speed_tail_only", "speed_as_printed", "power_held", "misfit")
     needs = ("axis",)
     judged_with = ("robot", "reading", "frequency", "reynolds")
     judged_from: ClassVar[Mapping[str, float]] = {

@@ -37,6 +37,13 @@ class TailBending(Experiment):
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
     shows = "Section III.C: eqs (16) to (19)"
+    answers = (
+        "error_of_eq_17_max",
+        "slack_max",
+        "printed_last_joint_error_max",
+        "printed_last_joint_error_share",
+        "bend_limit_of_gaps",
+    )
     needs = ("cable_tail",)
     judged_with = ("robot", "furthest", "gait", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}

@@ -56,6 +56,7 @@ class Terrain(Experiment):
 
     title = "Which posture for which ground, and can the robot choose by what it feels?"
     shows = "Section II.B, Fig. 3"
+    answers = ("erect_ahead_share", "flat_cost_ratio", "met_judged", "transitions_upright", "transition_after_least")
     needs = ("foot_paths",)
     judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_from: ClassVar[Mapping[str, float]] = {

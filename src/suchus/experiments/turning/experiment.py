@@ -34,6 +34,12 @@ class Turning(Experiment):
 
     title = "How tightly does it turn, and does it walk the circle that was asked for?"
     shows = "Section II.B"
+    answers = (
+        "tightest_bend_low_crawl",
+        "tightest_bend_semi_erect",
+        "tightest_bend_high_walk",
+        "tightest_both_semi_erect",
+    )
     needs = ("limbs",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

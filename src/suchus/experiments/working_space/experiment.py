@@ -34,6 +34,7 @@ class WorkingSpace(Experiment):
 
     title = "How much room does the snout reach, on four feet and on hind feet and tail?"
     shows = "Section IV.D, Figs 23 and 24"
+    answers = ("volume_crawling", "volume_standing", "volume_ratio", "area_ratio", "highest_standing")
     needs = ("legs", "shells", "article_spine", "tail")
     judged_with = ("robot", "gait")
     judged_from: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}

@@ -1,0 +1,62 @@
+"""What the terminal says after a run: the answer, and the numbers that carry it."""
+
+import json
+import math
+
+import pytest
+
+from suchus.cli.entry import main
+from suchus.cli.run import answer, carried
+from suchus.experiment import Measure
+from suchus.experiments import EXPERIMENTS
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_the_numbers_that_carry_the_answer_are_measured(name, quick_outcome):
+    """Three to six of them; where the quick form measures less, at least one."""
+    question = EXPERIMENTS[name]
+    assert 2 <= len(question.answers) <= 6
+    assert len(set(question.answers)) == len(question.answers)
+    rows = carried(question, quick_outcome(name).measures)
+    assert rows
+    assert rows[0][0].replace(" ", "_") in question.answers
+
+
+def test_a_range_stands_beside_its_number_and_what_is_not_finite_is_left_out():
+    question = EXPERIMENTS["displacement"]
+    measures = {
+        "forward_coordinated": Measure(0.7, "m"),
+        "forward_coordinated_low": Measure(0.6, "m"),
+        "forward_coordinated_high": Measure(0.75, "m"),
+        "forward_ratio": Measure(math.nan, "-"),
+        "gain_spine_swing": Measure(0.2, "m"),
+    }
+    assert carried(question, measures) == [
+        ("forward coordinated", "0.7 m", "0.6 to 0.75 m"),
+        ("gain spine swing", "0.2 m", ""),
+    ]
+
+
+def test_an_experiment_that_names_no_numbers_shows_its_first_ones():
+    measures = {f"number_{i}": Measure(float(i), "-") for i in range(9)} | {"number_0_low": Measure(-1.0, "-")}
+    found = carried(type("Other", (), {"answers": ()})(), measures)  # type: ignore[arg-type]
+    assert [row[0] for row in found] == [f"number {i}" for i in range(6)]
+
+
+def test_the_answer_is_two_sentences_whatever_numbers_stand_in_them():
+    text = "It walks 0.7 m, by eq. (20) and Fig. 3 too. The tail adds 0.1 m. More follows."
+    assert answer(text) == "It walks 0.7 m, by eq. (20) and Fig. 3 too. The tail adds 0.1 m."
+    assert answer("One.") == "One."
+    assert answer("") == ""
+
+
+def test_a_run_says_its_answer_and_for_programs_its_outcome(tmp_path, capsys):
+    assert main(["run", "leg_kinematics", "--quick", "--out", str(tmp_path)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    outcome = json.loads((tmp_path / "leg_kinematics" / "outcome.json").read_text())
+    assert answer(outcome["decides"]) in said
+    assert "round trip error" in said
+    assert main(["run", "leg_kinematics", "--quick", "--json", "--out", str(tmp_path)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["measures"] == outcome["measures"]
+    assert told["decides"] == outcome["decides"]
