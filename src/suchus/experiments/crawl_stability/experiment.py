@@ -74,8 +74,8 @@ class CrawlStability(TwoGroups):
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
-        record = simulate(runs, duration=end, progress=staged(progress, "conditions", 0.0, 0.2))
-        share = self._equal_stroke(record, end, staged(progress, "equal displacement", 0.2, 0.4))
+        first = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
+        share = self._equal_stroke(first, end, staged(progress, "equal displacement", 0.1, 0.4))
         equal = Run(robot=self.robot, gait=self.control.strode(share), label=_EQUAL)
         record = simulate([*runs, equal], duration=end, progress=staged(progress, "all conditions", 0.4, 0.6))
         record = record.merge(self._repeated(runs, end, staged(progress, "repeats", 0.6, 1.0)))
