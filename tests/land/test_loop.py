@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.land import Limp, Push, Run, simulate
+from suchus.design import with_values
+from suchus.land import Backlash, Ground, Limp, Locked, Push, Run, simulate
 from suchus.land.batch import Beginning
 from suchus.land.loop import Loop
 
@@ -31,8 +32,15 @@ def passed(loop: Loop, periods: int, **how: bool) -> Loop:
     return loop
 
 
-def test_samples_that_are_not_kept_change_none_of_those_that_are(run):
-    runs = [run, replace(run, pushes=(PUSH,)), replace(run, faults=(FAULT,))]
+@pytest.mark.parametrize("robots", [1, 2])
+def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
+    # a joint that locks where it is, and one with backlash, look at angles in periods that are not kept
+    faults = (FAULT,), (Locked("LF_pitch", at=0.04),), (Backlash("RH_pitch", at=0.02),)
+    runs = [run, replace(run, pushes=(PUSH,)), *(replace(run, faults=some) for some in faults)]
+    runs.append(replace(run, ground=Ground(friction_scale=0.5, uphill=0.1)))
+    if robots == 2:
+        heavier = with_values(run.robot, {"pelvis.mass": 1.1 * run.robot.pelvis.mass})
+        runs += [replace(run, robot=heavier, faults=some) for some in faults]
     all_kept, few = (simulate(runs, duration=0.3, timestep=COARSE, every=every) for every in (1, 3))
     for name in all_kept.data_vars:
         kept = all_kept[name].isel(time=slice(None, None, 3)) if "time" in all_kept[name].dims else all_kept[name]
@@ -47,6 +55,16 @@ def test_contact_forces_that_nobody_reads_are_not_averaged_and_nothing_else_diff
         np.testing.assert_array_equal(*sides)
     np.testing.assert_array_equal(felt.batch.qpos, unread.batch.qpos)
     assert not np.array_equal(felt.batch.readings, unread.batch.readings)
+
+
+def test_sensors_that_nobody_reads_are_not_worked_out_and_the_robots_go_the_same_way(run):
+    read, unread = (passed(Loop([run], COARSE, ticks=30), 20, felt=False, read=read) for read in (True, False))
+    np.testing.assert_array_equal(read.batch.qpos, unread.batch.qpos)
+    np.testing.assert_array_equal(read.batch.angles(0), unread.batch.angles(0))
+    assert not np.array_equal(read.sensors["centre_of_mass"], unread.sensors["centre_of_mass"])
+    for loop in (read, unread):
+        passed(loop, 1)
+    np.testing.assert_array_equal(read.batch.readings, unread.batch.readings)
 
 
 def test_a_run_that_begins_anew_has_a_clock_and_troubles_of_its_own(run):

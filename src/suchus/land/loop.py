@@ -125,21 +125,22 @@ class Loop:
         targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
         self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
 
-    def advance(self, *, felt: bool = True) -> None:
+    def advance(self, *, felt: bool = True, read: bool = True) -> None:
         """Let one control period pass in which the servos do as they are commanded.
 
         Args:
             felt: whether contact forces will be read after it, see ``SimulationBatch.advance``.
+            read: whether any sensor will be.
         """
         targets, _, air_fraction = self.command
         shared = self._deduplication
         shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
         if shared.others.size:
-            self.batch.advance(targets, self._steps, self.time, shared.first, felt=felt)
+            self.batch.advance(targets, self._steps, self.time, shared.first, felt=felt, read=read)
             self.batch.copy(shared.others, shared.whom)
         else:
-            self.batch.advance(targets, self._steps, self.time, felt=felt)
+            self.batch.advance(targets, self._steps, self.time, felt=felt, read=read)
         self.tick += 1
         self.clocks += self._going
 

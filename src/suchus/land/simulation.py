@@ -125,7 +125,8 @@ def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int
         if tick % every == 0:
             recorder.store(tick // every, loop.command.phase, loop.command.targets)
         if tick < ticks:
-            loop.advance(felt=loop.feels or (tick + 1) % every == 0)
+            read = loop.feels or (tick + 1) % every == 0
+            loop.advance(felt=read, read=read)
         if tick % 16 == 0:
             progress("simulating", tick / ticks)
     progress("simulating", 1.0)
