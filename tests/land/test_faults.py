@@ -152,7 +152,10 @@ class Listening:
 
     @staticmethod
     def start(runs, period):
-        table, heard = OpenLoop.start(runs, period), runs.controls[0].heard[0]
+        table, heard = (
+            OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(runs.robots)), period),
+            runs.controls[0].heard[0],
+        )
 
         class Machine:
             def rest(self):
