@@ -17,8 +17,9 @@ test: # tests/README.md lists what it leaves out; the processor time is that of 
 	$(MAKE) --no-print-directory -j2 -O check && $(MAKE) --no-print-directory tests; result=$$?; \
 	mkdir -p .venv && times > .venv/.times && tools/processor_time.sh $$from $$result .venv/.times; exit $$result
 
-test-all: test double # before a release: also what takes long for what it tells
-	$(PY) -m pytest -n auto --dist worksteal -m slow
+test-all: test double .venv/.docs # before a release: also what takes long for what it tells
+	SUCHUS_EXAMPLES=100 $(PY) -m pytest -n auto --dist worksteal -m slow
+	SUCHUS_EXAMPLES=100 $(PY) -m pytest -n auto --dist worksteal -m "hypothesis and not validate and not slow"
 
 check: single space types lint contract
 
@@ -63,10 +64,14 @@ atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on
 	$(INSTALL) ".[dev]"
 	touch .venv/.runtime $@
 
+.venv/.docs: .venv/.dev
+	$(INSTALL) ".[dev,docs]"
+	touch $@
+
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done
 
-docs: .venv/.dev
+docs: .venv/.docs
 	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
 	@echo site/index.html
 

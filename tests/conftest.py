@@ -41,7 +41,9 @@ from suchus.robots import ROBOTS  # noqa: E402
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")
 xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute
-settings.register_profile("suchus", deadline=None, derandomize=True)
+EXAMPLES = int(os.environ.get("SUCHUS_EXAMPLES", "40"))
+"""How many examples a property is tried with, unless it says otherwise; ``make test-all`` takes 100 [-]."""
+settings.register_profile("suchus", deadline=None, derandomize=True, max_examples=EXAMPLES)
 settings.load_profile("suchus")
 
 
@@ -63,7 +65,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def pytest_collection_finish() -> None:
     gc.freeze()  # a million objects of modules and of tests stay: nothing looks through them again
-    gc.set_threshold(20_000, 20, 20)  # looked for less often than in a program that has little memory
+    gc.set_threshold(100_000, 20, 50)  # looked for less often than in a program that has little memory
 
 
 @pytest.hookimpl(tryfirst=True)

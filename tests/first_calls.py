@@ -13,7 +13,7 @@ from typing import Any
 
 from beartype import beartype
 
-CALLS = 20
+CALLS = 10
 """How often a function is looked at in a test, arguments and result counted apart [-]."""
 _calls: Counter[tuple[str, str]] = Counter()
 _resting: list[Any] = []

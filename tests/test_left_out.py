@@ -38,6 +38,8 @@ def test_make_leaves_out_what_has_the_marks_and_runs_it_where_the_list_says():
     for mark, words in COMMANDS.items():
         recipe = recipes.partition(f"\n{words.removeprefix('make ')}:")[2].partition("\n\n")[0]
         assert f"-m {mark}" in recipe, words
+    whole = recipes.partition("\ntest-all:")[2].partition("\n\n")[0]
+    assert 'SUCHUS_EXAMPLES=100 $(PY) -m pytest -n auto --dist worksteal -m "hypothesis and not validate' in whole
 
 
 class Item:

@@ -14,11 +14,6 @@ import pytest
 from pages import reference
 from pages.code import rooms
 
-pytest.importorskip("mkdocs")
-pytest.importorskip("material")
-pytest.importorskip("mkdocstrings")
-pytest.importorskip("latex2mathml")
-
 ROOT = Path(__file__).parents[2]
 FETCHING = {"script": "src", "img": "src", "link": "href", "iframe": "src", "source": "src", "video": "src"}
 
@@ -38,6 +33,8 @@ class Html(HTMLParser):
 
 @pytest.mark.slow("the documentation is built whole")
 def test_the_site_builds_strictly_and_is_whole(tmp_path):
+    for library in ("mkdocs", "material", "mkdocstrings", "latex2mathml"):
+        pytest.importorskip(library)
     site = tmp_path / "site"
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(site)]
     quiet = os.environ | {"NO_MKDOCS_2_WARNING": "1", "PYTHONDONTWRITEBYTECODE": "1"}

@@ -86,6 +86,7 @@ def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes
     assert contents(store) == contents(tmp_path / "whole")
 
 
+@pytest.mark.slow("a search is interrupted, and run on twice")
 def test_an_interrupt_keeps_the_best_so_far_and_a_greater_budget_goes_on(small, tmp_path):
     spec, told = replace(small, limits=()), []
 

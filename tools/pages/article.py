@@ -114,7 +114,8 @@ def misprints_of() -> dict[str, list[str]]:
 
 def questions_by_claim() -> dict[str, list[str]]:
     """Return the experiments that judge a claim."""
-    return {key: [name for name, one in EXPERIMENTS.items() if key in one.claims] for key in CLAIMS}
+    judged = {name: one.claims for name, one in EXPERIMENTS.items()}
+    return {key: [name for name, claims in judged.items() if key in claims] for key in CLAIMS}
 
 
 def misprints() -> str:
