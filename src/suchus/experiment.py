@@ -216,8 +216,8 @@ class Experiment(ABC):
     def on(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
-        Where the robot walks in the same gait at about the same size, and can follow the gaits, nothing else changes.
-        If not, they become its own gait, and lengths, times, forces and masses change with its size.
+        Where the robot is of about the same size, walks in the same gait and can follow the gaits, nothing else
+        changes. If not, they become its own gait, and lengths, times, forces and masses change with its size.
 
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
@@ -229,13 +229,16 @@ class Experiment(ABC):
         values = {name: getattr(self, name) for name in names}
         here: Robot = values["robot"]
         gaits = [gait for value in values.values() for gait in _gaits(value)]
-        alike = not gaits or (control_period(robot) == control_period(here) and own_gait(robot) == own_gait(here))
+        alike = control_period(robot) == control_period(here) and (not gaits or own_gait(robot) == own_gait(here))
         if alike and all(suits(robot, gait) for gait in gaits):
             return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
         sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
-        if "timestep" in values:  # it divides the control period
-            sized["timestep"] = values["timestep"] / coarse_step(here) * coarse_step(robot)
+        finer = coarse_step(robot) / coarse_step(here)  # time steps divide the control period
+        for name in names:
+            if "timestep" in name:
+                value = values[name]
+                sized[name] = tuple(finer * one for one in value) if isinstance(value, tuple) else finer * value
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:

@@ -1,14 +1,15 @@
 """Every experiment runs on every robot of the shelf, or says in a sentence what the robot lacks."""
 
-from dataclasses import replace
-from math import isfinite
+from dataclasses import fields, replace
+from math import isfinite, sqrt
 
+import numpy as np
 import pytest
-from tests.bodies import six
+from tests.bodies import hatchling, six
 
 from suchus.cli.options import choose
 from suchus.design import NEEDS, lacking, layout
-from suchus.design.scale import coarse_step
+from suchus.design.scale import coarse_step, control_period
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS, conditions_of, own_gait, suits
@@ -160,6 +161,22 @@ def test_a_gait_that_was_asked_for_is_not_replaced():
     assert wrong.gait == GAITS["belly_crawl"]
     with pytest.raises(OutsideLimits, match="choose a gait made for it"):
         wrong.run()
+
+
+@pytest.mark.parametrize("name", list(EXPERIMENTS))
+def test_time_steps_divide_the_control_period_of_a_robot_of_another_size(name):
+    """In the full form and in the quick one; lengths and times go with the size where no gait is walked too."""
+    small = hatchling()
+    for question in (EXPERIMENTS[name], EXPERIMENTS[name].quick()):
+        if not hasattr(question, "robot") or lacking(small, question.needs):
+            return
+        sized = question.on(small)
+        for field in (field.name for field in fields(sized) if "timestep" in field.name):
+            steps = control_period(small) / np.atleast_1d(getattr(sized, field))
+            assert steps == pytest.approx(np.round(steps), abs=1e-9), field
+        if name in ("death_roll", "swim_sweep"):
+            faster = sqrt(question.robot.length / small.length)
+            assert sized.frequencies == pytest.approx([faster * f for f in question.frequencies])
 
 
 def test_a_robot_that_can_follow_the_gait_changes_nothing_else():

@@ -25,8 +25,11 @@ PHYSICS_STEPS = 5
 """Physics steps in a control period [-]; the physics step is then a hundredth to a 250th of the gravity time."""
 COARSEST = 20.0
 """A physics step above this part of the gravity time is refused: a tenth loses a fifth of the stride [-]."""
-_POWERS = {"kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "J": (1, 2, -2), "rad": (0, 0, 0)}
-_UNIT = re.compile(r"^(kg|rad|N|J|m|s)(\d*)$")
+_POWERS = {
+    "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
+    "N": (1, 1, -2), "J": (1, 2, -2), "W": (1, 2, -3),
+}  # fmt: skip
+_UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|m|s)(\d*)$")
 
 
 def gravity_time(length: float) -> float:

@@ -69,7 +69,7 @@ class GallopLimits(Experiment):
         with Checks(self.name(), self) as check:
             check.rising("speeds", 0.1, 1e3, "rad/s")
             check.rising("torques", 0.01, 1e3, "N m")
-            check.number("seconds", 0.5, 60.0, "s")
+            check.number("seconds", 0.05, 60.0, "s")
             check.number("timestep", 1e-5, 0.01, "s")
             check.number("noise", 0.0, 1.0, "rad")
             for name in ("bounds", "walks"):

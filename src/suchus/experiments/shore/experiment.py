@@ -132,7 +132,7 @@ class Shore(Experiment):
             check.number("clearance", 0.01, 10.0, "m")
             check.number("inland", 0.0, 100.0, "m")
             check.number("beyond", 0.0, 100.0, "m")
-            check.number("duration", 2.0, 3600.0, "s")
+            check.number("duration", 0.2, 3600.0, "s")
             check.whole("cycles", 1, 1000)
             check.number("depth", 0.0, 100.0, "m")
             check.number("timestep", 1e-5, 0.01, "s")
