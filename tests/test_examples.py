@@ -57,3 +57,4 @@ def test_the_python_of_the_readme_runs(tmp_path):
     for code in readme():
         done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
+        assert "times as far: With spine and tail the robot gets" in done.stdout
