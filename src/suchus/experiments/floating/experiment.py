@@ -235,17 +235,23 @@ def draw_righting(record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         heel = np.degrees(record.heel.values)
         floats = {str(hull): float(record.static_surplus.sel(hull=hull)) < 0 for hull in record.hull.values}
-        for hull, dashes, colour in (("floating", "-", "coordinated"), ("bare", (0, (5, 2)), "limbs_only")):
-            where = "at the surface" if floats[hull] else "sunk"
-            label = f"{'with' if hull == 'floating' else 'without'} its hull, {where}"
+        hulls = {
+            "floating": ("-", "coordinated", "with its hull, "),
+            "bare": ((0, (5, 2)), "limbs_only", "without it, "),
+        }
+        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # it has none
+            hulls = {"floating": ("-", "coordinated", "")}
+        for hull, (dashes, colour, which) in hulls.items():
+            label = which + ("at the surface" if floats[hull] else "sunk")
             ax.plot(heel, 1e3 * record.lever.sel(hull=hull), color=COLOURS[colour], linestyle=dashes, label=label)
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="heel [deg]", ylabel="righting lever GZ [mm]", xlim=(0, 180), xticks=range(0, 181, 30))
-        ax.legend(loc=(0.26, 0.24))
+        ax.legend(loc="best")
         ax = axes[0, 1]
         for i, label in enumerate(record.label.values):
             turn = record.orientation.isel(run=i).values
-            roll = np.degrees(np.arctan2(*(rotation.rotate(turn, np.eye(3)[axis])[:, 2] for axis in (1, 2))))
+            roll = np.arctan2(*(rotation.rotate(turn, np.eye(3)[axis])[:, 2] for axis in (1, 2)))
+            roll = np.degrees(np.unwrap(roll))
             ax.plot(record.time, roll, color=_SHADES[i % 5], linestyle=_DASHES[i % 5], label=f"from {label}")
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="time [s]", ylabel="heel [deg]", xlim=(0, min(10.0, float(record.time[-1]))))
