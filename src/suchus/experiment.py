@@ -242,13 +242,13 @@ class Experiment(ABC):
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
-        """Return the fields that hold gaits, for a robot that cannot follow those of now: its own, and its limbs alone.
+        """Return the fields that hold gaits, for a robot that cannot follow those of now: its own.
 
         Raises:
             UnsuitedRobot: no gait on the shelf suits it.
         """
         own = own_gait(robot)
-        found = {"gait": own, "gaits": (own,), "control": own.without("axis", name="limbs_only")}
+        found = {"gait": own, "gaits": (own,)}
         names = {one.name for one in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in found.items() if name in names}
 

@@ -9,7 +9,7 @@ import numpy as np
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, control_group
 from suchus.land import Ground, Run
 from suchus.motion import Gait
 from suchus.paper import CYCLES
@@ -20,15 +20,15 @@ from suchus.robots import ROBOTS
 class TwoGroups(Experiment):
     """The article's two groups and the repeats that tell how much a result depends on servos and friction."""
 
-    judged_with = ("robot", "gait", "control", "cycles")
+    judged_with = ("robot", "gait", "control_group", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """The crawl of the control group, with the same legs."""
+    control: Gait | None = None
+    """The gait of the control group, which has the same legs; None for the gait with its axis still."""
     cycles: int = int(CYCLES)
     """Number of cycles that are measured [-]."""
     repeats: int = 8
@@ -48,9 +48,15 @@ class TwoGroups(Experiment):
             check.number("friction_spread", 0.0, 0.9, "")
             check.whole("seed", 0, 2**31)
             self.check(check)
+        control_group(self.gait, self.control)
 
     def check(self, check: Checks) -> None:
         """Check what the experiment adds."""
+
+    @property
+    def control_group(self) -> Gait:
+        """The gait of the control group."""
+        return control_group(self.gait, self.control)
 
     def repeated(self, runs: Iterable[Run]) -> list[Run]:
         """Return the repeats of all conditions, run by run; the i-th has the same noise and friction in each."""

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from suchus.catalog import Catalog
 from suchus.design import Robot, layout
-from suchus.errors import UnreadableFile, UnsuitedRobot
+from suchus.errors import OutsideLimits, UnreadableFile, UnsuitedRobot
 from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.motion import Gait, divided, form_of, suits
@@ -63,6 +63,30 @@ def own_gait(robot: Robot) -> Gait:
     )
 
 
+def control_group(gait: Gait, given: Gait | None = None) -> Gait:
+    """Return the control group of a gait: the same legs, its axis still.
+
+    Args:
+        gait: with all of the axis.
+        given: what stands for it instead; None for the gait without the motion of its axis.
+
+    Raises:
+        OutsideLimits: the one given has other legs, so that more than the axis would differ.
+    """
+    if given is None:
+        return gait.without("axis", name="limbs_only")
+    legs = ("period", "duty_factor", "limb_phases", "limbs", "height")
+    other = [name for name in legs if getattr(gait, name) != getattr(given, name)]
+    if [c for c in gait.curves if c.part == "limb"] != [c for c in given.curves if c.part == "limb"]:
+        other.append("measured curves of the limbs")
+    if other:
+        raise OutsideLimits(
+            f"the control group {given.name!r} has other legs than gait {gait.name!r}: they differ in "
+            f"{', '.join(other)}, and only the axis may differ; leave control out for the gait with its axis still."
+        )
+    return given
+
+
 def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
 
@@ -92,4 +116,4 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     return found
 
 
-__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "own_gait", "suits"]
+__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "control_group", "own_gait", "suits"]

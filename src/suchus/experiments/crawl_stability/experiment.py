@@ -72,11 +72,11 @@ class CrawlStability(TwoGroups):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl in every condition, as far with the legs alone, and again with noise."""
         end = START + self.cycles * self.gait.period
-        arms = conditions_of(self.robot, self.gait, self.control)
+        arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
         first = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
         share = self._equal_stroke(first, end, staged(progress, "equal displacement", 0.1, 0.4))
-        equal = Run(robot=self.robot, gait=self.control.strode(share), label=_EQUAL)
+        equal = Run(robot=self.robot, gait=self.control_group.strode(share), label=_EQUAL)
         record = simulate([*runs, equal], duration=end, progress=staged(progress, "all conditions", 0.4, 0.6))
         record = record.merge(self._repeated(runs, end, staged(progress, "repeats", 0.6, 1.0)))
         record.attrs["equal_stroke"] = share * self._stroke()
@@ -98,8 +98,8 @@ class CrawlStability(TwoGroups):
 
         In strokes of the gait.
         """
-        strokes = np.linspace(1.0, longest_strokes(self.robot, self.control), 10)
-        runs = [Run(robot=self.robot, gait=self.control.strode(float(s))) for s in strokes]
+        strokes = np.linspace(1.0, longest_strokes(self.robot, self.control_group), 10)
+        runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
         tried = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
         reached = displacement(tried).sel(xyz="x").values
         wanted = float(displacement(record).sel(xyz="x")[0])
@@ -107,7 +107,7 @@ class CrawlStability(TwoGroups):
 
     def _stroke(self) -> float:
         """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
-        girdles = zip(self.robot.girdles, self.control.limbs, strict=False)
+        girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
     def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:

@@ -77,7 +77,7 @@ class Displacement(TwoGroups):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Crawl in every condition, repeat with noise, and map what decides."""
         duration = START + self.cycles * self.gait.period
-        gaits = conditions_of(self.robot, self.gait, self.control)
+        gaits = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         record = record.merge(self._repeats(runs, duration, staged(progress, "repeats", 0.1, 0.5)))
@@ -117,9 +117,9 @@ class Displacement(TwoGroups):
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
         strokes, bends, pitches = self._grid()
-        limbs = [self.control.strode(s) for s in strokes]
+        limbs = [self.control_group.strode(s) for s in strokes]
         bent = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
-        pitched = [gait.lifted(p) for gait in (self.gait, self.control) for p in pitches]
+        pitched = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
         lagging = [self.gait.lagged(p) for p in self.phases]
         runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *lagging)]
         reached = _forward(
@@ -213,7 +213,7 @@ class Displacement(TwoGroups):
     def _article(self) -> bool:
         """Whether the article's numbers are for this robot and its gaits."""
         shelf = type(self)()
-        return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control"))
+        return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control_group"))
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:

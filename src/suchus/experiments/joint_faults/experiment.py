@@ -18,7 +18,8 @@ from suchus.design.scale import coarse_step
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
-from suchus.gaits import GAITS, conditions_of
+from suchus.gaits import GAITS, conditions_of, control_group
+from suchus.gaits.limbs_tail_lifted import LIFTED
 from suchus.land import (
     KINDS,
     LEGS_FAILED,
@@ -78,17 +79,17 @@ class JointFaults(Experiment):
         "share_spine_and_tail_bear_better",
     )
     needs = ("limbs",)
-    judged_with = ("robot", "gait", "control", "lifted", "cycles", "hold", "kind", "legs")
+    judged_with = ("robot", "gait", "control_group", "lifted", "cycles", "hold", "kind", "legs")
     judged_from: ClassVar[Mapping[str, float]] = {"variations": 8, "repeats": 4}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose joints fail."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl with spine and tail."""
-    control: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """The crawl of the control group, its tail lying still; its legs follow those of ``gait``."""
-    lifted: Gait = field(default_factory=lambda: GAITS["limbs_tail_lifted"])
-    """The control group with its tail in the air, for comparison; its legs follow those of ``gait``."""
+    control: Gait | None = None
+    """The gait of the control group, which has the same legs; None for the gait with its axis still."""
+    lifted: float = LIFTED
+    """Pitch of the tail of the control group with its tail in the air, for comparison, down positive [rad]."""
     cycles: int = int(CYCLES)
     """Number of cycles that are measured [-]."""
     variations: int = 8
@@ -137,7 +138,9 @@ class JointFaults(Experiment):
             check.number("hold", 0.0, 1.0, "")
             check.rising("holds", 0.0, 1.0, "")
             check.number("timestep", 1e-5, 0.01, "s")
+            check.number("lifted", -1.6, 1.6, "rad")
             check.whole("seed", 0, 2**31)
+        control_group(self.gait, self.control)
 
     def quick(self) -> "JointFaults":
         """One cycle, two variations, one place of locking."""
@@ -246,17 +249,20 @@ class JointFaults(Experiment):
         return self._joints[: _OF_A_LIMB * len(self.robot.girdles)]
 
     @property
+    def control_group(self) -> Gait:
+        """The gait of the control group."""
+        return control_group(self.gait, self.control)
+
+    @property
     def _lifts(self) -> bool:
         """Whether the control group can lift its tail."""
-        return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control)
+        return "limbs_tail_lifted" in conditions_of(self.robot, self.gait, self.control_group)
 
     def _arms(self, gait: Gait) -> dict[str, Gait]:
         """Return the gaits of all conditions with the legs of one gait."""
-        return {
-            "coordinated": gait,
-            "limbs_only": _with_axis(gait, self.control),
-            "limbs_tail_lifted": _with_axis(gait, self.lifted),
-        }
+        limbs_only = _with_axis(gait, self.control_group)
+        lifted = limbs_only.lifted(self.lifted, name="limbs_tail_lifted") if self._lifts else limbs_only
+        return {"coordinated": gait, "limbs_only": limbs_only, "limbs_tail_lifted": lifted}
 
     def _broken(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
