@@ -88,8 +88,11 @@ def largest_step() -> float:
     return STEPS[-1]
 
 
-def bare(timestep: float, runs: int = 32, duration: float = 3.0) -> tuple[Spent, float]:
-    """Let MuJoCo's own rollout do the same crawl with as many threads; return what it took, and the steps."""
+def bare(timestep: float, runs: int = 10, duration: float = DURATION) -> tuple[Spent, float]:
+    """Let MuJoCo's own rollout do the same crawl with as many threads; return what it took, and the steps.
+
+    It is as long as the runs of the study: a robot stands for the first second, in which a step costs less.
+    """
     model = compile_model(ROBOT, timestep)
     record = simulate([Run(robot=ROBOT, gait=GAIT)], duration=duration, timestep=timestep)
     targets = np.repeat(record.servo_target.values[0, :-1], round(0.01 / timestep), axis=0)
