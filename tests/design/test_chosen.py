@@ -49,6 +49,11 @@ def test_an_unknown_field_is_named(path):
         with_values(CAIMAN, {path: 1.0})
 
 
+def test_what_follows_from_other_fields_is_not_set():
+    with pytest.raises(InvalidDesign, match=r"^tables follows from what a Robot was made of, and is not set"):
+        with_values(ROBOTS["strider"], {"tables": None})
+
+
 def test_impossible_values_are_refused():
     with pytest.raises(InvalidDesign, match="snout"):
         with_values(CAIMAN, {"head.snout": 0.03})

@@ -5,14 +5,16 @@ from math import isfinite, sqrt
 
 import numpy as np
 import pytest
-from tests.bodies import hatchling, six
+from tests.bodies import eel, eight, hatchling, six
 
+from suchus import blueprint
+from suchus.cli.entry import main
 from suchus.cli.options import choose
 from suchus.design import NEEDS, lacking, layout
 from suchus.design.scale import coarse_step, control_period
 from suchus.errors import OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS, conditions_of, own_gait, suits
+from suchus.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
 from suchus.robots import ROBOTS
 
 WALKERS = ("caiman", "long_tail", "pleurobot", "salamander", "salamandra", "strider")
@@ -117,6 +119,30 @@ def test_every_robot_has_one_gait_of_its_own_that_it_can_follow(robot):
     assert suits(body, gait)
     made = [name for name in GAITS if robot in GAITS.beside(name, "made_for", ())]
     assert made == ([gait.name] if robot != "six" else [])
+
+
+@pytest.mark.parametrize("body", [eight(), eel()], ids=lambda body: body.name)
+def test_a_robot_that_no_gait_of_the_shelf_suits_gets_one_drafted_and_that_is_said(body, tmp_path, capsys):
+    assert not any(suits(body, gait) for gait in GAITS.values())
+    gait = own_gait(body)
+    assert (gait.name, suits(body, gait)) == (DRAFTED, True)
+    assert gait is own_gait(body)
+    blueprint.write(body, tmp_path / "body.toml")
+    words = ["run", "gait_diagram", "--quick", "--cycles", "2", "--out", str(tmp_path / "out")]
+    if not lacking(body, EXPERIMENTS["gait_diagram"].needs):
+        assert main([*words, "--robot", str(tmp_path / "body.toml")]) == 0
+        assert f"No gait on the shelf suits {body.name}: it moves in one that was drafted" in capsys.readouterr().out
+    main(words)
+    assert "drafted" not in capsys.readouterr().out
+
+
+def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():
+    """The path is taken at the samples nearest to the ends of the cycles, so that one cycle is enough."""
+    body = eight()
+    assert own_gait(body).period % control_period(body) > 1e-4
+    record = shortest("turning", body).simulate().record
+    for name in ("curvature_bend", "curvature_asymmetry", "curvature_mixture"):
+        assert np.isfinite(record[name]).all(), name
 
 
 def test_a_robot_that_no_gait_suits_is_refused_in_a_sentence():

@@ -98,8 +98,8 @@ def test_what_it_says_follows_from_its_measures(changes, said):
 
 
 def test_it_refuses_what_cannot_walk_and_settings_that_ask_nothing():
-    with pytest.raises(UnsuitedRobot, match="needs a robot with limbs; robot 'swimmer' has none"):
-        replace(experiment, robot=ROBOTS["swimmer"], gait=GAITS["undulation"]).simulate()
+    with pytest.raises(UnsuitedRobot, match="needs limbs to walk on; robot 'swimmer' lacks that"):
+        replace(experiment, robot=ROBOTS["swimmer"], gait=GAITS["undulation"]).run()
     with pytest.raises(InvalidDesign, match="swim is 3"):
         replace(experiment, swim=3.0)
     with pytest.raises(InvalidDesign, match="drives is"):

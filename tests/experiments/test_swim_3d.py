@@ -156,7 +156,7 @@ def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
         SwimSetting(axes=3, cells=8, viscosity=1e-3, cycles=1)
     with pytest.raises(OutsideLimits, match="spine_yaw"):
         resolved_swim(
-            ROBOT, replace(MOTION, yaw=(2.0, 0.1, 0.1)), SwimSetting(axes=3, cells=64, viscosity=1e-3, cycles=1)
+            ROBOT, MOTION.with_numbers(trunk_bend=3.0), SwimSetting(axes=3, cells=64, viscosity=1e-3, cycles=1)
         )
 
 

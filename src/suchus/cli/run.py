@@ -22,6 +22,7 @@ from suchus.errors import plain_warnings
 from suchus.experiment import Experiment, Measure, Outcome
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import styled
+from suchus.gaits import DRAFTED
 from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
 from suchus.report import check_place, number, quantity, save_outcome
@@ -89,6 +90,9 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
+    gait, robot = getattr(question, "gait", None), getattr(question, "robot", None)
+    if gait is not None and robot is not None and gait.name == DRAFTED:
+        console.print(escape(f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."))
     console.print(escape(answer(done.outcome.decides)))
     numbers = Table("measure", "value", "range", box=None, padding=(0, 2, 0, 0))
     for row in carried(question, done.outcome.measures):

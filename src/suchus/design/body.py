@@ -28,6 +28,7 @@ from suchus.design.measures import (
 from suchus.design.segment import Segment
 from suchus.design.tables import Tables
 from suchus.errors import UnsuitedRobot
+from suchus.kinds import show
 
 M = TypeVar("M")
 _TRUNK_YAW = "spine_yaw_"
@@ -175,11 +176,11 @@ def bends_trunk(hinge: str) -> bool:
 def _check_names(robot: Robot, check: Checks) -> None:
     check.that(len(robot.axis) > 0, "the axis has no segment; give it one")
     names = [segment.name for segment in robot.axis]
-    check.that(robot.root in names, f"root is {robot.root!r}, no segment of the axis; there is {', '.join(names)}")
+    check.that(robot.root in names, f"root is {show(robot.root)}, no segment of the axis; there is {', '.join(names)}")
     for girdle in robot.girdles:
         check.that(
             girdle.segment in names,
-            f"girdle {girdle.name} sits on {girdle.segment!r}, no segment of the axis; there is {', '.join(names)}",
+            f"girdle {girdle.name} sits on {show(girdle.segment)}, no segment of the axis; there is {', '.join(names)}",
         )
     limbs = [f"{side}{girdle.name}" for girdle in robot.girdles for side in "LR"]
     bodies = [

@@ -9,7 +9,7 @@ from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.meaning import meanings, unit
-from suchus.errors import UnknownName
+from suchus.errors import InvalidDesign, UnknownName
 
 T = TypeVar("T")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")
@@ -89,6 +89,12 @@ def with_values(design: T, values: Mapping[str, Any]) -> T:
     }
     if isinstance(design, tuple):
         return type(design)(changed.get(i, item) for i, item in enumerate(design))
+    derived = [f.name for f in fields(design) if not f.init and f.name in changed]  # type: ignore[arg-type]
+    if derived:
+        raise InvalidDesign(
+            f"{derived[0]} follows from what a {type(design).__name__} was made of, and is not set: change the other "
+            "fields."
+        )
     fitted: Any = replace(design, **{str(step): value for step, value in changed.items()})  # type: ignore[type-var]
     return fitted.with_numbers(**numbers) if numbers else fitted
 

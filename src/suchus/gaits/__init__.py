@@ -1,14 +1,15 @@
 """The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
+from functools import lru_cache
 from operator import attrgetter
 from pathlib import Path
 
 from suchus.catalog import Catalog
 from suchus.design import Robot, layout
-from suchus.errors import OutsideLimits, UnreadableFile, UnsuitedRobot
+from suchus.errors import OutsideLimits, SuchusError, UnreadableFile, UnsuitedRobot
 from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits.limbs_tail_lifted import LIFTED
-from suchus.motion import Gait, divided, form_of, suits
+from suchus.motion import Gait, divided, draft_gait, form_of, suits
 from suchus.record import read_toml
 from suchus.robots import ROBOTS
 
@@ -36,18 +37,23 @@ CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "s
 a tail dragged still; with the trunk and the tail in the air; with a straight trunk and a tail that swings."""
 
 
+DRAFTED = "drafted_gait"
+"""Name of the gait of a robot that none of the shelf suits."""
+
+
 def own_gait(robot: Robot) -> Gait:
-    """Return the gait in which a robot walks unless another one is asked for.
+    """Return the gait in which a robot moves unless another one is asked for.
 
     A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move: of a robot
     that pitches its tail those first that lay it down, of any other robot those that leave it alone. For which robots a
-    gait was made its module says by ``made_for``, and nothing else does.
+    gait was made its module says by ``made_for``, and nothing else does. For a robot that none of them suits one
+    is drafted, ``DRAFTED``: a walk in which every other limb steps, or a wave along a body without limbs.
 
     Args:
         robot: on the shelf or not.
 
     Raises:
-        UnsuitedRobot: no gait of the shelf suits it.
+        UnsuitedRobot: no gait of the shelf suits it, and none can be drafted.
     """
     made = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
     named = [name for name, robots in made.items() if robot.name in robots]
@@ -57,10 +63,19 @@ def own_gait(robot: Robot) -> Gait:
     for name in named + others:
         if suits(robot, GAITS[name]):
             return GAITS[name]
-    limbs = ", ".join(layout(robot).limb_names) or "no limbs"
-    raise UnsuitedRobot(
-        f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}: give one of its own, as a TOML file."
-    )
+    try:
+        return _drafted(robot)
+    except SuchusError as error:
+        limbs = ", ".join(layout(robot).limb_names) or "no limbs"
+        raise UnsuitedRobot(
+            f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}, and none can be drafted: {error} "
+            "Give one of its own, as a TOML file."
+        ) from error
+
+
+@lru_cache(maxsize=64)
+def _drafted(robot: Robot) -> Gait:
+    return draft_gait(robot, DRAFTED)
 
 
 def control_group(gait: Gait, given: Gait | None = None) -> Gait:
@@ -116,4 +131,4 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     return found
 
 
-__all__ = ["ANIMAL_SWIM", "CONDITIONS", "GAITS", "conditions_of", "control_group", "own_gait", "suits"]
+__all__ = ["ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "own_gait", "suits"]

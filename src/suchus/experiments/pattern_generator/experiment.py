@@ -11,9 +11,8 @@ import xarray as xr
 from suchus.capture.angles import STANDING, standing_index
 from suchus.control import Oscillators, PatternGenerator, oscillate
 from suchus.control.pattern_posture import axis_segments
-from suchus.design import Robot, layout
+from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.pattern_generator import one_drive
@@ -44,7 +43,7 @@ class PatternGeneratorExperiment(Experiment):
     title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
     answers = ("frequency_walk", "frequency_swim", "frequency_jump", "lag_walk", "lag_swim", "locked_share")
-    needs = ("axis",)
+    needs = ("limbs", "axis")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
@@ -109,11 +108,6 @@ class PatternGeneratorExperiment(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Sweep the drive, start at random, ramp the drive, and walk."""
-        if not layout(self.robot).limbs:
-            raise UnsuitedRobot(
-                f"experiment {self.name()} asks how walking becomes swimming and needs a robot with limbs; robot "
-                f"{self.robot.name!r} has none: choose another robot, as 'salamander'."
-            )
         parts = [self._sweep(staged(progress, "drive sweep", 0.0, 0.15))]
         parts += [
             self._starts(name, drive, staged(progress, f"random starts, {name}", start, start + 0.15))

@@ -17,7 +17,7 @@ from suchus.figures.gait_diagram import gait_lines
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.metrics import between, heading_change
+from suchus.metrics import heading_change
 from suchus.motion import START, Gait, trunk_amplitude
 from suchus.robots import ROBOTS
 
@@ -163,9 +163,8 @@ class Turning(Experiment):
     def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
         """Return the curvature of each path [1/m]."""
         end = self._end(gait)
-        part = between(record, START + gait.period, end)
-        every = round(gait.period / float(part.time[1] - part.time[0]))
-        points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
+        cycles = START + gait.period * np.arange(1, self.cycles + 2)
+        points = record.centre_of_mass.sel(xyz=["x", "y"]).sel(time=cycles, method="nearest")
         length = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
         return np.asarray(heading_change(record, START + gait.period, end) / length)
 
