@@ -72,7 +72,7 @@ class Swim3d(Experiment):
         "speed_resistive_real_water",
         "speed_reactive_real_water",
     )
-    needs = ("axis",)
+    needs = ("trunk", "tail_yaw")
     reproduces: ClassVar[bool] = False
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

@@ -82,7 +82,7 @@ class PlaneSwims(Experiment):
     title = "How does it swim?"
     shows = "Section IV.B, eq. (20), Fig. 17"
     answers = ("speed_free", "speed_trunk_only", "speed_tail_only", "speed_as_printed", "power_held", "misfit")
-    needs = ("axis",)
+    needs = ("trunk", "tail_yaw")
     judged_with = ("robot", "reading", "frequency", "reynolds")
     judged_from: ClassVar[Mapping[str, float]] = {
         "cells": 128, "coarse_cells": 80, "cycles": 4, "free_cycles": 8, "arm_cycles": 6,

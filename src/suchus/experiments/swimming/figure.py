@@ -1,5 +1,6 @@
 """Swimming: the fields around the tethered body, forces over a cycle, the free swim, and its films."""
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,6 +23,9 @@ from suchus.flow import ALONG_THE_SKIN
 _QUARTERS = ("T/4", "T/2", "3T/4", "T")
 _FILM_DPI = 68
 _FILM_SECONDS = 2.4
+
+_MOST_SERVOS = 6
+"""Servos whose loads are drawn at most [-]."""
 
 
 def draw_quarters(record: xr.Dataset) -> Figure:
@@ -118,10 +122,11 @@ def draw_forces(record: xr.Dataset) -> Figure:
         for limit in (-1.0, 1.0):
             named = "limit" if limit > 0 else None
             ax.axhline(limit, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)), label=named)
-        labels = ("yaw 1, at the pelvis", "yaw 2", "yaw 3, at the neck", "the tail's cable")
-        for label, servo in zip(labels, record.held_servo.values, strict=True):
-            share = record.held_servo_torque.sel(held_servo=servo) / record.servo_limit.sel(held_servo=servo)
-            ax.plot(record.held_phase, share, label=label)
+        shares = record.held_servo_torque / record.servo_limit
+        greatest = abs(shares).max("held_phase")
+        shown = greatest.held_servo.values[np.sort(np.argsort(-greatest.values)[:_MOST_SERVOS])]
+        for servo in shown:
+            ax.plot(record.held_phase, shares.sel(held_servo=servo), label=str(servo).replace("_", " "))
         ax.set_ylabel("torque of the water over servo limit [-]")
         for ax in axes[0]:
             ax.set_xlabel("phase of the last cycle [cycle]")
@@ -133,9 +138,14 @@ def draw_forces(record: xr.Dataset) -> Figure:
         "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
         "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
         "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
-        f"a flow that cannot pass over and under the body overstates it. On the right: {ALONG_THE_SKIN[0].lower()}"
-        f"{ALONG_THE_SKIN[1:]}",
+        f"a flow that cannot pass over and under the body overstates it{_of_most(record)}. On the right: "
+        f"{ALONG_THE_SKIN[0].lower()}{ALONG_THE_SKIN[1:]}",
     )
+
+
+def _of_most(record: xr.Dataset) -> str:
+    """Return which servos are drawn, where not all are."""
+    return f"; shown are the {_MOST_SERVOS} with the most load" if record.sizes["held_servo"] > _MOST_SERVOS else ""
 
 
 def draw_free(record: xr.Dataset) -> Figure:
