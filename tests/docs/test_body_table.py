@@ -30,7 +30,8 @@ def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
     for row, cells in FOUND.items():
         for name, told in cells.items():
             if row in EXPERIMENTS and told:
-                assert repr(name) in told
+                too_coarse = "cells are needed. Take cells of at most" in told
+                assert repr(name) in told or too_coarse
 
 
 def test_a_cell_tells_answers_refusals_and_failures_apart():
