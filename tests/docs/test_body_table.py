@@ -1,6 +1,7 @@
 """The table of experiments and bodies says what the command line says: an answer, or a sentence and exit code 2."""
 
 import json
+import re
 
 import pytest
 
@@ -30,8 +31,7 @@ def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
     for row, cells in FOUND.items():
         for name, told in cells.items():
             if row in EXPERIMENTS and told:
-                too_coarse = "cells are needed. Take cells of at most" in told
-                assert repr(name) in told or too_coarse
+                assert re.search(rf"\b{name}\b", told)
 
 
 def test_a_cell_tells_answers_refusals_and_failures_apart():

@@ -91,7 +91,7 @@ class TetheredSlice:
                 "place": ("phase", np.interp(phase, seen, steps["place"]), {"units": "1"}),
                 "sides": (("instant", "side", "tail"), quarters["sides"], {"units": "Pa"}),
                 "noise": ((), _noise(series, self._period), {"units": "1"}),
-                "thin": ((), sim.thin["body"], {"units": "1"}),
+                "thin": ((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
             },
             coords={
                 "phase": phase,
@@ -185,7 +185,7 @@ class FreeSlice:
                 "centre_y": ("moment", centre[1], {"units": "m", "long_name": "centre of mass, to the right"}),
                 "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
-                "thin": ((), sim.thin["body"], {"units": "1"}),
+                "thin": ((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
             }
         )
         if self._frames == 0:

@@ -54,7 +54,7 @@ class FreeInSpace:
             head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
             weight=((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
             wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
-            thin=((), sim.thin["body"], {"units": "1"}),
+            thin=((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
             steps=((), float(len(last.time)), {"units": "1", "long_name": "in the last cycle"}),
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
             joint_place=("joint", outline.places, {"units": "m"}),

@@ -77,16 +77,17 @@ class ResolvedSwim:
     @cached_property
     def setup(self) -> flow.Setup:
         """What is simulated: the body, snout at the origin, in its box of water."""
-        length, free = self.robot.length, not self.setting.tethered
+        length, name, free = self.robot.length, self.robot.name, not self.setting.tethered
         shape = body_shape(
             self.outline, self.motion, self.setting, sway=self.sway, turn=self.turn, grow=GROWS / self.motion.frequency
         )
         start = (0.5 * length, 0.0, 0.0) if self.setting.in_space else (0.5 * length, 0.0)
-        body = flow.FreeBody(shape=shape, start=start, free=self.setting.free) if free else flow.Body(shape=shape)
+        held = flow.Body(shape=shape, name=name)
+        body = flow.FreeBody(shape=shape, name=name, start=start, free=self.setting.free) if free else held
         swing = float(np.abs(cycle(self.outline, self.motion, *self.head).y).max()) if self.setting.in_space else 0.0
         return flow.Setup(
             grid=box_grid(self.outline, self.setting, swing), viscosity=self.setting.viscosity, density=DENSITY,
-            bodies=(body,), follow="body" if free else None, sides=box_sides(self.setting),
+            bodies=(body,), follow=name if free else None, sides=box_sides(self.setting),
             tolerance=self.setting.largest_divergence(),
         )  # fmt: skip
 
