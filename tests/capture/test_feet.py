@@ -5,7 +5,7 @@ import pytest
 
 from suchus.capture import film_animal
 from suchus.capture.feet import GRID, FootContact, contact, grid, path_shape, sweep
-from suchus.motion.movement import foot_path
+from suchus.motion.limbs import foot_path
 
 
 @pytest.mark.parametrize("duty", [0.4, 0.5, 0.7])

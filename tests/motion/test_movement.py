@@ -34,7 +34,7 @@ from suchus.motion import (
     trunk_amplitude,
 )
 from suchus.motion.axis import yaw_hinges
-from suchus.motion.movement import foot_path
+from suchus.motion.limbs import foot_path
 from suchus.robots import ROBOTS
 
 LEGS = ("LF", "RF", "LH", "RH")

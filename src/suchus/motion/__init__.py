@@ -2,7 +2,8 @@
 
 from suchus.motion.draft import draft_gait
 from suchus.motion.forms import AxialWave, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches, roll
-from suchus.motion.gait import NUMBERS, Bend, Curve, FootPath, Gait, Held, Sweep
+from suchus.motion.gait import NUMBERS, Gait
+from suchus.motion.limbs import Steer, hip_height
 from suchus.motion.limits import (
     as_table,
     check_limits,
@@ -20,9 +21,7 @@ from suchus.motion.movement import (
     Batch,
     Intended,
     Movement,
-    Steer,
     cycle_targets,
-    hip_height,
     intended,
     limb_movement,
     limb_targets,
@@ -30,6 +29,7 @@ from suchus.motion.movement import (
     movement,
     trunk_amplitude,
 )
+from suchus.motion.parts import Bend, Curve, FootPath, Held, Sweep
 from suchus.motion.posture import Keyed, Planned, Posture, plan
 from suchus.motion.rising import stand_up, stretched, tallest
 from suchus.motion.swim import LIMBS_BACK, LIMBS_UP, held, lateral_servos, limbs_back, still, swimming_gait, with_limbs

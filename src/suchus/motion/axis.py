@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from suchus.design import Robot, layout
-from suchus.motion.gait import Bend, Gait, Part
+from suchus.motion.gait import Gait
+from suchus.motion.parts import Bend, Part
 
 
 class Hinges(NamedTuple):

@@ -14,9 +14,10 @@ from suchus.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.kinematics import limb as limb_kinematics
 from suchus.motion.axis import yaw_hinges
 from suchus.motion.draft_table import is_upright, table_walk
-from suchus.motion.gait import Bend, FootPath, Gait, Sweep
+from suchus.motion.gait import Gait
+from suchus.motion.limbs import foot_path
 from suchus.motion.limits import check_limits, shortest_period
-from suchus.motion.movement import foot_path
+from suchus.motion.parts import Bend, FootPath, Sweep
 
 _STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
 _HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits

@@ -14,8 +14,9 @@ from scipy.optimize import least_squares
 from suchus.design import Crank, Girdle, Limb, Robot, layout
 from suchus.errors import OutsideLimits
 from suchus.kinematics import limb as limb_kinematics
-from suchus.motion.gait import Bend, Curve, Gait
+from suchus.motion.gait import Gait
 from suchus.motion.limits import servo_parts, suits
+from suchus.motion.parts import Bend, Curve
 
 _STROKES = (0.25, 0.18, 0.12, 0.08)  # of the limb's reach, the longest that all girdles can take is taken
 _DEPTHS = (0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.2, 0.9)  # of the hindmost limbs' reach, the first that fits

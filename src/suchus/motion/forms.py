@@ -16,8 +16,9 @@ from suchus.design import LEGS, Robot, check_needs
 from suchus.design.checks import Checks
 from suchus.errors import OutsideLimits
 from suchus.motion.axis import Waves, yaw_hinges
-from suchus.motion.gait import Bend, FootPath, Gait, Held, Limbs, Sweep
+from suchus.motion.gait import Gait
 from suchus.motion.limits import check_limits, check_speeds
+from suchus.motion.parts import Bend, FootPath, Held, Limbs, Sweep
 from suchus.motion.swim import held
 
 DIAGONAL = (0.0, 0.5, 0.5, 0.0)

@@ -7,8 +7,9 @@ import numpy as np
 from suchus.design import Robot, layout, servo_ranges
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
 from suchus.motion.axis import at_knot, yaw_hinges
-from suchus.motion.gait import MOST_ANGLES, Bend, Curve, Gait, Part, ServoPart
+from suchus.motion.gait import Gait
 from suchus.motion.movement import Movement, cycle_targets, movement
+from suchus.motion.parts import MOST_ANGLES, Bend, Curve, Part, ServoPart
 
 SAMPLES = 128
 """Looks over a cycle [-]."""

@@ -10,7 +10,8 @@ from suchus.design import Limb, Robot, layout
 from suchus.design.checks import require
 from suchus.errors import InvalidDesign
 from suchus.motion.axis import yaw_hinges
-from suchus.motion.gait import Bend, Gait, Held, Part
+from suchus.motion.gait import Gait
+from suchus.motion.parts import Bend, Held, Part
 
 LIMBS_BACK = (-np.pi / 2, -0.15)
 """Yaw, forward positive, and pitch, down positive, of limbs that lie back along the body as it swims [rad]."""

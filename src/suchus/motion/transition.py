@@ -10,7 +10,8 @@ from jaxtyping import Float
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import gravity_time
 from suchus.motion.gait import Gait
-from suchus.motion.movement import Steer, movement
+from suchus.motion.limbs import Steer
+from suchus.motion.movement import movement
 from suchus.paper import LIMB_REACH
 
 MEETING = 0.090 / LIMB_REACH
