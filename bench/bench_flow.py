@@ -15,21 +15,23 @@ import numba
 import numpy as np
 
 from suchus import flow
-from suchus.experiments.swim_3d import Swim3d
-from suchus.flow import border, log, midline, multigrid, openwater, patch, poisson, simulation, water
+from suchus.experiments import EXPERIMENTS
+from suchus.flow import border, farfield, log, midline, multigrid, patch, poisson, simulation, water
 from suchus.flow.compiled import compiled, threaded
 from suchus.flow.slab import inner_strides
-from suchus.water import Basin, fit, printed_wave, space
+from suchus.water import fit, printed_wave
+from suchus.water.setting import SwimSetting
+from suchus.water.swim_setup import ResolvedSwim
 
 PIECES = (
     (water, "advance immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
-    (water.Water, "step place _measure _clear"),
+    (water.Fluid, "step place _measure _clear"),
     (poisson, "solve"),
     (multigrid, "coarsen spread"),
     (midline, "paint sections"),
     (midline.Midline, "markers"),
-    (openwater, "gather induce"),
-    (border.Border, "prepare settle fill"),
+    (farfield, "gather induce"),
+    (border.Border, "prepare update_induced fill"),
     (log.Log, "reactions"),
     (simulation, "sample"),
     (simulation.Simulation, "advance _note"),
@@ -232,11 +234,12 @@ def main():
 
 def tell_swim(cells, far):
     """Print what a cycle of the robot's free swim in space takes on each number of threads in ``far`` [s]."""
-    swim, found = Swim3d(), {}
-    motion = fit(swim.robot, printed_wave(swim.robot, swim.reading, frequency=1.0, sign=-1)).gait
-    basin = Basin(cells=cells, viscosity=swim.robot.length**2 / swim.reynolds, cycles=2)
+    question, found = EXPERIMENTS["swim_3d"], {}
+    setting = SwimSetting(axes=3, cells=cells, viscosity=question.viscosity, cycles=2)
+    wave = printed_wave(question.robot, question.reading, frequency=question.frequency, sign=-1)
+    swim = ResolvedSwim(robot=question.robot, motion=fit(question.robot, wave).gait, setting=setting)
     for threads in far:
-        sim = flow.Simulation(space.setup_of(swim.robot, motion, basin), thread_count=threads)
+        sim = flow.Simulation(swim.setup, thread_count=threads)
         sim.run(0.2, progress=False)
         before, start = sim.record.time.size, perf_counter()
         sim.run(1.2, progress=False)

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import runpy
 import subprocess
 import sys
 from importlib import import_module
@@ -11,6 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
+BENCHES = sorted((ROOT / "bench").glob("bench_*.py"))
 LONG = ("02", "03", "05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18")
 """Flows, searches, studies and replays, and walks of 3 s and more of processor time in a process of their own."""
 
@@ -32,6 +34,21 @@ def test_example_runs(example, tmp_path):
 
 def test_examples_are_numbered_without_gaps():
     assert [path.name[:2] for path in EXAMPLES] == [f"{i + 1:02d}" for i in range(len(EXAMPLES))]
+
+
+@pytest.mark.parametrize("bench", BENCHES, ids=lambda bench: bench.stem)
+def test_bench_finds_what_it_times(bench):
+    found = runpy.run_path(str(bench), run_name=bench.stem)
+    assert callable(found["main"])
+    for place, names in found.get("PIECES", ()):
+        assert [name for name in names.split() if not hasattr(place, name)] == [], place
+
+
+@pytest.mark.slow("a swim in space")
+def test_bench_of_the_flow_times_the_swim_of_the_robot():
+    found = runpy.run_path(str(ROOT / "bench" / "bench_flow.py"), run_name="bench_flow")["tell_swim"](60, {1: 10.0})
+    assert found["swim_60_1"] > 0.0
+    assert found["swim_60_steps"] > 10
 
 
 def readme() -> list[str]:
