@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from suchus.design import GRAVITY, joint_names, layout, leg_joints, servo_names, spine_joints
+from suchus.design.physics import WATER_DENSITY
+from suchus.design.pieces import masses, volumes
 from suchus.design.scale import gravity_time, physics_step
 from suchus.gaits import own_gait, suits
 from suchus.model import build, compile_model, joint_addresses, sensor_names
@@ -169,3 +171,8 @@ def test_joint_addresses_follow_names_not_order(robot):
     assert [float(data.joint(name).qpos[0]) for name in names] == list(range(len(names)))
     assert len(leg_joints()) == 12
     assert len(spine_joints()) == 5
+
+
+def test_the_swimmer_floats_with_a_twentieth_of_its_volume_above_the_water():
+    robot = ROBOTS["swimmer"]
+    assert sum(masses(robot).values()) == pytest.approx(0.95 * WATER_DENSITY * sum(volumes(robot).values()), rel=1e-12)

@@ -65,7 +65,7 @@ robot = Robot(
 
 _OWN = (
     Reason(r"\.radius$", 0.7, 1.3, "round segments of about the published height and width"),
-    Reason(r"\.mass$", 0.7, 1.4, "neutrally buoyant as a whole: 2 kg for the published outline; legs of 30 g"),
+    Reason(r"\.mass$", 0.7, 1.4, "2 kg as a whole for the published outline; legs of 30 g"),
     Reason(r"^axis.*\.(start|end)\[0\]$", 0.8, 1.2, "a rod as long as its segment, its round ends in the joints"),
 )
 _PUBLISHED = (
