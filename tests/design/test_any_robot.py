@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import Cable, Hinge, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
+from suchus.design import Cable, Hinge, Inertia, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
 from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -234,3 +234,36 @@ def test_ranges_of_cranks_are_endless():
     cranks = [i for i, name in enumerate(servo_names(ROBOTS["salamandra"])) if name.endswith("crank")]
     assert np.isinf(ranges[cranks]).all()
     assert np.isfinite(np.delete(ranges, cranks, axis=0)).all()
+
+
+TENSOR = Inertia(centre=(0.001, 0.0005, -0.0003), moments=(3e-7, 5e-7, 6e-7), products=(1e-8, -2e-8, 3e-8))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"moments": (1.0, 1.0, 2.1)}, "which no body has: each must be positive and at most the sum of the other two"),
+        ({"products": (0.0, 6e-7, 0.0)}, "which no body has"),
+        ({"moments": (-1e-7, 5e-7, 6e-7)}, r"moments\[0\] is -1e-07 kg m2"),
+        ({"centre": (0.0, float("nan"), 0.0)}, r"centre\[1\] is nan m"),
+        ({"moments": (1.0, 1.0)}, "xx, yy, zz need one each"),
+    ],
+)
+def test_an_inertia_that_no_body_has_is_refused(wrong, told):
+    with pytest.raises(InvalidDesign, match=told):
+        replace(TENSOR, **wrong)
+    assert replace(TENSOR, moments=(1.0, 1.0, 2.0)).tensor[2, 2] == 2.0  # a flat disc is a body
+
+
+def test_an_inertia_of_a_link_is_mirrored_on_the_right_and_scales_with_mass_and_length():
+    first, *others = SALAMANDER.girdles[0].limb.links
+    limb = replace(SALAMANDER.girdles[0].limb, links=(replace(first, inertia=TENSOR), *others))
+    robot = with_girdle(SALAMANDER, 0, limb=limb)
+    left, right = (body.inertia for body in layout(robot).bodies if body.inertia is not None)
+    assert left == TENSOR
+    flip = np.diag([1.0, -1.0, 1.0])
+    np.testing.assert_array_equal(right.tensor, flip @ TENSOR.tensor @ flip)
+    assert right.centre == (0.001, -0.0005, -0.0003)
+    double = scaled(robot, length_factor=2.0).girdles[0].limb.links[0].inertia
+    np.testing.assert_allclose(double.tensor, 32 * TENSOR.tensor)
+    assert double.centre == (0.002, 0.001, -0.0006)

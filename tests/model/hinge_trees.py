@@ -4,10 +4,14 @@ FOOT = 0.02
 QUADRUPED = {"FL": (1, 1), "FR": (1, -1), "RL": (-1, 1), "RR": (-1, -1)}
 
 
+GYRATION = 0.04  # m; as if the mass of a link lay so far from its centre
+
+
 def link(name, mass=0.1, shape="", at="0 0 0"):
+    moment = GYRATION**2 * mass if isinstance(mass, float) else 0.01
     inertial = (
         f'<inertial><origin xyz="{at}"/><mass value="{mass}"/>'
-        '<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>'
+        f'<inertia ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"/></inertial>'
     )
     return f'<link name="{name}">{inertial if mass else ""}{shape}</link>'
 

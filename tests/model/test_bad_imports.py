@@ -62,7 +62,19 @@ BAD = {
     "closed": (mjcf(beside='<equality><connect body1="a" body2="b" anchor="0 0 0"/></equality>'), "closes a loop"),
     "missing link": (urdf(link("a"), ARM), "names link 'b', which is not there"),
     "two roots": (urdf(link("a"), link("b"), link("c"), ARM), "2 links hang on no joint"),
-    "meshes only": (urdf(link("a", 0, MESH), link("b", 0, MESH), ARM), "no <inertial> and no shape that is read"),
+    "meshes only": (
+        urdf(link("a", 0, MESH), link("b", 0, MESH), ARM),
+        "the shape of link a and of 1 more is a mesh that was not read: package://it/meshes/x.dae is in none of the",
+    ),
+    "no masses": (urdf(link("a", 0), link("b", 0), ARM), "no <inertial> and no shape that is read"),
+    "lost mesh": (mjcf().replace('<geom size="0.02"/>', '<geom type="mesh" mesh="it"/>').replace(
+        "<worldbody>", '<asset><mesh name="it" file="it.stl"/></asset><worldbody>'
+    ), "the shape of body a and of 1 more is a mesh that was not read: there is no file it.stl"),
+    "floats on": (
+        urdf(link("r"), link("a"), link("b"), joint("ra", "r", "a", (0, 0, 0), "0 0 1"),
+             ARM.replace("revolute", "floating")),
+        "A floating joint may carry the whole robot, and nothing else",
+    ),
     "feather": (urdf(link("a", 1e-8, BALL), link("b", 1e-8, BALL), ARM), "1e-06 to 100000 kg is allowed"),
     "mountain": (urdf(link("a", 1e9, BALL), link("b", 1.0, BALL), ARM), "1e-06 to 100000 kg is allowed"),
     "negative": (urdf(link("a", -1.0, BALL), link("b", 1.0, BALL), ARM), "<mass value='-1.0'> is not allowed"),

@@ -1,19 +1,22 @@
 """A tree of hinges from another tool becomes a robot: exact where the file says it, told where it does not."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 from hinge_trees import FOOT, QUADRUPED, joint, link, pendulum, quadruped, shape, skewed, urdf
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import suchus
 from suchus import blueprint
-from suchus.design import Crank, Robot, Servo, Spring, layout
+from suchus.design import Crank, Inertia, Robot, Servo, Spring, layout
 from suchus.design.scale import coarse_step
+from suchus.design.segment import together
 from suchus.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.gaits import GAITS
 from suchus.kinematics import limb as limb_kinematics
@@ -25,6 +28,7 @@ from suchus.motion import check_limits, cycle_targets, draft_gait
 from suchus.robots import ROBOTS
 
 PLACES = 1e-9  # m
+BOX = shape('<box size="1 1 0.1"/>')
 
 
 def read(text, tmp_path, name="it", **words):
@@ -337,9 +341,178 @@ def test_meshes_in_the_folder_give_shapes_and_others_are_told(tmp_path):
     box = '<box size="0.4 0.18 0.12"/>'
     inside = read(quadruped().replace(box, '<mesh filename="box.obj"/>'), tmp_path)
     assert inside.robot.axis[0].shapes[0].half == pytest.approx((0.2, 0.05, 0.04), abs=1e-6)
-    outside = read(quadruped().replace(box, '<mesh filename="../box.obj"/>'), tmp_path)
+    named = quadruped().replace(box, '<mesh filename="../box.obj"/>')
+    with pytest.raises(UnreadableFile, match=r"the shape of link base is a mesh that was not read: .*lies outside"):
+        read(named, tmp_path)
+    outside = read(named, tmp_path, without_meshes=True)
     assert "1 meshes were not read" in told(outside)
     assert "base has no shape that is read" in told(outside)
+
+
+def test_meshes_of_packages_are_read_from_the_folders_that_are_named(tmp_path):
+    mesh = tmp_path / "ros" / "dog" / "meshes" / "trunk.ply"
+    mesh.parent.mkdir(parents=True)
+    trimesh.creation.box((0.4, 0.1, 0.08)).export(mesh)
+    (tmp_path / "urdf").mkdir()
+    named = '<mesh filename="package://dog/meshes/trunk.ply"/>'
+    text = quadruped().replace('<box size="0.4 0.18 0.12"/>', named)
+    for folder in (tmp_path / "ros", tmp_path / "ros" / "dog"):
+        trunk = read(text, tmp_path / "urdf", packages=(folder,)).robot.axis[0].shapes[0]
+        assert trunk.half == pytest.approx((0.2, 0.05, 0.04), abs=1e-6)
+    for folders in ((), (tmp_path,)):
+        with pytest.raises(UnreadableFile, match=r"is in none of the folders of packages. Say --packages FOLDER"):
+            read(text, tmp_path / "urdf", packages=folders)
+    with pytest.raises(UnreadableFile, match="is in none"):  # a name that leads out of the package's folder
+        read(text.replace("dog/meshes", "../ros/dog/meshes"), tmp_path / "urdf", packages=(mesh.parent,))
+    mesh.write_text("ply\nno mesh\n")
+    with pytest.raises(UnreadableFile, match=r"trunk\.ply is no mesh"):
+        read(text, tmp_path / "urdf", packages=(tmp_path / "ros",))
+
+
+def stiff(model, root):
+    """Return mass [kg], centre of mass [m] and tensor of inertia about it [kg m2] of a body and what is fixed to it.
+
+    Places are those of the world at zero posture, from the origin of the body.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    those = [root]
+    for body in range(root + 1, model.nbody):
+        if model.body_parentid[body] in those and model.body_jntnum[body] == 0:
+            those.append(body)
+    turns = data.ximat.reshape(-1, 3, 3)
+    return together(
+        [
+            (
+                model.body_mass[i],
+                data.xipos[i] - data.xpos[root],
+                turns[i] @ np.diag(model.body_inertia[i]) @ turns[i].T,
+            )
+            for i in those
+        ]
+    )
+
+
+def test_our_own_exports_come_back_with_mass_centre_and_inertia_of_every_body(shelf):
+    robot, draft, _ = shelf
+    here, there = compile_model(draft.robot), compile_model(robot)
+    for hinge in layout(robot).hinges:
+        ours, theirs = (stiff(model, int(model.joint(hinge).bodyid[0])) for model in (here, there))
+        assert ours[0] == pytest.approx(theirs[0], rel=1e-9)
+        np.testing.assert_allclose(ours[1], theirs[1], atol=1e-9 * robot.length)
+        np.testing.assert_allclose(ours[2], theirs[2], atol=1e-8 * np.abs(theirs[2]).max())
+    # the root's origin lies elsewhere: its centre is compared with the first hinge, which stays in its place
+    (mass, centre, about), (other, place, around) = (stiff(model, 1) for model in (here, there))
+    assert mass == pytest.approx(other, rel=1e-9)
+    np.testing.assert_allclose(about, around, atol=1e-8 * np.abs(around).max())
+    hinge = layout(robot).hinges[0]
+    np.testing.assert_allclose(
+        from_root(here, hinge) - centre, from_root(there, hinge) - place, atol=1e-9 * robot.length
+    )
+
+
+def from_root(model, hinge):
+    """Return where a hinge is from the origin of the root at zero posture [m]."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return data.joint(hinge).xanchor - data.xpos[1]
+
+
+L_PRISM = ((0.0, 0.0), (0.3, 0.0), (0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.0, 0.3))
+
+
+def l_prism():
+    """Return an L of two bars of 0.1 m, 0.3 m long, 0.1 m high, as a mesh."""
+    corners = [(x, y, z) for z in (0.0, 0.1) for x, y in L_PRISM]
+    floor = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)]
+    sides = [face for i in range(6) for k in [(i + 1) % 6] for face in ((i, k, k + 6), (i, k + 6, i + 6))]
+    faces = [(a, c, b) for a, b, c in floor] + [(a + 6, b + 6, c + 6) for a, b, c in floor] + sides
+    return trimesh.Trimesh(corners, faces)
+
+
+def box_about(mass, x, y, z, off):
+    """Return the tensor of a box about a point that lies ``off`` its centre [kg m2]."""
+    own = mass / 12 * np.diag([y * y + z * z, x * x + z * z, x * x + y * y])
+    return own + mass * (np.dot(off, off) * np.eye(3) - np.outer(off, off))
+
+
+SOLIDS = {
+    "box": ('<box size="0.4 0.18 0.12"/>', 8.64, np.zeros(3), box_about(8.64, 0.4, 0.18, 0.12, np.zeros(3))),
+    "cylinder": (
+        '<cylinder radius="0.1" length="0.3"/>', 1000 * np.pi * 0.003, np.zeros(3),
+        1000 * np.pi * 0.003 * np.diag([0.0025 + 0.0075, 0.0025 + 0.0075, 0.005]),
+    ),
+    "mesh": (
+        '<mesh filename="l.stl"/>', 5.0, np.array([0.11, 0.11, 0.05]),
+        box_about(3.0, 0.3, 0.1, 0.1, np.array([0.04, -0.06, 0.0]))
+        + box_about(2.0, 0.1, 0.2, 0.1, np.array([-0.06, 0.09, 0.0])),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", SOLIDS)
+def test_a_solid_without_inertial_has_the_inertia_of_its_shape_at_the_density_of_water(kind, tmp_path):
+    geometry, mass, centre, about = SOLIDS[kind]
+    l_prism().export(tmp_path / "l.stl")
+    text = quadruped().replace('<box size="0.4 0.18 0.12"/>', geometry)
+    whole = re.search(r'<link name="base">(<inertial>.*?</inertial>)', text)[1]
+    robot = read(text.replace(whole, "", 1), tmp_path).robot
+    trunk = robot.axis[0]
+    single = 1e-6 if kind == "mesh" else 1e-12  # MuJoCo keeps meshes in single precision
+    assert sum(shape.mass for shape in trunk.shapes) == pytest.approx(mass, rel=single)
+    hips = robot.girdles[0].at - 0.19, 0.0, 0.0  # of the file's origin in the frame of the segment
+    np.testing.assert_allclose(np.subtract(trunk.inertia.centre, hips), centre, atol=single)
+    np.testing.assert_allclose(trunk.inertia.tensor, about, rtol=single, atol=single * about.max())
+    assert stiff(compile_model(robot), 1)[2] == pytest.approx(trunk.inertia.tensor, rel=1e-9, abs=1e-12)
+
+
+def test_what_a_file_says_of_inertia_is_kept_and_comes_out_of_the_export_again(tmp_path):
+    text = quadruped()
+    stated = '<inertia ixx="0.02" iyy="0.09" izz="0.1" ixy="0.003" ixz="-0.002" iyz="0.001"/>'
+    whole = re.search(r'<link name="base"><inertial>.*?(<inertia [^>]*>)', text)[1]
+    robot = read(text.replace(whole, stated, 1).replace('xyz="0 0 0"', 'xyz="0.03 0 0.01"', 1), tmp_path).robot
+    inertia = robot.axis[0].inertia
+    np.testing.assert_allclose(
+        [*inertia.moments, *inertia.products], [0.02, 0.09, 0.1, 0.003, -0.002, 0.001], atol=1e-12
+    )
+    file = blueprint.write(robot, tmp_path / "it.toml")
+    assert blueprint.read(file, Robot, ROBOTS) == robot
+    gait = draft_gait(robot, "walk")
+    for kind, name in (("mjcf", "scene.xml"), ("urdf", "it.urdf")):
+        folder = export(robot, gait, tmp_path / kind, kind)
+        again = import_robot(folder / name, name="it").robot.axis[0].inertia
+        np.testing.assert_allclose(again.tensor, inertia.tensor, atol=1e-12)
+        np.testing.assert_allclose(again.centre, inertia.centre, atol=1e-12)
+
+
+def test_foam_adds_its_mass_to_a_stated_inertia_as_it_does_to_shapes():
+    robot = ROBOTS["floating_caiman"]
+    plain, bare = compile_model(robot), compile_model(replace(robot, hull=None))
+    root = robot.root_place
+    _, centre, about = stiff(bare, 1)
+    own = Inertia(centre=tuple(centre), moments=tuple(np.diag(about)), products=tuple(about[[0, 0, 1], [1, 2, 2]]))
+    axis = tuple(replace(one, inertia=own) if i == root else one for i, one in enumerate(robot.axis))
+    stated = compile_model(replace(robot, axis=axis))
+    assert plain.body_mass[1] > bare.body_mass[1]
+    for one, two in zip(stiff(stated, 1), stiff(plain, 1), strict=True):
+        np.testing.assert_allclose(one, two, rtol=1e-9, atol=1e-15)
+
+
+def test_an_inertia_that_no_body_has_is_mended_and_said(tmp_path):
+    text = re.sub(r'(<link name="base"><inertial>.*?)ixx="[^"]*"', r'\1ixx="0.2"', quadruped(), count=1)
+    draft = read(text, tmp_path)
+    assert "The inertia of base is none that a body can have" in told(draft)
+    assert np.ptp(draft.robot.axis[0].inertia.moments) < 1e-12
+
+
+def test_a_floating_joint_that_carries_the_robot_is_the_freedom_that_it_has_anyway(tmp_path):
+    world = link("world", 0) + joint("afloat", "world", "base", (0.0, 0.0, 0.3), "0 0 1", kind="floating")
+    free = read(quadruped().replace("</robot>", world + "</robot>"), tmp_path)
+    assert replace(free.robot, name="it") == read(quadruped(), tmp_path).robot
+    table = link("table", 9.0, BOX) + joint("stand", "world", "table", (0.0, 0.0, -1.0), "0 0 1", kind="fixed")
+    beside = read(quadruped().replace("</robot>", world + table + "</robot>"), tmp_path)
+    assert beside.robot == free.robot
+    assert "Beside the robot the file holds table" in told(beside)
 
 
 def test_a_file_of_nothing_but_what_stands_is_refused(tmp_path):

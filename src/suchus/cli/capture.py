@@ -25,6 +25,7 @@ from suchus.capture import (
 )
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
+from suchus.cli.run import run_it
 from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
 from suchus.figures import captioned, save
@@ -33,8 +34,6 @@ from suchus.gaits import own_gait
 from suchus.motion import Gait, check_limits
 from suchus.record import check_writable
 from suchus.robots import ROBOTS
-
-_SHELF = "caiman"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +86,7 @@ def capture(words: Sequence[str]) -> int:
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)
     if is_angle_table(options.tracks):
-        return _play(options)
+        return _play(options, _asked(words))
     robot = options.robot
     check_needs(robot, NEEDED, "a gait from tracked keypoints")
     base = options.base or own_gait(robot)
@@ -103,13 +102,22 @@ def capture(words: Sequence[str]) -> int:
         captured = to_gait(walk, robot, base, name=name, duty=options.duty, girdles=options.girdles)
         write_gait(captured, walk, options.out)
         picture = _draw(walk, options.out)
-    who = "" if robot.name == _SHELF else f"--robot {robot.name} "
     print(*summary(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
-    print(f"gait: {options.out}\ndiagram: {picture}\nrun it: suchus run displacement {who}--gait {options.out}")
+    print(f"gait: {options.out}", f"diagram: {picture}", *run_it(robot, _asked(words), options.out), sep="\n")
     return 0
 
 
-def _play(options: CaptureOptions) -> int:
+def _asked(words: Sequence[str]) -> str:
+    """Return the robot as the user asked for it, a name or a file; empty where nothing was asked for."""
+    for word, following in zip(words, [*words[1:], ""], strict=True):
+        if word == "--robot":
+            return following
+        if word.startswith("--robot="):
+            return word.removeprefix("--robot=")
+    return ""
+
+
+def _play(options: CaptureOptions, asked: str) -> int:
     """Write the gait that plays a table of joint angles, say what it is, and return 0."""
     cycle = read_angles(options.tracks)
     gait = to_curves(cycle, options.robot, name=options.out.stem, period=options.period)
@@ -118,7 +126,8 @@ def _play(options: CaptureOptions) -> int:
     left = max(zip(cycle.residual, cycle.joints, strict=True))
     print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
     print(f"{left[1]} most, by {np.degrees(left[0]):.1f} degrees in the root mean square.")
-    print(f"gait: {options.out}\nrun it: suchus run salamander --robot {options.robot.name} --gait {options.out}")
+    lines = run_it(options.robot, asked, options.out, "salamander")
+    print(f"gait: {options.out}", *lines, sep="\n")
     return 0
 
 

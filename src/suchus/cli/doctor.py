@@ -35,6 +35,7 @@ _EXTRAS = {
     "capture": "tracks of DeepLabCut, SLEAP, LightningPose",
     "gym": "Gymnasium tasks",
     "usd": "suchus export --format usd",
+    "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",
 }
 """What each extra is good for; those that only developers need are left out."""

@@ -10,6 +10,7 @@ import tyro
 from suchus import blueprint
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
+from suchus.cli.run import run_it
 from suchus.design import layout
 from suchus.errors import OutsideLimits
 from suchus.model.importing import Draft, Words, import_robot
@@ -39,6 +40,10 @@ class ImportOptions:
     """Bodies to leave out with all that is attached to them, such as arms or fins; their mass goes to their parent."""
     foot_radius: _METRES = None
     """Radius of every foot, if the shapes in the file do not give it."""
+    packages: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="FOLDER")] = ()
+    """Folders in which the packages lie that meshes name by package://NAME/..., as those of ROS_PACKAGE_PATH."""
+    without_meshes: bool = False
+    """Take a body whose mesh is not read all the same, with a rod for its shape."""
 
 
 def import_file(words: Sequence[str]) -> int:
@@ -63,6 +68,8 @@ def import_file(words: Sequence[str]) -> int:
         tail=options.tail,
         leave=options.leave,
         foot_radius=options.foot_radius,
+        packages=options.packages,
+        without_meshes=options.without_meshes,
     )
     draft = import_robot(options.file, name=out.stem, words=said)
     print(*_plan(draft), *(f"note: {text}" for text in draft.remarks), sep="\n")
@@ -72,7 +79,7 @@ def import_file(words: Sequence[str]) -> int:
     print(f"robot: {out}")
     if gait is not None:
         file = blueprint.write(gait, out.with_name(f"{out.stem}_walk.toml"), head=("A first gait, not the best.",))
-        print(f"gait: {file}\nrun it: suchus run displacement --robot {out} --gait {file}")
+        print(f"gait: {file}", *run_it(draft.robot, str(out), file), sep="\n")
     return 0
 
 

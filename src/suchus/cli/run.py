@@ -18,6 +18,7 @@ from suchus.cli.entry import PROJECT, BadCommand
 from suchus.cli.options import TABLES, choose
 from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import working
+from suchus.design import Robot, lacking
 from suchus.errors import plain_warnings
 from suchus.experiment import Experiment, Measure, Outcome
 from suchus.experiments import EXPERIMENTS
@@ -168,6 +169,22 @@ def run(words: Sequence[str]) -> int:
     if tables is not None:
         print(f"the record as CSV: {tables}")
     return 0
+
+
+def run_it(robot: Robot, asked: str, gait: Path, first: str = "displacement") -> list[str]:
+    """Return the line that says how to see a gait on a robot; nothing where no question suits it.
+
+    Args:
+        robot: the robot.
+        asked: its name or its file; empty for the robot of the shelf that is taken where none is named.
+        gait: the file of the gait.
+        first: the question to ask where the robot suits it, before how far it walks and how fast.
+    """
+    for name, option in ((first, "--gait"), ("displacement", "--gait"), ("speed_range", "--gaits")):
+        if not lacking(robot, EXPERIMENTS[name].needs):
+            who = ("--robot", asked) if asked else ()
+            return [f"run it: {shlex.join(['suchus', 'run', name, *who, option, str(gait)])}"]
+    return []
 
 
 def _again(words: Sequence[str]) -> str:

@@ -27,7 +27,7 @@ from suchus.design.layout import (
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.needs import MEASURED, NEEDS, STANDING, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
-from suchus.design.segment import Rod, Segment, Shell
+from suchus.design.segment import Inertia, Rod, Segment, Shell
 from suchus.design.servos import with_servos, with_speed_lines, with_spring
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
@@ -50,6 +50,7 @@ __all__ = [
     "Head",
     "Hinge",
     "Hull",
+    "Inertia",
     "Layout",
     "Leg",
     "LegName",

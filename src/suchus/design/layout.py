@@ -5,7 +5,7 @@ the root forward; then from the root backward. Servos: those of the same hinges,
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
@@ -14,6 +14,7 @@ import numpy as np
 from suchus.design.body import Robot, bends_trunk
 from suchus.design.hinge import Cable, Hinge
 from suchus.design.limb import Girdle
+from suchus.design.segment import Inertia
 from suchus.errors import UnknownName
 
 Axis = tuple[float, float, float]
@@ -37,6 +38,8 @@ class LayoutBody:
     """Distance by which the origin of its segment lies ahead of its frame, which stands at its hinges [m]."""
     hinges: tuple[tuple[Hinge, str, Axis], ...]
     """Its hinges in the order in which they turn it: the design, the full name, the axis in its own frame."""
+    inertia: Inertia | None
+    """Where its mass lies in its own frame, if its design says so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +144,7 @@ def layout(robot: Robot) -> Layout:
     root = robot.root_place
     ahead = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
     behind = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
-    bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, ())]
+    bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, (), robot.axis[root].inertia)]
     bodies += [_placed(one, i) for i, one in enumerate(ahead)]
     tips = []
     for girdle, name, side in _pairs(robot):
@@ -241,7 +244,7 @@ def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
 
 
 def _placed(body: LayoutBody, parent: int) -> LayoutBody:
-    return LayoutBody(body.name, 0 if parent == -1 else parent, body.offset, body.shift, body.hinges)
+    return replace(body, parent=0 if parent == -1 else parent)
 
 
 def _ahead_body(robot: Robot, i: int) -> LayoutBody:
@@ -249,7 +252,8 @@ def _ahead_body(robot: Robot, i: int) -> LayoutBody:
     shift = 0.0 if before.name == robot.root else before.rear
     offset = shift + before.front
     hinges = tuple((hinge, hinge.name, _AHEAD[hinge.turn]) for hinge in segment.hinges)
-    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges)
+    inertia = _framed(segment.inertia, segment.rear, 1.0)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges, inertia)
 
 
 def _behind_body(robot: Robot, i: int) -> LayoutBody:
@@ -257,7 +261,16 @@ def _behind_body(robot: Robot, i: int) -> LayoutBody:
     shift = 0.0 if before.name == robot.root else 0.0 - before.front
     offset = shift - before.rear
     hinges = tuple((hinge, hinge.name, _BEHIND[hinge.turn]) for hinge in before.hinges)
-    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges)
+    inertia = _framed(segment.inertia, -segment.front, 1.0)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges, inertia)
+
+
+def _framed(inertia: Inertia | None, shift: float, side: float) -> Inertia | None:
+    """Return where a body's mass lies in the frame at its hinges; on the right side, its mirror image."""
+    if inertia is None:
+        return None
+    (x, y, z), (xy, xz, yz) = inertia.centre, inertia.products
+    return replace(inertia, centre=(x + shift, side * y, z), products=(side * xy, xz, side * yz))
 
 
 def mirrored(axis: Axis, side: float) -> Axis:
@@ -269,7 +282,8 @@ def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int
     found, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
     for i, link in enumerate(girdle.limb.links):
         hinges = tuple((h, f"{name}_{h.name}", mirrored(LIMB_AXES[h.turn], side)) for h in link.hinges)
-        found.append(LayoutBody(f"{name}_{link.name}", parent if i == 0 else first + i - 1, offset, 0.0, hinges))
+        before, inertia = parent if i == 0 else first + i - 1, _framed(link.inertia, 0.0, side)
+        found.append(LayoutBody(f"{name}_{link.name}", before, offset, 0.0, hinges, inertia))
         offset = (link.end[0], side * link.end[1], link.end[2])
     return found
 

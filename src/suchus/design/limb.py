@@ -5,7 +5,7 @@ from math import fsum, hypot
 
 from suchus.design.checks import Checks
 from suchus.design.hinge import Hinge
-from suchus.design.segment import Point
+from suchus.design.segment import Inertia, Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,6 +22,8 @@ class Link:
     """[m]."""
     mass: float
     """[kg]."""
+    inertia: Inertia | None = None
+    """Where its mass lies, and that of the foot on the last link; None: as in a rod and a ball, each of one density."""
 
     def __post_init__(self) -> None:
         with Checks(f"link {self.name}", self) as check:

@@ -1,6 +1,10 @@
 """The axis of a body: segments from the snout to the tip of the tail."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import fsum
+
+import numpy as np
 
 from suchus.design.checks import Checks
 from suchus.design.hinge import Hinge
@@ -82,6 +86,55 @@ class Shell:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Inertia:
+    """Where the mass of a stiff body lies, where that is known and is not what its shapes would make of it."""
+
+    centre: Point
+    """Centre of mass: forward, left, up in the frame of its segment; of a left limb's link, from its beginning [m]."""
+    moments: Point
+    """Moments of inertia xx, yy, zz about the centre of mass [kg m2]."""
+    products: Point = (0.0, 0.0, 0.0)
+    """Entries xy, xz, yz of the tensor of inertia about the centre of mass, with the signs of a URDF [kg m2]."""
+
+    def __post_init__(self) -> None:
+        with Checks("inertia", self) as check:
+            check.each("centre", ("forward", "left", "up"), -100.0, 100.0, "m")
+            check.each("moments", ("xx", "yy", "zz"), 1e-18, 1e9, "kg m2")
+            check.each("products", ("xy", "xz", "yz"), -1e9, 1e9, "kg m2")
+            least, middle, most = np.linalg.eigvalsh(self.tensor)
+            check.that(
+                least > 0 and most <= (least + middle) * (1 + 1e-9),
+                f"inertia has the principal moments {least:.4g}, {middle:.4g} and {most:.4g} kg m2, which no body has: "
+                "each must be positive and at most the sum of the other two; check moments and products",
+            )
+
+    @property
+    def tensor(self) -> np.ndarray:
+        """Tensor of inertia about the centre of mass, shape (3, 3) [kg m2]."""
+        (xx, yy, zz), (xy, xz, yz) = self.moments, self.products
+        return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def together(parts: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return what several stiff bodies are as one, by the theorem of parallel axes.
+
+    Args:
+        parts: of each its mass [kg], its centre of mass, shape (3,) [m], and its tensor of inertia about that,
+            shape (3, 3) [kg m2].
+
+    Returns:
+        The same three of all together; a body without mass has its centre in the first one's.
+    """
+    mass = fsum(one for one, _, _ in parts)
+    centre = np.sum([one * place for one, place, _ in parts], axis=0) / mass if mass > 0 else parts[0][1]
+    whole = np.zeros((3, 3))
+    for one, place, tensor in parts:
+        off = place - centre
+        whole += tensor + one * ((off @ off) * np.eye(3) - np.outer(off, off))
+    return mass, centre, whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Segment:
     """A stiff piece of the axis: x forward, y left, z up, the origin anywhere on the axis.
 
@@ -98,6 +151,8 @@ class Segment:
     """What it is made of; the masses are theirs."""
     hinges: tuple[Hinge, ...] = ()
     """Up to three hinges in its rear joint, in the order in which they turn what is farther from the root."""
+    inertia: Inertia | None = None
+    """Where its mass lies; None: as in its shapes, each of one density."""
 
     def __post_init__(self) -> None:
         with Checks(f"segment {self.name}", self) as check:

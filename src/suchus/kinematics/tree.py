@@ -128,14 +128,19 @@ def body_masses(robot: Robot) -> tuple[np.ndarray, np.ndarray]:
             end = np.array([link.end[0], limb.side * link.end[1], link.end[2]])
             rows.append((limb.tip - len(links) + 1 + number, tuple(end / 2), link.mass))
         rows.append((limb.tip, tuple(end), limb.girdle.limb.foot.mass))
-    hull, names = place.robot.hull, [body.name for body in place.bodies]
-    if hull is not None:
-        at = foam_centres(robot)
-        rows += [(names.index(foam.body), at[foam.body], hull.density * foam.volume) for foam in hull.foam]
-    masses, moments = np.zeros(len(names)), np.zeros((len(names), 3))
+    masses, moments = np.zeros(len(place.bodies)), np.zeros((len(place.bodies), 3))
     for i, centre, mass in rows:
         masses[i] += mass
         moments[i] += mass * np.array(centre)
+    for i, body in enumerate(place.bodies):
+        if body.inertia is not None:
+            moments[i] = masses[i] * np.array(body.inertia.centre)
+    hull, names = place.robot.hull, [body.name for body in place.bodies]
+    if hull is not None:
+        for foam in hull.foam:
+            i, mass = names.index(foam.body), hull.density * foam.volume
+            masses[i] += mass
+            moments[i] += mass * np.array(foam_centres(robot)[foam.body])
     return masses, moments
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from suchus.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Servo, Spring, layout
 from suchus.design.body import servos_of
 from suchus.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
-from suchus.design.pieces import foam_centres
-from suchus.design.segment import Point
+from suchus.design.pieces import foam_centres, masses
+from suchus.design.segment import Point, together
 from suchus.errors import InvalidDesign
 from suchus.rotation import about
 
@@ -45,6 +45,7 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
     root.add_freejoint(name="root")
     add_bodies(root, place)
     add_foam(spec, place)
+    state_inertia(spec, place)
     lay_cables(spec, place.robot)
     servos = servos_of(place.robot)
     for number, name in enumerate(place.servos):
@@ -339,6 +340,24 @@ def add_foam(spec: Any, place: Layout) -> None:
             priority=1,
             group=4,
         )
+
+
+def state_inertia(spec: Any, place: Layout) -> None:
+    """Give the bodies whose design states where their mass lies that mass, with their foam, in the shapes' place."""
+    foams = {} if place.robot.hull is None else {one.body: one.volume for one in place.robot.hull.foam}
+    density = 0.0 if place.robot.hull is None else place.robot.hull.density
+    bare = masses(place.robot)
+    for body in (one for one in place.bodies if one.inertia is not None):
+        assert body.inertia is not None
+        volume = foams.get(body.name, 0.0)
+        parts = [(bare[body.name], np.array(body.inertia.centre), body.inertia.tensor)]
+        if volume * density >= _LEAST:
+            ball = 0.4 * density * volume * (3 * volume / (4 * pi)) ** (2 / 3)
+            parts.append((density * volume, np.array(foam_centres(place.robot)[body.name]), ball * np.eye(3)))
+        mass, centre, tensor = together(parts)
+        made = spec.body(body.name)
+        made.mass, made.ipos, made.explicitinertial = mass, centre.tolist(), True
+        made.fullinertia = [*np.diag(tensor), tensor[0, 1], tensor[0, 2], tensor[1, 2]]
 
 
 def lay_cables(spec: Any, robot: Robot) -> None:

@@ -1,6 +1,6 @@
 """How far does the robot crawl, with spine and tail and without?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,6 +10,7 @@ import xarray as xr
 from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
+from suchus.errors import InvalidDesign
 from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
@@ -18,7 +19,7 @@ from suchus.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.land import Run, simulate
 from suchus.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.metrics import displacement as displacement_of
-from suchus.motion import START, FootPath, suits
+from suchus.motion import START, FootPath, Gait, suits
 from suchus.paper import CLAIMS, CYCLES
 
 _GROUPS = CONDITIONS[:2]
@@ -154,10 +155,21 @@ class Displacement(TwoGroups):
     def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
         strides, lifts = self.gait.has("strokes"), self.gait.has("steering") and layout(self.robot).tail_pitch
-        strokes = tuple(s for s in self.strokes if suits(self.robot, self.gait.strode(s))) if strides else ()
-        bends = tuple(b for b in self.bends if suits(self.robot, self.gait.bent(b)))
-        pitches = tuple(p for p in self.pitches if suits(self.robot, self.gait.lifted(p))) if lifts else ()
+        strokes = self._followed(self.strokes, self.gait.strode) if strides else ()
+        bends = self._followed(self.bends, self.gait.bent)
+        pitches = self._followed(self.pitches, self.gait.lifted) if lifts else ()
         return strokes or (1.0,), bends or (1.0,), pitches
+
+    def _followed(self, numbers: Sequence[float], change: Callable[[float], Gait]) -> tuple[float, ...]:
+        """Return the numbers that make a gait, and one that the body can follow."""
+
+        def follows(number: float) -> bool:
+            try:
+                return suits(self.robot, change(number))
+            except InvalidDesign:
+                return False  # as a stroke beyond the limbs' reach
+
+        return tuple(number for number in numbers if follows(number))
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return displacements with their spread, what the feet did, and what each part adds."""

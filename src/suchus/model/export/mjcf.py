@@ -80,6 +80,10 @@ def _restore(root: ElementTree.Element, spec: Any, model: Any) -> None:
             held = getattr(model, kind)(name)
             written = getattr(spec, kind)(name) if hasattr(spec, kind) else None
             _refine(element, (held, written))
+            stated = element.find("inertial") if kind == "body" else None
+            if stated is not None:
+                values = {"pos": held.ipos, "quat": held.iquat, "mass": held.mass, "diaginertia": held.inertia}
+                stated.attrib.update({key: numbers(value) for key, value in values.items()})
 
 
 def _kind(element: ElementTree.Element) -> str:

@@ -4,7 +4,7 @@ XML from outside is parsed without entities, within a size and a depth, or refus
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -13,6 +13,7 @@ from xml.parsers import expat
 
 from suchus.errors import UnreadableFile
 from suchus.model.export.urdf import MUJOCO
+from suchus.model.importing.meshes import Meshes, inside
 from suchus.record import read_text
 
 LARGEST = 16 * 2**20
@@ -73,13 +74,13 @@ class Drive:
     """Whether nothing drives it."""
 
 
-Mesh = Callable[[str], str | None]
-"""Takes the file that a mesh names; returns the name by which MuJoCo is given it, or None if it is not read."""
 _TURNING = ("revolute", "continuous")
 _OTHER = ("prismatic", "planar", "floating")
 
 
-def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+def clean_urdf(
+    root: ElementTree.Element, meshes: Meshes
+) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
     """Return a URDF of links and joints alone, what drives each hinge, and sentences on what was left out.
 
     Raises:
@@ -88,13 +89,14 @@ def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
     links, joints = root.findall("link"), root.findall("joint")
     if not links:
         raise UnreadableFile("the URDF has no <link>; a robot needs some.")
+    links, joints, afloat = _freed(links, joints)
     _refuse_kinds(joints)
     _refuse_loops(links, joints)
     made = ElementTree.Element("robot", name="imported")
-    compiler = {**MUJOCO, "balanceinertia": "true", "discardvisual": "true"}
+    compiler = {**MUJOCO, "discardvisual": "true"}
     ElementTree.SubElement(ElementTree.SubElement(made, "mujoco"), "compiler", compiler)
     for link in links:
-        _add_link(made, link, mesh)
+        _add_link(made, link, meshes)
     for joint in joints:
         copy = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
         bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
@@ -105,11 +107,31 @@ def clean_urdf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
         for joint in turning
         if (mimic := joint.find("mimic")) is not None
     ]
+    remarks += afloat
     remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
     drives = {str(joint.get("name")): _drive(joint) for joint in turning}
     if drives and all(drive.torque == 0.0 for drive in drives.values()):
         drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
     return made, drives, tuple(remarks)
+
+
+def _freed(
+    links: list[ElementTree.Element], joints: list[ElementTree.Element]
+) -> tuple[list[ElementTree.Element], list[ElementTree.Element], list[str]]:
+    """Return links and joints without a floating joint between the world and the robot, whose root is free anyway."""
+    children = {_linked(joint, "child") for joint in joints}
+    floating = [j for j in joints if j.get("type") == "floating" and _linked(j, "parent") not in children]
+    if len(floating) != 1:
+        return links, joints, []
+    robot = {_linked(floating[0], "child")}
+    carried: list[ElementTree.Element] = []
+    while found := [j for j in joints if _linked(j, "parent") in robot and j not in carried]:
+        carried += found
+        robot |= {_linked(joint, "child") for joint in found}
+    left = [link for link in links if link.get("name") not in robot]
+    solid = [str(link.get("name")) for link in left if len(link)]
+    told = [f"Beside the robot the file holds {', '.join(solid[:4])}, which was not taken."] if solid else []
+    return [link for link in links if link not in left], carried, told
 
 
 def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
@@ -118,7 +140,7 @@ def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
         if kind in _OTHER:
             raise UnreadableFile(
                 f"joint {name!r} is {kind}; suchus takes hinges (revolute, continuous) and fixed joints: make it one "
-                "of these, or remove what it carries."
+                "of these, or remove what it carries. A floating joint may carry the whole robot, and nothing else."
             )
         if kind not in (*_TURNING, "fixed"):
             raise UnreadableFile(f"joint {name!r} is of type {kind!r}; revolute, continuous and fixed are allowed.")
@@ -160,22 +182,25 @@ def _linked(joint: ElementTree.Element, which: str) -> str:
     return "" if element is None else element.get("link", "")
 
 
-def _add_link(made: ElementTree.Element, link: ElementTree.Element, mesh: Mesh) -> None:
+def _add_link(made: ElementTree.Element, link: ElementTree.Element, meshes: Meshes) -> None:
     copy = ElementTree.SubElement(made, "link", name=link.get("name", ""))
     copy.extend(e for e in link if e.tag == "inertial")
-    shapes = link.findall("collision") or link.findall("visual")
-    for shape in shapes:
+    lost = ""
+    for shape in link.findall("collision") or link.findall("visual"):
         geometry = shape.find("geometry")
         named = None if geometry is None else geometry.find("mesh")
         if geometry is None or not len(geometry):
             continue
         if named is not None:
-            given = mesh(named.get("filename", ""))
+            given = meshes.given(named.get("filename", ""))
             if given is None:
+                lost = named.get("filename", "")
                 continue
             named.set("filename", given)
         part = ElementTree.SubElement(copy, "collision")
         part.extend(e for e in shape if e.tag in ("origin", "geometry"))
+    if lost and copy.find("collision") is None:
+        meshes.bare[f"link {link.get('name', '')}"] = lost
 
 
 def _drive(joint: ElementTree.Element) -> Drive:
@@ -233,16 +258,9 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
     return root
 
 
-def inside(home: Path, name: str) -> Path | None:
-    """Return the path of a file named in a robot's file; None where it would lie outside the robot's folder."""
-    try:
-        where = (home / name).resolve()
-    except (OSError, ValueError, RuntimeError):
-        return None
-    return where if name and where.is_relative_to(home) else None
-
-
-def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+def clean_mjcf(
+    root: ElementTree.Element, meshes: Meshes
+) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
     """Return an MJCF of bodies, joints and shapes alone, what drives each hinge, and sentences on what was left out.
 
     Raises:
@@ -254,10 +272,10 @@ def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
     made = ElementTree.Element("mujoco", model="imported")
     compiler = {k: v for e in root.findall("compiler") for k, v in e.attrib.items() if k in _COMPILER}
     bounds = {key: MUJOCO[key] for key in ("boundmass", "boundinertia")}
-    ElementTree.SubElement(made, "compiler", {**compiler, **bounds, "balanceinertia": "true"})
+    ElementTree.SubElement(made, "compiler", {**compiler, **bounds})
     for element in root.findall("default"):
         made.append(_cleaned(element, (*_KEPT, "mesh", "default"), None))
-    meshes = _meshes(root, made, mesh)
+    lost = _meshes(root, made, meshes)
     worlds = root.findall("worldbody")
     if not any(world.find(".//body") is not None for world in worlds):
         raise UnreadableFile("the MJCF has no <body>; a robot needs some.")
@@ -267,44 +285,52 @@ def clean_mjcf(root: ElementTree.Element, mesh: Mesh) -> tuple[ElementTree.Eleme
                 raise UnreadableFile(
                     f"the MJCF makes bodies with <{element.tag}>; write them out first, as with mujoco.mj_saveLastXML."
                 )
-        made.append(_cleaned(world, _KEPT, meshes))
+        made.append(_cleaned(world, _KEPT, lost))
+        meshes.bare |= _bare(world, lost)
     left = sorted({element.tag for element in root if element.tag not in _UNTOLD})
     if left:
         remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(left)}.",)
     return made, drives, remarks
 
 
-def _cleaned(element: ElementTree.Element, tags: tuple[str, ...], meshes: set[str] | None) -> ElementTree.Element:
+def _cleaned(
+    element: ElementTree.Element, tags: tuple[str, ...], lost: Mapping[str, str] | None
+) -> ElementTree.Element:
     """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
     copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
     for child in element:
-        lost = child.tag == "geom" and (
-            child.get("type") in ("hfield", "sdf")
-            or (meshes is not None and child.get("mesh") is not None and child.get("mesh") not in meshes)
-        )
-        if child.tag in tags and not lost:
-            copy.append(_cleaned(child, tags, meshes))
+        gone = child.tag == "geom" and (child.get("type") in ("hfield", "sdf") or child.get("mesh") in (lost or ()))
+        if child.tag in tags and not gone:
+            copy.append(_cleaned(child, tags, lost))
     return copy
 
 
-def _meshes(root: ElementTree.Element, made: ElementTree.Element, mesh: Mesh) -> set[str]:
-    """Add the meshes that are read as assets and return their names."""
-    asset, names = ElementTree.SubElement(made, "asset"), set()
+def _bare(world: ElementTree.Element, lost: Mapping[str, str]) -> dict[str, str]:
+    """Return the mesh that was not read of each body that has no other shape."""
+    shapes = {f"body {body.get('name', '')}": [geom.get("mesh") for geom in body.findall("geom")]
+              for body in world.iter("body")}  # fmt: skip
+    return {
+        body: lost[str(meshes[0])] for body, meshes in shapes.items() if meshes and all(one in lost for one in meshes)
+    }
+
+
+def _meshes(root: ElementTree.Element, made: ElementTree.Element, meshes: Meshes) -> dict[str, str]:
+    """Add the meshes that are read as assets; return the files of the others by name."""
+    asset, lost = ElementTree.SubElement(made, "asset"), {}
     folder = next((v for e in root.findall("compiler") for k in ("meshdir", "assetdir") if (v := e.get(k))), "")
     for element in (e for part in root.findall("asset") for e in part.findall("mesh")):
-        file = element.get("file", "")
-        name = element.get("name") or Path(file).stem
+        own = element.get("file", "")
+        file = f"{folder.rstrip('/')}/{own}" if folder and own else own
+        name = element.get("name") or Path(own).stem
         attributes = {k: v for k, v in element.attrib.items() if k in ("class", "scale", "refpos", "refquat", "vertex")}
-        if file:
-            given = mesh(f"{folder.rstrip('/')}/{file}" if folder else file)
+        if own or "vertex" not in attributes:
+            given = meshes.given(file)
             if given is None:
+                lost[name] = file
                 continue
             attributes["file"] = given
-        elif "vertex" not in attributes:
-            continue
         ElementTree.SubElement(asset, "mesh", {"name": name, **attributes})
-        names.add(name)
-    return names
+    return lost
 
 
 def _equalities(root: ElementTree.Element) -> tuple[str, ...]:

@@ -6,14 +6,17 @@ The left limb is the pattern of a pair.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from suchus.design import Foot, Girdle, Hinge, Limb, Link, Robot, Rod, Segment, Shell, layout
 from suchus.design.hinge import Turn
 from suchus.design.scale import contact_for
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.kinematics import limb as limb_kinematics
+from suchus.model.build import compile_model
 from suchus.model.importing.making import (
     Making,
     Match,
@@ -83,13 +86,57 @@ def draft_of(plan: BodyPlan, name: str, words: Words) -> Draft:
         )
     except InvalidDesign as error:
         raise UnreadableFile(f"the file gives no robot that can be: {error}") from error
+    robot, needless = _without_needless(robot)
     order = layout(robot).hinges
+    notes = {place: text for place, text in making.notes.items() if place not in needless}
     return Draft(
         robot=robot,
         matches=tuple(sorted(making.matches, key=lambda match: order.index(match.ours))),
         remarks=(*plan.remarks, *dict.fromkeys([*arms, *making.remarks, *_balance(making, robot)])),
-        notes=making.notes | {f"contact.{key}": text for key, text in _CONTACT.items()},
+        notes=notes | {f"contact.{key}": text for key, text in _CONTACT.items()},
     )
+
+
+_SAME = 1e-9  # of an inertia and of the length; what shapes give so nearly need not be stated
+
+
+def _without_needless(robot: Robot) -> tuple[Robot, set[str]]:
+    """Return a robot without the inertias that its shapes have anyway, and the places of their notes."""
+
+    def bared(girdle: Girdle, keep: set[str]) -> Girdle:
+        links = tuple(
+            one if f"L{girdle.name}_{one.name}" in keep else replace(one, inertia=None) for one in girdle.limb.links
+        )
+        return replace(girdle, limb=replace(girdle.limb, links=links))
+
+    def kept(keep: set[str]) -> Robot:
+        axis = tuple(one if one.name in keep else replace(one, inertia=None) for one in robot.axis)
+        return replace(robot, axis=axis, girdles=tuple(bared(girdle, keep) for girdle in robot.girdles))
+
+    stated, bare = compile_model(robot), compile_model(kept(set()))
+    apart = {
+        body.name
+        for body in layout(robot).bodies
+        if body.inertia is not None and not _alike(stated, bare, body.name, robot.length)
+    }
+    places = {one.name: f"axis[{i}]" for i, one in enumerate(robot.axis)}
+    for i, girdle in enumerate(robot.girdles):
+        places |= {f"L{girdle.name}_{one.name}": f"girdles[{i}].limb.links[{k}]"
+                   for k, one in enumerate(girdle.limb.links)}  # fmt: skip
+    return kept(apart), {f"{place}.inertia.moments" for name, place in places.items() if name not in apart}
+
+
+def _alike(one: Any, two: Any, body: str, length: float) -> bool:
+    """Return whether a body of two models has its mass in the same places."""
+    (place, tensor), (other, another) = (_weighed(model, body) for model in (one, two))
+    near = np.linalg.norm(place - other) <= _SAME * length
+    return bool(near and np.abs(tensor - another).max() <= _SAME * np.abs(tensor).max())
+
+
+def _weighed(model: Any, body: str) -> tuple[np.ndarray, np.ndarray]:
+    held = model.body(body)
+    turn = Rotation.from_quat(held.iquat, scalar_first=True).as_matrix()
+    return held.ipos, turn @ np.diag(held.inertia) @ turn.T
 
 
 def _legs(plan: BodyPlan, words: Words) -> tuple[BodyPlan, list[str]]:
@@ -153,7 +200,10 @@ def draft_axis(making: Making) -> tuple[tuple[Segment, ...], str, list[float]]:
                 "stretched, from the front to the rear, at zero posture."
             )
         shapes = _shapes(making, part, ends[i], length, i)
-        segments.append(Segment(name=part.name, front=0.0, rear=length, shapes=shapes, hinges=hinges[i]))
+        inertia = making.inertia(f"axis[{i}]", [part], np.array([ends[i], 0.0, 0.0]))
+        segments.append(
+            Segment(name=part.name, front=0.0, rear=length, shapes=shapes, hinges=hinges[i], inertia=inertia)
+        )
     making.notes["axis[0].rear"] = making.notes[f"axis[{len(parts) - 1}].rear"] = _END
     making.notes["root"] = "the hindmost girdle's segment" if plan.pairs else "guess: the file's root, or the middle"
     return tuple(segments), parts[root].name, ends
@@ -340,6 +390,7 @@ def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], lab
                 end=point(end - anchor),
                 radius=_radius(making, carried, float(np.linalg.norm(end - anchor)), f"{link}.radius"),
                 mass=mass * (1.0 - _FOOT_SHARE) if last else mass,
+                inertia=making.inertia(link, carried, anchor),
             )
         )
     feet = _FOOT_SHARE / (1.0 - _FOOT_SHARE) * links[-1].mass

@@ -1,5 +1,7 @@
 """A file of another tool, loaded by MuJoCo with all its joints at zero."""
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -9,14 +11,12 @@ import mujoco
 import numpy as np
 
 from suchus.errors import SuchusError, UnreadableFile
-from suchus.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, inside, parse, with_includes
-from suchus.reading import check_file
+from suchus.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, parse, with_includes
+from suchus.model.importing.meshes import Meshes
 
 Format = Literal["URDF", "MJCF"]
 _BODIES = 1000  # at most; MuJoCo walks down a chain by recursion
-_MESHES = 64 * 2**20  # bytes of all meshes
 _NAMES = ("name", "class", "childclass", "link", "joint", "file", "filename", "mesh", "type")
-_SUFFIXES = (".stl", ".obj")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,60 +33,38 @@ class Loaded:
     """Notes on what was not taken over, a sentence each."""
 
 
-def load(path: Path) -> Loaded:
-    """Load a URDF or an MJCF. No file outside its folder is read, nothing in it is executed.
+def load(path: Path, *, packages: Sequence[Path] = (), without_meshes: bool = False) -> Loaded:
+    """Load a URDF or an MJCF. No file outside its folder and those of packages is read, nothing in it is executed.
+
+    Args:
+        path: the file.
+        packages: folders in which packages lie that meshes name by ``package://``.
+        without_meshes: whether a body whose mesh is not read does without.
 
     Raises:
-        UnreadableFile: it cannot be read, or is no tree of hinges.
+        UnreadableFile: it cannot be read, is no tree of hinges, or the shape of a body is a mesh that is not read.
     """
     root = parse(path)
-    lost: list[str] = []
-    assets: dict[str, bytes] = {}
-
-    def mesh(name: str) -> str | None:
-        return _given(path, name, assets, lost)
-
+    meshes = Meshes(path.resolve().parent, packages)
     try:
         if root.tag == "robot":
             kind: Format = "URDF"
-            clean, drives, remarks = clean_urdf(root, mesh)
+            clean, drives, remarks = clean_urdf(root, meshes)
         elif root.tag == "mujoco":
             kind = "MJCF"
-            clean, drives, remarks = clean_mjcf(with_includes(root, path), mesh)
+            clean, drives, remarks = clean_mjcf(with_includes(root, path), meshes)
         else:
             raise UnreadableFile(
                 f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
             )
-        model = _compiled(clean, assets)
+        if not without_meshes:
+            meshes.check()
+        model, mended = _compiled(clean, meshes)
     except SuchusError as error:
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
-    if lost:
-        remarks += (
-            f"{len(lost)} meshes were not read ({', '.join(sorted(set(lost))[:3])}): only STL and OBJ files in the "
-            "file's own folder are.",
-        )
-    return Loaded(kind=kind, model=model, drives=drives, remarks=remarks)
-
-
-def _given(path: Path, name: str, assets: dict[str, bytes], lost: list[str]) -> str | None:
-    """Take a mesh from the folder of the file and return the name under which MuJoCo finds it."""
-    where = inside(path.resolve().parent, name.removeprefix("file://"))
-    if where is None or where.suffix.lower() not in _SUFFIXES:
-        lost.append(name[-60:])
-        return None
-    try:
-        check_file(where)
-        size = where.stat().st_size
-        if size + sum(map(len, assets.values())) > _MESHES:
-            raise UnreadableFile(f"mesh {where.name} makes the meshes larger than {_MESHES // 2**20} MiB.")
-        data = where.read_bytes()
-    except (UnreadableFile, OSError):
-        lost.append(name[-60:])
-        return None
-    known = next((key for key, held in assets.items() if held == data and key.endswith(where.suffix.lower())), None)
-    given = known or f"mesh_{len(assets)}{where.suffix.lower()}"
-    assets[given] = data
-    return given
+    if meshes.lost:
+        remarks += (f"{len(meshes.lost)} meshes were not read: {'; '.join(list(meshes.lost.values())[:3])}.",)
+    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *mended))
 
 
 def _check_numbers(clean: ElementTree.Element) -> None:
@@ -111,15 +89,26 @@ def _is_mass(text: str) -> bool:
         return False
 
 
-def _compiled(clean: ElementTree.Element, assets: dict[str, bytes]) -> Any:
+def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[str, ...]]:
+    """Return the model, and sentences on inertias that had to be mended or guessed."""
     _check_numbers(clean)
     if sum(1 for e in clean.iter() if e.tag in ("body", "link")) > _BODIES:
         raise UnreadableFile(f"it has more than {_BODIES} bodies.")
+    text = ElementTree.tostring(clean, encoding="unicode")
     try:
-        model = mujoco.MjModel.from_xml_string(ElementTree.tostring(clean, encoding="unicode"), assets)
+        spec = mujoco.MjSpec.from_string(text, assets=meshes.assets)
+        for mesh in spec.meshes:
+            exact = mesh.file not in meshes.open
+            mesh.inertia = getattr(mujoco.mjtMeshInertia, f"mjMESH_INERTIA_{'EXACT' if exact else 'CONVEX'}")
+        model, mended = _balanced(spec)
     except (ValueError, mujoco.FatalError) as error:
         said = " ".join(str(error).split())
         raise UnreadableFile(f"MuJoCo says: {said[:240].rstrip('.')}.") from error
+    if meshes.open:
+        mended += (
+            f"{len(meshes.open)} meshes are no closed surfaces: where a body has no <inertial>, its mass is that of "
+            "the convex hull.",
+        )
     for name in ("body_pos", "body_quat", "body_mass", "body_ipos", "jnt_axis", "jnt_pos", "jnt_range", "geom_size"):
         if not np.isfinite(getattr(model, name)).all():
             raise UnreadableFile(f"a number of its {name.replace('_', ' ')} is not finite.")
@@ -133,4 +122,20 @@ def _compiled(clean: ElementTree.Element, assets: dict[str, bytes]) -> Any:
             )
     if not (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).any():
         raise UnreadableFile("it has no hinge; a robot needs some.")
-    return model
+    return model, mended
+
+
+def _balanced(spec: Any) -> tuple[Any, tuple[str, ...]]:
+    """Return a compiled model; where a body's inertia is none that a body can have, MuJoCo makes its moments equal."""
+    spec.compiler.balanceinertia = False
+    try:
+        return spec.compile(), ()
+    except ValueError as error:
+        spec.compiler.balanceinertia = True
+        model = spec.compile()
+        body = re.search(r"Element name '([^']*)'", str(error))
+        which = f"of {body[1]}" if body else "of a body"
+        return model, (
+            f"The inertia {which} is none that a body can have, one principal moment being greater than the sum of the "
+            "others; MuJoCo gives all such bodies three equal moments of the same sum.",
+        )

@@ -6,14 +6,14 @@ from math import degrees, pi
 
 import numpy as np
 
-from suchus.design import Crank, Hinge, Servo, Spring
+from suchus.design import Crank, Hinge, Inertia, Servo, Spring
 from suchus.design.hinge import Turn
 from suchus.design.layout import LIMB_AXES
 from suchus.design.scale import servo_for, spring_for
-from suchus.design.segment import Point
+from suchus.design.segment import Point, together
 from suchus.errors import UnreadableFile
 from suchus.model.importing.plan import BodyPlan, LimbChain, Words, links_between
-from suchus.model.importing.tree import Joint
+from suchus.model.importing.tree import Joint, TreePart
 
 SKEW = 5.0
 """Degrees by which a hinge may miss the robot's axes."""
@@ -201,6 +201,28 @@ class Making:
     def turned(self, axis: np.ndarray) -> np.ndarray:
         """Return a direction of the file in the robot's frame, shape (3,) [-]."""
         return np.asarray(self.plan.plane.turn @ axis)
+
+    def inertia(self, place: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
+        """Return where the mass of parts that move as one lies, in a frame like the robot's.
+
+        Args:
+            place: of the segment or link in the robot's file.
+            parts: the parts.
+            origin: of the frame, in that of the robot [m].
+
+        Returns:
+            None where the file does not say.
+        """
+        if not parts or not all(np.any(part.tensor) for part in parts):
+            return None
+        _, com, tensor = together([(part.mass, part.com, part.tensor) for part in parts])
+        turned = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
+        self.notes[f"{place}.inertia.moments"] = "of the file, as its centre and its products"
+        return Inertia(
+            centre=point(self.into(com) - origin),
+            moments=point(np.diag(turned)),
+            products=point(turned[[0, 0, 1], [1, 2, 2]]),
+        )
 
     def hip(self, chain: LimbChain) -> np.ndarray:
         """Return where a limb begins in the frame of the file, shape (3,) [m]."""

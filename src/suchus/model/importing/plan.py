@@ -6,9 +6,11 @@ It begins with the mirror plane, the pairs of limbs that it maps onto each other
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
+from suchus.design.segment import together
 from suchus.errors import UnknownName, UnreadableFile
 from suchus.model.importing.tree import Joint, Tree, TreePart
 
@@ -29,6 +31,10 @@ class Words:
     """Bodies to leave out with all that hangs on them, such as arms."""
     foot_radius: float | None = None
     """Radius of every foot [m]."""
+    packages: tuple[Path, ...] = ()
+    """Folders in which the packages lie that meshes name by ``package://``."""
+    without_meshes: bool = False
+    """Whether a body whose mesh is not read gets a rod."""
 
 
 TOLERANCE = 0.02
@@ -398,22 +404,18 @@ def _main(tree: Tree, plane: Plane, first: int) -> tuple[int, ...]:
 
 def _lumped(tree: Tree, used: set[int]) -> Tree:
     """Return a tree in which parts that are not used have no mass, and those that carry them have it all."""
-    mass = [part.mass for part in tree.parts]
-    moment = [part.mass * part.com for part in tree.parts]
+    held = [[(part.mass, part.com, part.tensor)] for part in tree.parts]
     for i in range(len(tree.parts) - 1, 0, -1):
         if i not in used:
-            above = tree.parts[i].parent
-            mass[above], moment[above] = mass[above] + mass[i], moment[above] + moment[i]
-            mass[i], moment[i] = 0.0, 0.0 * moment[i]
+            held[tree.parts[i].parent] += held[i]
+            held[i] = []
     for i in range(len(tree.parts)):  # what lies above the axis hands its mass down
         onward = next((k for k in tree.children(i) if used & set(tree.below(k))), None)
         if i not in used and onward is not None:
-            mass[onward], moment[onward] = mass[onward] + mass[i], moment[onward] + moment[i]
-            mass[i], moment[i] = 0.0, 0.0 * moment[i]
-    return replace(
-        tree,
-        parts=tuple(
-            replace(part, mass=m, com=w / m if m > 0 else part.com)
-            for part, m, w in zip(tree.parts, mass, moment, strict=True)
-        ),
-    )
+            held[onward] += held[i]
+            held[i] = []
+    parts = []
+    for part, those in zip(tree.parts, held, strict=True):
+        mass, com, tensor = together(those or [(0.0, part.com, np.zeros((3, 3)))])
+        parts.append(replace(part, mass=mass, com=com, tensor=tensor))
+    return replace(tree, parts=tuple(parts))

@@ -87,6 +87,7 @@ def _turn(parts: list[TreePart], plan: BodyPlan, place: int, which: int, angle: 
             parts[i],
             joints=tuple(joints),
             com=moved(parts[i].com),
+            tensor=rotation.as_matrix() @ parts[i].tensor @ rotation.as_matrix().T,
             origin=moved(parts[i].origin),
             points=moved(parts[i].points),
             pieces=tuple(_moved(piece, moved, rotation) for piece in parts[i].pieces),
@@ -101,7 +102,7 @@ def _moved(piece: ShapePiece, moved: Callable[[np.ndarray], np.ndarray], rotatio
 def import_robot(path: Path, *, name: str, words: Words | None = None) -> Draft:
     """Read a robot from a URDF or an MJCF: axis, girdles and limbs by geometry, drives and contact by its size.
 
-    Nothing in the file is executed, and no file outside its folder is read.
+    Nothing in the file is executed, and no file outside its folder and those of packages is read.
 
     Args:
         path: the file.
@@ -117,7 +118,7 @@ def import_robot(path: Path, *, name: str, words: Words | None = None) -> Draft:
         require("import", "foot_radius", words.foot_radius, 1e-5, 10.0, "m")
     if words.heading is not None:
         require("import", "heading", words.heading, -360.0, 360.0, "degree")
-    loaded = load(path)
+    loaded = load(path, packages=words.packages, without_meshes=words.without_meshes)
     try:
         return draft_of(straightened(plan_of(tree_of(loaded), words)), name, words)
     except UnreadableFile as error:

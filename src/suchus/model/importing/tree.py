@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from suchus.design.checks import require
+from suchus.design.segment import together
 from suchus.errors import UnreadableFile
 from suchus.model.importing.cleaning import Drive
 from suchus.model.importing.loading import Loaded
@@ -143,6 +144,8 @@ class TreePart:
     """[kg]."""
     com: np.ndarray
     """Centre of mass, shape (3,) [m]."""
+    tensor: np.ndarray
+    """Tensor of inertia about the centre of mass, shape (3, 3); nothing but zeros where the file has none [kg m2]."""
     origin: np.ndarray
     """Origin of its first body, shape (3,) [m]."""
     pieces: tuple[ShapePiece, ...]
@@ -253,12 +256,14 @@ def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> Tr
     joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first, first + count))
     sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
     name = model.body(body).name or f"body_{body}"
+    turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > NOTHING)
     return TreePart(
         name=name,
         parent=-1,
         joints=joints,
-        mass=float(model.body_mass[body]) if model.body_mass[body] > NOTHING else 0.0,
+        mass=float(model.body_mass[body]) if weighs else 0.0,
         com=data.xipos[body].copy(),
+        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * weighs,
         origin=data.xpos[body].copy(),
         pieces=of_body(model, data, body),
         points=np.array([data.xpos[body], *sites]),
@@ -285,12 +290,12 @@ def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
 
 def _fused(one: TreePart, two: TreePart) -> TreePart:
     """Return two parts that move as one."""
-    mass = one.mass + two.mass
-    com = (one.mass * one.com + two.mass * two.com) / mass if mass > 0 else one.com
+    mass, com, tensor = together([(part.mass, part.com, part.tensor) for part in (one, two)])
     return replace(
         one,
         mass=mass,
         com=com,
+        tensor=tensor,
         pieces=one.pieces + two.pieces,
         points=np.concatenate([one.points, two.points]),
         names=one.names + two.names,
