@@ -1,5 +1,6 @@
 """A gait becomes pulses that the servos can follow, or a sentence."""
 
+import copy
 import csv
 import io
 import re
@@ -29,6 +30,7 @@ from suchus.hardware import (
     trajectory_text,
     write_map,
 )
+from suchus.hardware.limits import CLASSES, stronger
 from suchus.kinematics.tail import servo_angle
 from suchus.model.export.urdf import urdf
 from suchus.motion import START, intended
@@ -129,6 +131,22 @@ def load(**changes):
     return ServoLoad(
         **({"torque": 3.0, "limit": 3.0, "at_limit": 0.1, "first": 0.4, "off": 0.2, "needed": 3.2} | changes)
     )
+
+
+def test_stronger_servos_are_found_on_an_equal_robot_too(robot):
+    again = crocodile(copy.deepcopy(robot.tables))
+    assert again == robot
+    for one in (robot, again, copy.deepcopy(robot)):
+        other = stronger(one, {"spine_yaw_1": load(limit=2.5, needed=3.2)})
+        assert other.servo("spine_yaw_1").torque == CLASSES["35 kg cm"]
+        assert other.servo("LF_yaw") == one.servo("LF_yaw")
+
+
+def test_the_sentence_on_a_servo_at_its_limit_names_one_that_would_do_or_says_that_none_does():
+    (one,) = overloaded({"LF_yaw": load()})
+    assert one.endswith("; a servo of 35 kg cm (3.43 N m) would do.")
+    (none,) = overloaded({"LF_yaw": load(needed=99.0)})
+    assert none.endswith("; of the servos that are sold, none up to 14.7 N m would do.")
 
 
 def test_the_allowed_share_and_the_allowed_error_are_thresholds(robot, crawl_gait):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from suchus.design import Robot, layout, with_servos
+from suchus.design import Robot, Servo, layout, with_servos
 from suchus.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.servo_map import ServoMap
@@ -193,11 +193,18 @@ def _tried(
 
 def stronger(robot: Robot, borne: Mapping[str, ServoLoad]) -> Robot:
     """Return a robot whose servos are of the classes that are named, wherever it has the same servo as there."""
-    torques: dict[int, float] = {}
+    numbers: dict[int, float] = {}
+
+    def number(servo: Servo) -> float:
+        return numbers.setdefault(id(servo), 1.0 + len(numbers))
+
+    # several joints may share a servo of the design, which is not that of an equal robot: it is found by its number
+    numbered = with_servos(robot, lambda servo: replace(servo, torque=number(servo)))
+    torques: dict[float, float] = {}
     for name, load in _weak(borne).items():
-        servo = id(robot.servo(name))  # which several joints may share
-        torques[servo] = max(torques.get(servo, 0.0), CLASSES[str(load.named)])
-    return with_servos(robot, lambda servo: replace(servo, torque=torques.get(id(servo), servo.torque)))
+        found = numbered.servo(name).torque
+        torques[found] = max(torques.get(found, 0.0), CLASSES[str(load.named)])
+    return with_servos(robot, lambda servo: replace(servo, torque=torques.get(number(servo), servo.torque)))
 
 
 def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
@@ -215,8 +222,8 @@ def overloaded(borne: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> li
     """Return a sentence for each servo that stands at its torque limit for more than a share of the walk."""
     return [
         f"{name} is at its torque limit of {load.limit:g} N m for {100 * load.at_limit:.0f} % of the walk, first at "
-        f"{load.first:.2f} s, and up to {np.degrees(load.off):.1f} degrees from its commanded angle; a servo of "
-        f"{load.stock} would do."
+        f"{load.first:.2f} s, and up to {np.degrees(load.off):.1f} degrees from its commanded angle; "
+        f"{'a servo of ' if load.named else 'of the servos that are sold, '}{load.stock} would do."
         for name, load in borne.items()
         if load.at_limit > at_limit
     ]
