@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+from dataclasses import dataclass
 from html.parser import HTMLParser
 from importlib.resources import files
 from itertools import pairwise, product
@@ -14,7 +15,7 @@ import xarray as xr
 from suchus.experiment import Experiment, Measure, Outcome, silent
 from suchus.figures import captioned, panels
 from suchus.paper import CLAIMS
-from suchus.report import Failure, load_result, render_page, save_outcome
+from suchus.report import Failure, load_result, render_outcome_page, render_page, save_outcome
 from suchus.verdict import Rule, Verdict
 
 AXE = Path(os.environ.get("SUCHUS_AXE", Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"))
@@ -33,6 +34,7 @@ def said(key, measured, why, word):
     )
 
 
+@dataclass(frozen=True)
 class Question(Experiment):
     title = "How far?"
     shows = "Fig. 16"
@@ -66,11 +68,13 @@ class Question(Experiment):
         return self
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
+@pytest.fixture(scope="module", params=["report", "outcome"])
+def page(request, tmp_path_factory):
     question, folder = Question(), tmp_path_factory.mktemp("page") / "displacement"
     outcome = question.run()
     save_outcome(outcome, question.draw(outcome), question, folder, command="suchus run displacement")
+    if request.param == "outcome":
+        return render_outcome_page(load_result(folder))
     return render_page([load_result(folder)], [Failure(name="other", sentence="It broke.", trace="Traceback")])
 
 

@@ -11,7 +11,7 @@ from suchus.figures import captioned, panels, save
 from suchus.kinematics import landmarks
 from suchus.paper.animals import ANIMALS
 from suchus.record import plain
-from suchus.report import load_result, render_page, write_page
+from suchus.report import load_result, render_outcome_page, render_page, write_outcome_page, write_page
 from suchus.report.beside import beside
 from suchus.report.page import robot_of
 from suchus.robots import ROBOTS
@@ -46,21 +46,34 @@ def make(tmp_path):
     return make
 
 
-def test_a_replay_is_embedded_once_and_linked_and_a_film_is_linked(make, tmp_path):
+def test_the_report_plays_one_replay_and_the_page_of_each_outcome_holds_its_own(make, tmp_path):
     clips = {
         "films": [{"name": "swim 1.gif", "caption": "It swims."}],
-        "replays": [{"name": "a.html", "caption": "It goes."}],
+        "replays": [{"name": "a.html", "caption": "It goes."}, {"name": "b.html", "caption": "It goes on."}],
     }
     folders = [make(name, **clips) for name in ("displacement", "turning")]
     for folder in folders:
-        (folder / "a.html").write_text("<p>replay</p>")
+        (folder / "a.html").write_text('<p>replay "a"</p>')
+        (folder / "b.html").write_text("<p>replay b</p>")
         (folder / "swim 1.gif").write_bytes(b"GIF89a")
     page = write_page([load_result(folder) for folder in folders], [], tmp_path / "out" / "report.html").read_text()
     assert page.count("<iframe") == 1
     assert '<iframe src="displacement/a.html" title="It goes." loading="lazy">' in page
-    for name in ("displacement", "turning"):
-        assert f'href="{name}/a.html"' in page
-        assert f'href="{name}/swim%201.gif"' in page
+    for folder in folders:
+        assert f'href="{folder.name}/index.html"' in page
+        own = (folder / "index.html").read_text()
+        assert 'srcdoc="&lt;p&gt;replay &#34;a&#34;&lt;/p&gt;"' in own
+        assert 'href="a.html"' not in own
+        assert 'href="b.html"' in own
+        assert 'href="swim%201.gif"' in own
+
+
+def test_a_replay_that_is_too_heavy_to_travel_is_linked(make):
+    folder = make("displacement", replays=[{"name": "a.html", "caption": "It goes."}])
+    (folder / "a.html").write_text(f"<p>{3 * 2**20 * 'x'}</p>")
+    own = write_outcome_page(folder).read_text()
+    assert "<iframe" not in own
+    assert 'href="a.html"' in own
 
 
 def test_links_lead_from_the_page_wherever_it_stands(make, tmp_path):
@@ -78,7 +91,9 @@ def test_what_is_not_there_is_not_linked_and_a_picture_stands_for_it(make):
     page = render_page([result], [])
     assert "gone.html" not in page
     assert "<iframe" not in page
-    assert page.count("A drawing of it.") == 2  # its text and its caption
+    own = render_outcome_page(result)
+    assert "gone.html" not in own
+    assert own.count("A drawing of it.") == 2  # its text and its caption
 
 
 def test_a_replay_cannot_point_out_of_its_folder(make):

@@ -1,7 +1,8 @@
+import base64
 import json
 import re
 import shutil
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
 
@@ -9,13 +10,16 @@ import pytest
 import xarray as xr
 
 from suchus import record
+from suchus.design import with_values
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.experiment import Experiment, Measure, Outcome, silent
+from suchus.experiments import EXPERIMENTS
 from suchus.figures import captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.paper import CLAIMS, ERRATA
-from suchus.report import Failure, load_result, number, quantity, render_page, save_outcome
+from suchus.report import Failure, load_result, number, quantity, render_outcome_page, render_page, save_outcome
 from suchus.report.page import _place
+from suchus.report.saving import differing
 from suchus.robots import ROBOTS
 from suchus.verdict import Rule, Verdict
 
@@ -28,6 +32,7 @@ def said(key, measured, why, word):
     )
 
 
+@dataclass(frozen=True)
 class Question(Experiment):
     title = "Is <everything> escaped & told?"
     shows = "Fig. 16"
@@ -98,16 +103,27 @@ def page(result):
     return Page(render_page([result], [failure]))
 
 
-def test_the_page_asks_nothing_of_the_network_and_runs_no_script(page):
-    for _, attrs in page.tags:
+@pytest.fixture(scope="module")
+def own(result):
+    return Page(render_outcome_page(result))
+
+
+@pytest.fixture(params=["report", "outcome"])
+def either(request, page, own):
+    return page if request.param == "report" else own
+
+
+def test_the_pages_ask_nothing_of_the_network_and_run_no_script(either):
+    for _, attrs in either.tags:
         for name in ("src", "href", "srcset", "data", "poster", "action"):
-            assert attrs.get(name, "#").startswith(("#", "data:"))
-    assert page.all("script", "iframe", "object", "embed") == []
-    assert not re.search(r"url\(|@import", "".join(page.text))
+            assert attrs.get(name, "#").startswith(("#", "data:", "question/index.html"))
+    assert either.all("script", "iframe", "object", "embed") == []
+    assert not re.search(r"url\(|@import", "".join(either.text))
 
 
-def test_every_picture_tells_its_caption_to_those_who_cannot_see_it(page):
-    images = page.all("img")
+def test_every_picture_tells_its_caption_to_those_who_cannot_see_it(own, page):
+    assert all(len(image["alt"]) > 10 for image in page.all("img"))
+    images = own.all("img")
     assert [image["alt"] for image in images if image["alt"].startswith('The "')] == [
         'The "first" figure & its <clip>.',
         'The "second" figure & its <clip>.',
@@ -118,16 +134,23 @@ def test_every_picture_tells_its_caption_to_those_who_cannot_see_it(page):
 def test_identifiers_are_unique_and_every_link_arrives(page):
     ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
     assert len(ids) == len(set(ids))
-    assert {a["href"][1:] for a in page.all("a")} <= set(ids)
+    links = {a["href"] for a in page.all("a")}
+    assert {link[1:] for link in links if link.startswith("#")} <= set(ids)
+    assert {link for link in links if not link.startswith("#")} == {"question/index.html"}
 
 
-def test_the_page_can_be_read_without_sight_and_by_keyboard(page):
-    assert page.all("html") == [{"lang": "en"}]
+def test_the_first_link_of_the_report_leads_to_its_verdicts(page):
     assert page.all("a")[0] == {"class": "skip", "href": "#verdicts"}
-    assert all("scope" in heading for heading in page.all("th"))
-    assert len(page.all("h1")) == 1
-    labelled = [attrs for attrs in page.all("div") if attrs.get("role") == "region"]
+
+
+def test_both_pages_can_be_read_without_sight_and_by_keyboard(either):
+    assert either.all("html") == [{"lang": "en"}]
+    assert all("scope" in heading for heading in either.all("th"))
+    assert len(either.all("h1")) == 1
+    labelled = [attrs for attrs in either.all("div") if attrs.get("role") == "region"]
     assert all(attrs.get("aria-label") and attrs.get("tabindex") == "0" for attrs in labelled)
+    ids = [attrs["id"] for _, attrs in either.tags if "id" in attrs]
+    assert len(ids) == len(set(ids))
 
 
 def test_the_verdicts_stand_first_and_in_the_order_of_the_article(page):
@@ -151,11 +174,6 @@ def test_the_page_tells_everything_that_it_promises(page):
     robot = ROBOTS["caiman"]
     for said in (
         "What is put in.",
-        "−0.5 m",
-        "1 rad (57.3°)",
-        "not finite",
-        "a < b",
-        "suchus run question",
         "It <broke>.",
         "Traceback ...",
         quantity(robot.hind_leg.femur, "m"),
@@ -165,6 +183,39 @@ def test_the_page_tells_everything_that_it_promises(page):
         *(chosen.why for name in GAITS for chosen in GAITS.beside(name, "chosen", ())),
     ):
         assert " ".join(said.split()) in text
+
+
+def test_the_page_of_an_outcome_tells_answer_numbers_verdicts_settings_and_data(own):
+    text = " ".join(" ".join(own.text).split())
+    for said in (
+        "Is <everything> escaped & told?",
+        "What is put in.",
+        "−0.5 m",
+        "1 rad (57.3°)",
+        "not finite",
+        'It was "put in" <i>by hand</i>.',
+        "a < b",
+        "suchus run question",
+        "All are as on the shelf.",
+    ):
+        assert said in text
+    assert text.index("What is put in.") < text.index("−0.5 m") < text.index("by hand") < text.index("not finite")
+    saved = {a["download"]: a["href"] for a in own.all("a") if "download" in a}
+    assert {"numbers.csv", "first.data.csv", "second.data.csv", "rows.txt"} == set(saved)
+    numbers = base64.b64decode(saved["numbers.csv"].partition(",")[2]).decode()
+    assert numbers.splitlines() == ["measure,value,unit", "way,-0.5,m", "turn,1.0,rad", "ghost,,m"]
+
+
+def test_settings_that_differ_from_the_shelf_stand_on_the_page():
+    question = replace(EXPERIMENTS["displacement"], cycles=3, gait=GAITS["high_walk"], bends=(0.0, 1.0))
+    rows = {row["name"]: (row["value"], row["shelf"]) for row in differing(question)}
+    assert set(rows) == {"cycles", "gait", "bends"}
+    assert rows["cycles"] == ("3", "2")
+    assert rows["gait"] == ("high_walk", "belly_crawl")
+    assert rows["bends"][0] == "0, 1"
+    heavier = with_values(ROBOTS["caiman"], {"pelvis.mass": 1.0})
+    assert differing(replace(EXPERIMENTS["displacement"], robot=heavier))[0]["value"] == "another caiman"
+    assert differing(EXPERIMENTS["displacement"]) == []
 
 
 def test_a_run_that_was_cut_short_says_so_and_has_no_verdicts(result, tmp_path):
@@ -273,7 +324,6 @@ def test_another_robot_has_a_page_of_its_own_without_the_claims_of_the_article(r
     gone = ("same sense", "misprints", "Read this first", "headline comparison", '<th scope="col">Verdicts', "No claim")
     for said in gone:
         assert said not in own
-    assert "−0.5 m" in own  # its numbers
     assert "none of them is judged here" in own
     caiman = of_another_robot(result, tmp_path / "article", "caiman")
     assert "same sense" in caiman
@@ -286,4 +336,5 @@ def test_wide_figures_take_the_whole_page_and_others_half(result, tmp_path):
     file = tmp_path / "question" / "first.svg"
     file.write_text(re.sub(r'width="[\d.]+pt"', 'width="900pt"', file.read_text(), count=1))
     assert [picture.wide for picture in load_result(file.parent).pictures] == [True, False]
-    assert render_page([load_result(file.parent)], []).count('class="across"') == 1
+    shutil.copy(file, tmp_path / "question" / "second.svg")
+    assert render_outcome_page(load_result(file.parent)).count('class="across"') == 1

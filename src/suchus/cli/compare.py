@@ -13,8 +13,7 @@ from rich.table import Table
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import check_page, parse
 from suchus.record import check_writable
-from suchus.report import Comparison, compare, load_result, number, quantity, write_comparison
-from suchus.report.saving import OUTCOME
+from suchus.report import OUTCOME, Comparison, compare, load_result, number, quantity, write_comparison
 
 _MOST = 24
 """Measures that the terminal shows; the page has all of them [-]."""

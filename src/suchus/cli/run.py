@@ -3,10 +3,9 @@
 import re
 import shlex
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 
 import xarray as xr
@@ -20,14 +19,13 @@ from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import working
 from suchus.design import Robot, lacking
 from suchus.errors import plain_warnings
-from suchus.experiment import Experiment, Measure, Outcome
+from suchus.experiment import Experiment, Outcome
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import styled
 from suchus.gaits import DRAFTED
 from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
-from suchus.report import check_place, number, quantity, save_outcome
-from suchus.report.saving import OUTCOME
+from suchus.report import OUTCOME, PAGE, carried, check_place, quantity, save_outcome
 from suchus.sources import current
 
 _COLOURS = {
@@ -38,7 +36,6 @@ _COLOURS = {
     "by construction": "cyan",
     "fitted": "cyan",
 }
-_MOST = 6  # numbers that stand below an answer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +93,7 @@ def show_outcome(question: Experiment, done: Performed) -> None:
         console.print(escape(f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."))
     console.print(escape(answer(done.outcome.decides)))
     numbers = Table("measure", "value", "range", box=None, padding=(0, 2, 0, 0))
-    for row in carried(question, done.outcome.measures):
+    for row in carried(question.answers, done.outcome.measures):
         numbers.add_row(*map(escape, row))
     console.print(numbers)
     if done.outcome.verdicts:
@@ -119,29 +116,12 @@ def show_outcome(question: Experiment, done: Performed) -> None:
         console.print(table)
     if done.outcome.unjudged:
         console.print(escape(done.outcome.unjudged), soft_wrap=True)
-    console.print(f"{done.seconds:.1f} s; everything is in {escape(str(done.folder))}", soft_wrap=True)
+    console.print(f"{done.seconds:.1f} s; the page with all of it: {escape(str(done.folder / PAGE))}", soft_wrap=True)
 
 
 def answer(decides: str) -> str:
     """Return the first two sentences of what decided."""
     return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
-
-
-def carried(question: Experiment, measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
-    """Return name, value and range of the measures that carry an answer, in words.
-
-    A measure that a run has not, as one of another gait, or that is no finite number is left out.
-    """
-    finite = [name for name, measure in measures.items() if isfinite(measure.value)]
-    told = [name for name in question.answers if name in finite]
-    ends = ("_low", "_high")
-    rows = []
-    for name in told or [name for name in finite if not name.endswith(ends)][:_MOST]:
-        low, high = (measures.get(name + end) for end in ends)
-        unit = measures[name].unit
-        spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}" if low and high else ""
-        rows.append((name.replace("_", " "), quantity(measures[name].value, unit, 3), spread))
-    return rows
 
 
 def run(words: Sequence[str]) -> int:

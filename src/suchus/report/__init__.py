@@ -1,25 +1,31 @@
 """Outcomes become files, and files become one page."""
 
 from suchus.report.comparison import Comparison, compare, render_comparison, write_comparison
+from suchus.report.outcome_page import PAGE, carried, render_outcome_page, write_outcome_page
 from suchus.report.page import render_page, write_page
 from suchus.report.rendering import number, quantity
-from suchus.report.result import Failure, Picture, Result, load_result, whole
+from suchus.report.result import OUTCOME, Failure, Picture, Result, load_result, whole
 from suchus.report.saving import check_place, save_outcome
 
 __all__ = [
+    "OUTCOME",
+    "PAGE",
     "Comparison",
     "Failure",
     "Picture",
     "Result",
+    "carried",
     "check_place",
     "compare",
     "load_result",
     "number",
     "quantity",
     "render_comparison",
+    "render_outcome_page",
     "render_page",
     "save_outcome",
     "whole",
     "write_comparison",
+    "write_outcome_page",
     "write_page",
 ]

@@ -1,4 +1,4 @@
-"""Results become one HTML page that needs no network and no script; films and replays stand beside it."""
+"""Results become an index: what came out, and a link to the page of each; it needs no network and no script."""
 
 import re
 import tempfile
@@ -20,22 +20,13 @@ from suchus.metrics.energy import METRES
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.record import new_file, versions
 from suchus.report.beside import beside
+from suchus.report.outcome_page import MARKS, PAGE, told, write_outcome_page
 from suchus.report.rendering import embedded, number, quantity, render, tied
 from suchus.report.result import Failure, Result
 from suchus.robots import ROBOTS
 
 _ENOUGH = 60
 """Letters that say something [-]."""
-_MARKS = {
-    "reproduced": "●",
-    "same sense": "◐",
-    "contradicted": "✕",
-    "not testable": "○",
-    "fitted": "◇",
-    "by construction": "□",
-}
-_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": ()}
-"""What outcomes of version 0.1 do not say of a verdict."""
 _TOLD = ("fitted", "by construction")
 """Words for what is no evidence: it was put in. They are counted apart."""
 
@@ -53,11 +44,16 @@ HEADLINE = (
 
 
 def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Path) -> Path:
-    """Write the page and return its path; an earlier one stays until the new one is complete.
+    """Write the page, and those of outcomes that have none yet, and return its path.
+
+    An earlier one stays until the new one is complete.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
+    for result in results:
+        if not (result.folder / PAGE).is_file():
+            write_outcome_page(result.folder)
     text = render_page(results, failures, path.parent)
     with new_file(path) as draft:
         draft.write_text(text, encoding="utf-8")
@@ -85,46 +81,18 @@ def _gist(text: str) -> str:
     return gist
 
 
-def _share(verdict: Mapping[str, Any]) -> str:
-    """Return in a sentence how many plausible designs agree."""
-    share = verdict.get("share")
-    if not share:
-        unswept = str(verdict.get("unswept", ""))
-        return f"Not tried on other designs: {unswept}." if unswept else ""
-    text = (
-        f"The statement holds in {share['share']:.0%} ({share['low']:.0%} to {share['high']:.0%}) of "
-        f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
-    )
-    if share["turned_by"] and share["at"] is not None:
-        side = "above" if share["above"] else "below"
-        text += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
-    return f"{text}."
-
-
-def _scatter(verdict: Mapping[str, Any]) -> str:
-    """Return the range of a measured number's repeats, empty if nothing was repeated."""
-    low, high = verdict.get("low"), verdict.get("high")
-    if low is None or high is None:
-        return ""
-    return f"{number(low, 3)} to {quantity(high, verdict['unit'], 3)} in {verdict.get('repeats', 'repeats')}"
-
-
 def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
     order = {key: place for place, key in enumerate(CLAIMS)}
     results = sorted(results, key=lambda result: _place(result, order))
     robot, others = robot_of(results)
     judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
-    verdicts = [
-        {**_LACKING, **verdict, "experiment": result.name, "of_designs": _share(verdict), "scatter": _scatter(verdict)}
-        for result in results
-        for verdict in result.outcome["verdicts"]
-        if judged
-    ]
+    verdicts = [verdict for result in results for verdict in told(result) if judged]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     counts = _counts(verdicts)
     named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
+        "pages": {result.name: result.folder / PAGE for result in results},
         "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,
         "authors": AUTHORS,
@@ -134,7 +102,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
-        "marks": _MARKS,
+        "marks": MARKS,
         "counts": {word: n for word, n in counts.items() if word not in _TOLD},
         "put_in": {word: n for word, n in counts.items() if word in _TOLD},
         "inputs": [verdict for verdict in verdicts if verdict["verdict"] in _TOLD],
@@ -157,7 +125,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
 
 def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
     count = Counter(str(verdict["verdict"]) for verdict in verdicts)
-    return {word: count[word] for word in _MARKS}
+    return {word: count[word] for word in MARKS}
 
 
 def _place(result: Result, order: Mapping[str, int]) -> int:

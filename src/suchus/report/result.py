@@ -13,7 +13,9 @@ from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
 from suchus.report.rendering import embedded
-from suchus.report.saving import OUTCOME, RECORD
+
+OUTCOME = "outcome.json"
+RECORD = "record.nc"
 
 
 class _Described(BaseModel):
@@ -107,10 +109,15 @@ class Picture:
     """Its file's name without the ending."""
     caption: str
     """Caption: what the picture or replay shows."""
-    source: Markup
-    """The picture itself as a data URI."""
+    file: Path
+    """The picture as a drawing; as pixels it stands beside it."""
     wide: bool = False
     """Whether it is so wide that half a page would make it too small to read."""
+
+    @property
+    def source(self) -> Markup:
+        """The picture itself as a data URI."""
+        return embedded(self.file, self.file.with_suffix(".png"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,7 +179,7 @@ def load_result(folder: Path) -> Result:
             Picture(
                 name=f["name"],
                 caption=f["caption"],
-                source=embedded(_inside(folder, f"{f['name']}.svg"), _inside(folder, f"{f['name']}.png")),
+                file=_inside(folder, f"{f['name']}.svg"),
                 wide=_wide(_inside(folder, f"{f['name']}.svg")),
             )
             for f in outcome["figures"]

@@ -1,4 +1,4 @@
-"""An outcome as a folder: its numbers and verdicts, figures, record and tables."""
+"""An outcome as a folder: its numbers and verdicts, figures, record and tables, and its page."""
 
 import json
 import math
@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from suchus import figures as pictures
 from suchus import record
 from suchus.experiment import Experiment, Measure, Outcome
+from suchus.report.outcome_page import write_outcome_page
+from suchus.report.rendering import number
+from suchus.report.result import OUTCOME, RECORD
 from suchus.verdict import Verdict
-
-OUTCOME = "outcome.json"
-RECORD = "record.nc"
 
 
 def check_place(folder: Path) -> None:
@@ -57,6 +57,7 @@ def save_outcome(
         described = describe(outcome, experiment, captions, command)
         text = json.dumps(described, indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
+        write_outcome_page(draft)
     return folder
 
 
@@ -70,6 +71,8 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "unjudged": outcome.unjudged,
         "command": command,
         "settings": record.plain(outcome.settings),
+        "differs": differing(experiment),
+        "answers": list(experiment.answers),
         "measures": {name: _measure(measure) for name, measure in outcome.measures.items()},
         "verdicts": [_verdict(verdict) for verdict in outcome.verdicts],
         "figures": [{"name": name, "caption": text} for name, text in captions.items()],
@@ -78,6 +81,27 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "replays": [{"name": name, "caption": replay.caption} for name, replay in outcome.replays.items()],
         "provenance": record.provenance(outcome.settings, seconds=outcome.seconds),
     }
+
+
+def differing(experiment: Experiment) -> list[dict[str, str]]:
+    """Return the fields in which a question differs from the one on the shelf, with both values in words."""
+    shelf, rows = type(experiment)(), []
+    for name in experiment.settings():
+        here, there = getattr(experiment, name), getattr(shelf, name)
+        if here != there:
+            value, usual = _called(here), _called(there)
+            changed = f"another {value}" if value == usual else value
+            rows.append({"name": name, "value": changed, "shelf": usual})
+    return rows
+
+
+def _called(value: Any) -> str:
+    """Return a field's value in words: of a robot or a gait its name."""
+    if isinstance(value, tuple):
+        return ", ".join(_called(one) for one in value) or "none"
+    if isinstance(value, float):
+        return number(value, 4)
+    return str(getattr(value, "name", value))
 
 
 def _measure(measure: Measure) -> dict[str, Any]:
