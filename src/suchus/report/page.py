@@ -1,4 +1,4 @@
-"""Results become an index: what came out, and a link to the page of each; it needs no network and no script."""
+"""Results become an index: the verdicts, and a link to the page of each result; it needs no network and no script."""
 
 import re
 import tempfile
