@@ -1,6 +1,6 @@
 """``suchus study FILE.toml``: many runs, their results into a folder that a kill cannot spoil."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
@@ -11,11 +11,13 @@ import xarray as xr
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
+from suchus.experiments import EXPERIMENTS
 from suchus.jobs import at_scheduler
 from suchus.jobs.store import RESULTS, TABLE
 from suchus.record import check_name, there, write_tables
 from suchus.study import Claims, answer_finished, conduct, conduct_claims, read_study
 from suchus.study.claims_page import write_claims
+from suchus.study.varied import conduct_varied, varied_finished, varied_study
 
 CLAIMS = "claims"
 
@@ -77,17 +79,27 @@ def _claims(options: StudyOptions) -> int:
     """Conduct the ready-made study of the claims, or finish it."""
     claims = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
+    asked = [study for one in EXPERIMENTS.values() if (study := varied_study(one)) is not None]
     if options.finished:
-        return _answered(answer_finished(claims, folder), folder)
+        record = answer_finished(claims, folder)
+        answered = {one.name: found for one in asked if (found := varied_finished(one, folder)) is not None}
+        return _answered(record, answered, folder)
     with at_scheduler(options.scheduler) as client, working() as bars:
-        progress = bars.reporter(CLAIMS)
-        record = conduct_claims(claims, folder, progress=progress, client=client, jobs=options.jobs)
-        return _answered(record, folder)
+        record = conduct_claims(claims, folder, progress=bars.reporter(CLAIMS), client=client, jobs=options.jobs)
+        answered = {
+            one.name: conduct_varied(one, folder, progress=bars.reporter(one.name), client=client, jobs=options.jobs)
+            for one in asked
+        }
+        return _answered(record, answered, folder)
 
 
-def _answered(record: xr.Dataset, folder: Path) -> int:
+def _answered(record: xr.Dataset, varied: Mapping[str, xr.Dataset], folder: Path) -> int:
     """Write what became of the claims, say where, and return 0."""
-    result = write_claims(record, folder / "result")
+    result = write_claims(record, folder / "result", varied)
     walked = int((record.status == "walked").sum())
-    print(f"{record.sizes['sample']} designs and gaits, {walked} walked; the page is {result / 'index.html'}")
+    again = sum(one.sizes["sample"] for one in varied.values())
+    print(
+        f"{record.sizes['sample']} designs and gaits, {walked} walked, and {again} designs and settings of "
+        f"{len(varied)} other experiments; the page is {result / 'index.html'}"
+    )
     return 0

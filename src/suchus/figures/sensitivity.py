@@ -148,10 +148,10 @@ def _chance(samples: int, parameters: int) -> float:
 
 
 def spoken(parameter: str) -> str:
-    """Return how a free number is called for people: ``gait.lift`` as ``lift (gait)``."""
-    of, _, name = parameter.partition(".")
-    words = name.replace("_", " ").replace(".", ", ")
-    return words if of == "robot" else f"{words} (gait)"
+    """Return how a free number is called for people: ``gait.lift`` as ``lift (gait)``, a setting by its own name."""
+    of, dot, name = parameter.partition(".")
+    words = (name if dot else of).replace("_", " ").replace(".", ", ")
+    return f"{words} ({of.replace('_', ' ')})" if dot and of != "robot" else words
 
 
 def _plane(ax: Axes, claimed: xr.Dataset, there: np.ndarray, holds: np.ndarray) -> None:

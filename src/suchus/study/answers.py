@@ -1,5 +1,6 @@
 """From the runs of many designs to what becomes of each claim of the article."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -33,8 +34,17 @@ def answers(record: xr.Dataset, least: float) -> xr.Dataset:
     Raises:
         IncompatibleRecord: a rule needs a measure that the record lacks.
     """
-    measures, parameters = measures_of(record, least), record.value.values
-    found = {rule.claim: held(rule, measures) for rule in asked_rules()}
+    measures = measures_of(record, least)
+    return answered({rule.claim: held(rule, measures) for rule in asked_rules()}, record.value.values)
+
+
+def answered(found: Mapping[str, tuple[np.ndarray, np.ndarray]], parameters: np.ndarray) -> xr.Dataset:
+    """Return number and truth of each claim in every sample, and what decides.
+
+    Args:
+        found: by claim its number in every sample, NaN where it cannot be judged, and whether its statement holds.
+        parameters: values of what varies, shape (sample, parameter).
+    """
     numbers, holds = (np.array(values) for values in zip(*found.values(), strict=True))
     there = np.isfinite(numbers)
     follows = [rank_correlation(parameters, each) for each in numbers]

@@ -9,7 +9,7 @@ from suchus.design import LEGS
 from suchus.errors import IncompatibleRecord
 from suchus.gaits import CONDITIONS
 from suchus.land import FAILED_JOINTS
-from suchus.verdict import RULES, Rule
+from suchus.verdict import RULES, Rule, varied_of
 
 FAULTY = ("coordinated", "limbs_only")
 """Conditions in which joints fail, too: the article's two groups."""
@@ -62,8 +62,14 @@ _STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep 
 
 
 def asked_rules() -> tuple[Rule, ...]:
-    """Return the rules of the claims that a study of designs answers."""
-    return tuple(rule for rule in RULES.values() if not rule.unswept)
+    """Return the rules of the claims that the walks of a study of designs answer."""
+    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in claims_varied())
+
+
+def claims_varied() -> frozenset[str]:
+    """Return the claims that are answered by asking their experiment again, see ``verdict.Varied``."""
+    declared = (varied_of(name) for name in {rule.experiment for rule in RULES.values()})
+    return frozenset(claim for varied in declared if varied is not None for claim in varied.claims)
 
 
 def measures_of(record: xr.Dataset, least: float) -> Mapping[str, np.ndarray]:

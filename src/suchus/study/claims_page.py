@@ -1,9 +1,9 @@
 """What the study of the claims leaves: a table, numbers, the shares that the verdicts quote, a page."""
 
 import json
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import xarray as xr
@@ -11,43 +11,49 @@ import xarray as xr
 from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
-from suchus.study.claims_table import claim_row, finite, shipped, table, turned
+from suchus.study.claims_table import became, claim_row, finite, shipped, table, turned
 from suchus.study.result_table import ResultTable, Section, write_tables
+from suchus.verdict import listed
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 
 
-def write_claims(record: xr.Dataset, folder: Path) -> Path:
-    """Write table, numbers, shares, record and page into a folder, which appears complete or not at all, and return it.
+def write_claims(record: xr.Dataset, folder: Path, varied: Mapping[str, xr.Dataset] = MappingProxyType({})) -> Path:
+    """Write table, numbers, shares, records and page into a folder, complete or not at all, and return it.
 
     Args:
         record: of ``claims.conduct_claims``.
         folder: where.
+        varied: of ``varied.conduct_varied``, by experiment.
 
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
-    rows = [claim_row(record, str(claim)) for claim in record.claim.values]
+    of_claim = {str(claim): one for one in (record, *varied.values()) for claim in one.claim.values}
+    rows = [claim_row(one, claim) for claim, one in of_claim.items()]
     with records.new_folder(folder, mark=OUTCOME) as draft:
         (draft / TABLE).write_text(table(rows), encoding="utf-8")
-        (draft / SHARES).write_text(shipped(record, rows), encoding="utf-8")
+        (draft / SHARES).write_text(shipped(record, rows, varied), encoding="utf-8")
         records.save(record, draft / RECORD)
-        pictures = {f"claim_{row['claim']}": draw_claim(record, row["claim"]) for row in rows}
+        for name, one in varied.items():
+            records.save(one, draft / f"claims_{name}.nc")
+        pictures = {f"claim_{claim}": draw_claim(one, claim) for claim, one in of_claim.items()}
         pictures["shares"] = draw_shares(rows, turned(rows))
         sections = _sections(record, rows)
-        write_tables(draft, "The article's claims over plausible designs", _lead(record), sections, pictures)
-        text = json.dumps(outcome(record, rows), indent=2, ensure_ascii=False, allow_nan=False)
+        write_tables(draft, "The article's claims over plausible designs", _lead(record, varied), sections, pictures)
+        text = json.dumps(outcome(record, rows, varied), indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
     return folder
 
 
-def outcome(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def outcome(record: xr.Dataset, rows: Sequence[dict[str, Any]], varied: Mapping[str, xr.Dataset]) -> dict[str, Any]:
     """Return everything as JSON holds it; what is not finite becomes null."""
     return {
         "study": "claims",
         "timestep": float(record.attrs["timestep"]),
         "agreement": finite(agreements(record)),
-        "samples": dict(sorted(Counter(record.status.values.tolist()).items())),
+        "samples": became(record),
+        "varied": {name: became(one) for name, one in varied.items()},
         "claims": [finite(row) for row in rows],
         "versions": records.versions(),
     }
@@ -63,13 +69,14 @@ def _short(claim: str) -> str:
     return claim.replace("_", " ")
 
 
-def _lead(record: xr.Dataset) -> str:
-    count = Counter(record.status.values.tolist())
-    parts = ", ".join(f"{number} {name}" for name, number in sorted(count.items(), key=lambda item: -item[1]))
+def _lead(record: xr.Dataset, varied: Mapping[str, xr.Dataset]) -> str:
+    parts = ", ".join(f"{number} {name}" for name, number in sorted(became(record).items(), key=lambda item: -item[1]))
+    again = listed([f"{name} of {one.sizes['sample']} designs and settings" for name, one in varied.items()])
+    more = f" Further claims are judged by asking their experiments again: {again}." if varied else ""
     return (
         f"{record.sizes['sample']} designs and gaits ({parts}), each in six conditions of spine and tail, and with "
         f"each of four joints failed in two of them, over {record.sizes['parameter']} numbers that the article does "
-        f"not give."
+        f"not give.{more}"
     )
 
 

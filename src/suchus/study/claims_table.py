@@ -24,6 +24,7 @@ _ANSWERED_BY = (
     "study/answers.py",
     "study/claim_measures.py",
     "study/claims.py",
+    "study/varied.py",
 )
 
 
@@ -138,12 +139,18 @@ def shares(rows: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> str:
+def became(record: xr.Dataset) -> dict[str, int]:
+    """Return how many samples of a record walked, were impossible, and so on."""
+    return dict(sorted(Counter(record.status.values.tolist()).items()))
+
+
+def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> str:
     """Return the table of shares as ``suchus.verdict`` ships it: JSON with the digest of its rows and what made it.
 
     Args:
         record: of ``claims.conduct_claims``.
-        rows: of ``claim_row``.
+        rows: of ``claim_row``, of this record and of those that follow.
+        varied: of ``varied.conduct_varied``, by experiment.
     """
     claims = shares(rows)
     made_by = json.loads(record.attrs["made_by"])
@@ -151,7 +158,11 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> str:
         "claims": claims,
         "digest": digest(claims),
         "samples": record.sizes["sample"],
-        "became": dict(sorted(Counter(record.status.values.tolist()).items())),
+        "became": became(record),
+        "varied": {
+            name: {"became": became(one), "source": json.loads(one.attrs["made_by"])["source"]}
+            for name, one in varied.items()
+        },
         "parameters": record.sizes["parameter"],
         "seed": int(record.attrs["seed"]),
         "cycles": int(record.attrs["cycles"]),

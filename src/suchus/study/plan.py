@@ -52,7 +52,7 @@ class Plan(Sequence[Point]):
         self._length = count * len(self._arms) * self._combinations * study.seeds
         if self._length > _MOST:
             raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
-        self._shares = _shares(study.design, count, len(self._sampled), study.seed)
+        self._shares = evenly(study.design, count, len(self._sampled), study.seed)
         self._varied: dict[tuple[int, int], Run] = {}
 
     def __len__(self) -> int:
@@ -163,7 +163,7 @@ def _whole(vary: Vary, share: float) -> int:
 
 
 @lru_cache(maxsize=4)
-def _shares(design: str, count: int, fields: int, seed: int) -> np.ndarray:
+def evenly(design: str, count: int, fields: int, seed: int) -> np.ndarray:
     """Return evenly spread points of the unit cube, shape (count, fields)."""
     if fields == 0:
         return np.empty((count, 0))

@@ -1,8 +1,8 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
 from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
-from suchus.verdict.rule import Band, Clause, Kind, Reading, Rule, compared, listed
-from suchus.verdict.table import RULES, examples_of, rules_of
+from suchus.verdict.rule import Band, Clause, Kind, Reading, Rule, Varied, compared, listed
+from suchus.verdict.table import RULES, examples_of, rules_of, varied_of
 
 __all__ = [
     "RULES",
@@ -14,6 +14,7 @@ __all__ = [
     "Reading",
     "Rule",
     "Share",
+    "Varied",
     "Verdict",
     "Word",
     "compared",
@@ -21,4 +22,5 @@ __all__ = [
     "judge",
     "listed",
     "rules_of",
+    "varied_of",
 ]

@@ -5,10 +5,10 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import degrees, isfinite
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 _UNITS = {"mm": 1e3, "g": 1e3, "ms": 1e3, "MPa": 1e-6}
 
@@ -153,3 +153,23 @@ class Rule:
     def held(self, measures: Mapping[str, float]) -> bool:
         """Return whether the statement, apart from its number, holds."""
         return all(clause.holds(measures) for clause in self.holds)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Varied:
+    """How an experiment is asked again with other plausible designs and settings, to see in how many a claim holds.
+
+    It is declared as ``VARIED`` beside the rules of an experiment, and answers what the walks of
+    ``suchus study claims`` cannot: those have no rough ground, no feedback, no water.
+    """
+
+    claims: tuple[str, ...]
+    """Keys of the claims that it answers."""
+    over: Mapping[str, tuple[float, float, str]] = field(default_factory=dict)
+    """Fields of the experiment that vary: the least and the greatest plausible value, and the reason for them."""
+    designs: tuple[str, ...] = ("robot",)
+    """Fields of the experiment that hold a robot or a gait, whose own numbers that the article does not give vary."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """Values of other fields with which one design is asked in affordable time; what is judged must still be met."""
+    samples: int = 32
+    """Number of designs, best a power of two, as Sobol's sequence asks [-]."""

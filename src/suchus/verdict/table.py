@@ -6,7 +6,7 @@ from functools import cached_property
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Rule
+from suchus.verdict.rule import Rule, Varied
 
 
 def rules_of(experiment: str) -> tuple[Rule, ...]:
@@ -29,6 +29,12 @@ def examples_of(experiment: str) -> Examples:
     """Return measures by which the rules of an experiment are tested, from the ``EXAMPLES`` beside its rules."""
     examples: Examples = EXPERIMENTS.beside(experiment, "EXAMPLES", {}, module="rules")
     return examples
+
+
+def varied_of(experiment: str) -> Varied | None:
+    """Return how an experiment is asked with other designs and settings, from the ``VARIED`` beside its rules."""
+    varied: Varied | None = EXPERIMENTS.beside(experiment, "VARIED", None, module="rules")
+    return varied
 
 
 class ClaimRules(Mapping[str, Rule]):

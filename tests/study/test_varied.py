@@ -1,0 +1,128 @@
+"""An experiment that is asked again with other designs and settings."""
+
+import json
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.design import Robot, value_at
+from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.experiments import EXPERIMENTS
+from suchus.record import read_json
+from suchus.robots import ROBOTS
+from suchus.study.answers import share_interval
+from suchus.study.claim_measures import asked_rules, claims_varied
+from suchus.study.claims_table import claim_row
+from suchus.study.study import Vary
+from suchus.study.varied import LEAST, VariedStudy, conduct_varied, varied_finished, varied_study
+from suchus.verdict import RULES, Varied, varied_of
+
+CLAIM = "tail_quadratic_small"
+DECLARED = {name: varied_of(name) for name in EXPERIMENTS if varied_of(name) is not None}
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A question whose answer is known: the error of (17) is three times the gap of the tail, in metres."""
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    steps: int = 10
+    refused: float = 1.0
+
+    @staticmethod
+    def name():
+        return "gap"
+
+    def simulate(self, progress=None):
+        if self.robot.tables.tail.gap > self.refused:
+            raise OutsideLimits("too wide a gap")
+        return SimpleNamespace(record=xr.Dataset({"error": 3.0 * self.robot.tables.tail.gap}))
+
+    def measure(self, record):
+        return {"error_of_eq_17_max": SimpleNamespace(value=float(record.error)), "beside": SimpleNamespace(value=0.0)}
+
+
+def study(**other):
+    vary = (Vary(field="robot.tail.gap", low=0.01, high=0.02), Vary(field="steps", low=10, high=19))
+    return VariedStudy(
+        **({"name": "gap", "experiment": Gap(), "vary": vary, "claims": (CLAIM,), "samples": 32} | other)
+    )
+
+
+def test_a_claim_holds_in_the_share_of_designs_that_is_known(tmp_path):
+    record = conduct_varied(study(), tmp_path)
+    row = claim_row(record, CLAIM)
+    true = int((record.value.sel(parameter="robot.tail.gap") < 0.05 / 3).sum())  # below 5 % the error counts as small
+    assert 20 <= true <= 22  # two thirds of the range, evenly filled
+    assert row["samples"] == 32
+    assert row["true"] == true / 32
+    assert row["interval"] == share_interval(true, 32)
+    assert row["border"]["parameter"] == "robot.tail.gap"
+    assert row["border"]["true"] == "below"
+    assert row["border"]["at"] == pytest.approx(0.05 / 3, abs=5e-4)
+    assert record.parameter_unit.values.tolist() == ["m", "-"]
+
+
+def test_points_are_whole_where_a_field_is_whole_and_stay_the_same_in_a_larger_study():
+    few, many = study(samples=8), study(samples=32)
+    assert all(few.point(i) == many.point(i) for i in range(8))
+    steps = [many.point(i)["steps"] for i in range(32)]
+    assert all(isinstance(step, int) for step in steps)
+    assert set(steps) == set(range(10, 20))
+
+
+def test_what_is_refused_is_counted_apart_and_judges_nothing(tmp_path):
+    record = conduct_varied(study(experiment=Gap(refused=0.015)), tmp_path)
+    refused = (record.status == "outside limits").values
+    assert 15 <= refused.sum() <= 17
+    assert np.isnan(record.number.sel(claim=CLAIM).values[refused]).all()
+    assert claim_row(record, CLAIM)["samples"] == 32 - refused.sum()
+    assert claim_row(record, CLAIM)["true"] == 1.0
+
+
+def test_a_study_goes_on_where_it_was_stopped_and_answers_from_what_is_there(tmp_path):
+    asked = study(samples=16)
+
+    def stopped(stage, share):
+        if share > 0.6:
+            raise KeyboardInterrupt
+
+    assert varied_finished(asked, tmp_path) is None
+    with pytest.raises(KeyboardInterrupt):
+        conduct_varied(asked, tmp_path, progress=stopped)
+    there = varied_finished(asked, tmp_path)
+    assert LEAST <= there.sizes["sample"] < 16
+    whole = conduct_varied(asked, tmp_path)
+    xr.testing.assert_identical(
+        there.drop_attrs().number, whole.drop_attrs().number.isel(sample=slice(0, there.sizes["sample"]))
+    )
+    assert json.loads(whole.attrs["made_by"]) == read_json(tmp_path / "gap" / "study.json")["versions"]
+
+
+def test_a_study_that_varies_nothing_is_refused():
+    with pytest.raises(InvalidDesign, match="gap varies nothing"):
+        study(vary=())
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_what_is_declared_can_be_asked_and_meets_what_is_judged(name):
+    declared, shelf = DECLARED[name], EXPERIMENTS[name]
+    assert isinstance(declared, Varied)
+    assert replace(shelf, **declared.settings).unjudged() == ""
+    assert set(declared.claims) <= {rule.claim for rule in shelf.rules()}
+    asked = varied_study(shelf)
+    assert asked.samples & (asked.samples - 1) == 0
+    for one in asked.vary:
+        assert one.low <= value_at(asked.experiment, one.field) <= one.high, one.field
+    assert all(len(why) > 20 for _, _, why in declared.over.values())
+
+
+def test_a_claim_is_answered_once_or_says_why_nothing_can_vary():
+    walked, again = {rule.claim for rule in asked_rules()}, claims_varied()
+    excused = {claim for claim, rule in RULES.items() if rule.unswept}
+    assert walked | again | excused == set(RULES)
+    assert not walked & again
+    assert not again & excused
