@@ -1,10 +1,13 @@
 """A fingerprint of a setup: every value in it, down to what its functions compute with."""
 
+import sys
+import sysconfig
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cached_property, partial
 from hashlib import sha256
 from numbers import Real
+from pathlib import Path
 from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
 
 import numpy as np
@@ -13,8 +16,9 @@ import numpy as np
 def fingerprint(setup: object) -> str:
     """Return what two simulations must share for one to go on from the other's checkpoint.
 
-    Numbers count by their value (1 is 1.0), arrays by all of theirs, and a function by its code, its defaults and what
-    it was made with. So a motion that is written anew in the same words is the same, and one with another amplitude is
+    Numbers count by their value (1 is 1.0), arrays by all of theirs, and a function by its code, its defaults, what
+    it was made with, and the functions and classes that it calls, but for those of this package and of what is
+    installed. So a motion that is written anew in the same words is the same, and one with another amplitude is
     another.
     """
     digest = sha256()
@@ -28,6 +32,7 @@ class _Walk:
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
         self._open: list[int] = []  # what is being written: a function may know itself
+        self._done: dict[int, tuple[object, bytes]] = {}  # functions and classes, which many others may know
 
     def _word(self, kind: str, text: str | bytes = "") -> None:
         data = text.encode() if isinstance(text, str) else text
@@ -39,8 +44,20 @@ class _Walk:
             self._word("again", str(self._open.index(id(value))))
             return
         self._open.append(id(value))
-        self._write_value(value)
+        if isinstance(value, FunctionType | type):
+            self._word("known", self._digest(value))
+        else:
+            self._write_value(value)
         self._open.pop()
+
+    def _digest(self, value: object) -> bytes:
+        if id(value) not in self._done:
+            outer, own = self._write, sha256()
+            self._write = own.update
+            self._write_value(value)
+            self._write = outer
+            self._done[id(value)] = value, own.digest()
+        return self._done[id(value)][1]
 
     def _write_value(self, value: object) -> None:
         if value is None or isinstance(value, bool | np.bool_ | str | bytes):
@@ -51,7 +68,8 @@ class _Walk:
             self._word("array", f"{value.dtype.str}{value.shape}")
             self._word("numbers", np.ascontiguousarray(value).tobytes())
         elif is_dataclass(value) and not isinstance(value, type):
-            self._parts(type(value).__qualname__, {f.name: getattr(value, f.name) for f in fields(value)})
+            own = {f.name: getattr(value, f.name) for f in fields(value)}
+            self._parts(type(value).__qualname__, {**own, **_class_of(value)})
         elif isinstance(value, dict):
             self._parts("dict", {repr(key): item for key, item in value.items()})
         elif isinstance(value, list | tuple | set | frozenset):
@@ -70,7 +88,7 @@ class _Walk:
         if isinstance(value, FunctionType):
             cells = [cell.cell_contents for cell in value.__closure__ or ()]
             names = _names(value.__code__)
-            known = {name: value.__globals__[name] for name in names if name in value.__globals__}
+            known = _known(names, value.__globals__)
             own = {name: item for name, item in known.items() if _decides(item, value.__module__)}
             self._code(value.__code__)
             self._parts("function", {"with": cells, "or": value.__defaults__, "and": value.__kwdefaults__, "of": own})
@@ -78,6 +96,8 @@ class _Walk:
             self._parts("method", {"of": value.__self__, "is": value.__func__})
         elif isinstance(value, partial):
             self._parts("partial", {"is": value.func, "with": value.args, "and": value.keywords})
+        elif isinstance(value, type) and _given(value):
+            self._parts(f"class {value.__qualname__}", _methods(value))
         elif isinstance(value, type | BuiltinFunctionType | ModuleType | np.ufunc):
             self._word("named", f"{getattr(value, '__module__', '')}.{value.__name__}")
         else:
@@ -86,7 +106,7 @@ class _Walk:
                 name: part for name, part in getattr(value, "__dict__", {}).items()
                 if not isinstance(getattr(type(value), name, None), cached_property)  # filled in as it is asked for
             }  # fmt: skip
-            self._parts(type(value).__qualname__, {**own, **kept})
+            self._parts(type(value).__qualname__, {**own, **kept, **_class_of(value)})
 
     def _code(self, code: CodeType) -> None:
         self._word("code", code.co_code)
@@ -104,10 +124,51 @@ def _names(code: CodeType) -> list[str]:
     return sorted({*code.co_names, *inner})
 
 
+def _known(names: list[str], found: dict[str, object]) -> dict[str, object]:
+    """Return what names mean among the globals of a function; of a module, what the function may take from it."""
+    known = {name: found[name] for name in names if name in found}
+    for module, value in list(known.items()):
+        if isinstance(value, ModuleType) and _given(value):
+            known |= {f"{module}.{name}": vars(value)[name] for name in names if name in vars(value)}
+    return known
+
+
 def _decides(value: object, module: str) -> bool:
-    """Return whether a global that a function reads is a part of what it does: a value, or a function beside it."""
+    """Return whether a global that a function reads is a part of what it does: a value, or what users wrote."""
     if isinstance(value, FunctionType):
-        return value.__module__ == module
-    return isinstance(value, Real | str | tuple | list | dict | np.ndarray) or (
-        is_dataclass(value) and not isinstance(value, type)
-    )
+        return value.__module__ == module or _given(value)
+    plain = isinstance(value, Real | str | tuple | list | dict | np.ndarray) or is_dataclass(value)
+    return _given(value if isinstance(value, type) else type(value)) or (plain and not isinstance(value, type))
+
+
+def _given(value: object) -> bool:
+    """Return whether a function, class or module is the user's own: neither this package's nor an installed one's."""
+    name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
+    if not isinstance(name, str) or name.split(".")[0] == "suchus":
+        return False
+    file = getattr(sys.modules.get(name), "__file__", None)
+    if file is None:
+        return name == "__main__"
+    return not any(Path(file).resolve().is_relative_to(place) for place in _INSTALLED)
+
+
+_INSTALLED = tuple({Path(sysconfig.get_path(key)).resolve() for key in ("stdlib", "platstdlib", "purelib", "platlib")})
+
+
+def _class_of(value: object) -> dict[str, object]:
+    """Return the class of an object as a part of it, if it is the user's own."""
+    return {"class": type(value)} if _given(type(value)) else {}
+
+
+def _methods(kind: type) -> dict[str, object]:
+    """Return the functions of a class and of those that it is made of, and the values that these may read."""
+    found: dict[str, object] = {}
+    for one in reversed(kind.__mro__):
+        if not _given(one):
+            continue
+        for name, item in vars(one).items():
+            plain = getattr(item, "__func__", getattr(item, "fget", getattr(item, "func", item)))
+            written = isinstance(plain, FunctionType) and plain.__code__.co_filename != "<string>"  # not by dataclass
+            if written or (not name.startswith("__") and _decides(plain, one.__module__)):
+                found[name] = plain
+    return found

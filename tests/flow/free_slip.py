@@ -132,7 +132,7 @@ class SlipWater(Fluid):
         self.mu1[:] = 0
         for c in range(self.axes):
             points = [(self.grid.faces if c == d else self.grid.centres)(*ends[d], d) for d in range(self.axes)]
-            f, self.owners[c] = measure_all(bodies, poses, points, time, h)
+            f, self.owners[c], _ = measure_all(bodies, poses, points, time, h)
             near, far = f.distance / h, -(f.thickness + f.distance) / h
             along = np.delete(np.abs(np.stack(f.normal)), c, axis=0)
             share = np.clip(wet_share(near, along) + wet_share(far, along), LEAST_SHARE, 1)

@@ -2,8 +2,10 @@
 
 import copy
 import dataclasses
+import importlib.util
 import io
 import pickle
+import sys
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -174,6 +176,80 @@ def test_what_a_motion_remembers_of_being_asked_is_no_part_of_it():
         asked(0.3)
         assert fingerprint(bodies(asked)) == fingerprint(bodies(fresh))
         assert fingerprint(bodies(asked)) != fingerprint(bodies(make(0.2)))
+
+
+OWN = {
+    "class": """
+from helper import double
+from suchus import flow
+class Motion:
+    def __call__(self, time):
+        return self.place({factor} * time)
+    def place(self, way):
+        return flow.Pose(position=(0.0, double(way)))
+motion = Motion()
+""",
+    "dataclass": """
+from dataclasses import dataclass
+import helper
+from suchus import flow
+@dataclass(frozen=True)
+class Motion:
+    start: float = 0.0
+    @property
+    def rate(self):
+        return helper.double(1.0)
+    def __call__(self, time):
+        return flow.Pose(position=(0.0, {factor} * self.rate * time))
+motion = Motion()
+""",
+    "function": """
+import helper
+from suchus import flow
+def motion(time):
+    return flow.Pose(position=(0.0, {factor} * helper.Doubled()(time)))
+""",
+}
+HELPER = """
+def {other}(): pass
+def double(x):
+    return {times} * x
+class Doubled:
+    def __call__(self, x):
+        return double(x)
+"""
+
+
+@pytest.mark.parametrize("how", OWN)
+def test_a_motion_is_its_class_and_the_helpers_it_imports(how, tmp_path, monkeypatch):
+    """Users keep motions in files of their own, and helpers in others."""
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def body(number, times=2, factor=3, other="unused"):
+        (tmp_path / "helper.py").write_text(HELPER.format(times=times, other=other))
+        (tmp_path / f"own{number}.py").write_text(OWN[how].format(factor=factor))
+        importlib.invalidate_caches()
+        spec = importlib.util.spec_from_file_location("own", tmp_path / f"own{number}.py")
+        own = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, "own", own)
+        sys.modules.pop("helper", None)
+        monkeypatch.setattr(sys, "dont_write_bytecode", True)
+        spec.loader.exec_module(own)
+        return fingerprint(still_setup(bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=own.motion),)))
+
+    monkeypatch.setitem(sys.modules, "helper", None)  # so that it is gone afterwards
+    first = body(1)
+    assert body(2) == first == body(3, other="renamed")
+    assert len({first, body(4, factor=4), body(5, times=3)}) == 3
+
+
+def test_many_functions_that_know_each_other_are_walked_once():
+    """Each calls the two below; written out, a hundred million functions."""
+    known = {"__name__": "levels"}
+    exec("def f0(x): return x\ndef f1(x): return 2 * x", known)
+    for k in range(2, 41):
+        exec(f"def f{k}(x): return f{k - 1}(x) + f{k - 2}(x)", known)
+    assert fingerprint(known["f40"]) != fingerprint(known["f39"])
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from flow_cases import still_setup
 from suchus import flow
 from suchus.errors import Doubtful, InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import resolution
-from suchus.flow.consistency import Consistency
+from suchus.flow.consistency import Consistency, GivenMotion
 
 CIRCLE = flow.Cylinder(diameter=1.0)
 
@@ -66,7 +66,7 @@ def test_a_motion_that_contradicts_itself_later_is_refused_then():
     flow.Glide(start=(0.1, 0.0), velocity=(0.2, 0.1)),
 ])  # fmt: skip
 def test_kinks_and_smooth_starts_are_no_contradictions(motion):
-    watched = Consistency("body", motion, 0.5, 1 / 16)
+    watched = Consistency(GivenMotion("body", motion, 0.5), 1 / 16)
     watched.start(0.0, 0.02)
     for k in range(100):
         watched.look(0.02 * k, 0.02)
@@ -79,6 +79,35 @@ def test_the_estimate_is_near_what_the_cases_were_off_by():
         assert 1 / 1.35 < resolution.estimate(cells) / error < 1.35
     assert resolution.estimate(resolution.needed(0.07)) == pytest.approx(0.07)
     assert resolution.estimate(resolution.cells_across(1.0, 0.5, 1.0, 0.01)) == 0
+
+
+SPHERES = (
+    (0.57, 0.272), (0.80, 0.141), (0.85, 0.131), (1.13, 0.072), (1.20, 0.059), (1.60, 0.030), (1.70, 0.030),
+    (2.40, 0.012),
+)  # fmt: skip
+"""Cells across the layer of a sphere at Re 100 and 200, and by how much its drag is too large."""
+
+
+def test_the_estimate_for_a_sphere_is_near_what_it_was_off_by():
+    for cells, error in SPHERES:
+        assert 1 / 1.25 < resolution.estimate(cells, blunt=True) / error < 1.25
+        assert resolution.needed(resolution.estimate(cells, blunt=True), blunt=True) == pytest.approx(cells)
+
+
+@pytest.mark.parametrize(("shape", "blunt"), [
+    (flow.Sphere(diameter=1.0), True), (flow.Ellipsoid(length=1.0, width=0.5, height=0.7), True),
+    (flow.Ellipsoid(length=1.0, width=0.45, height=0.7), False), (flow.eel_in_space(1.0, stations=33), False),
+])  # fmt: skip
+def test_the_estimate_for_a_sphere_is_that_of_blunt_bodies_in_space(shape, blunt):
+    grid = flow.Grid(cells=(64, 32, 32), cell=1 / 16, origin=(-2.0, -1.0, -1.0))
+    setup = flow.Setup(
+        grid=grid, viscosity=1 / 100, stream=(1.0, 0.0, 0.0), bodies=(flow.Body(shape=shape),), coarse=True
+    )
+    markers = shape.markers(0.0, flow.Pose(), grid.cell)
+    cells = 16 * float(np.ptp(markers.points, axis=1).max()) ** 0.5 / 10
+    at_rest = replace(markers, velocities=0 * markers.velocities)
+    found = setup.layer_error(setup.bodies[0], at_rest, (1.0, 0.0, 0.0), 0.0)
+    assert found == pytest.approx(resolution.estimate(cells, blunt=blunt), rel=0.02)
 
 
 def in_stream(cells, reynolds, **changes):
@@ -146,6 +175,66 @@ def test_no_warning_in_the_middle_in_endless_water_or_at_a_wall(sides, at, recwa
 def test_a_run_until_no_time_is_refused(until):
     with pytest.raises(OutsideLimits, match=f"until {until} s; give a finite time"):
         flow.Simulation(still_setup()).run(until)
+
+
+def test_a_run_cannot_end_before_it_is(tmp_path):
+    kept = tmp_path / "kept"
+    sim = flow.Simulation(still_setup(step=0.05))
+    with pytest.raises(OutsideLimits, match="has come to t = 0 s already and cannot end at -1 s; give a later time"):
+        sim.run(-1.0)
+    assert sim.run(0.1, progress=False, checkpoint=kept).time[-1] == sim.run(0.1, progress=False).time[-1] == 0.1
+    with pytest.raises(OutsideLimits, match=r"t = 0.1 s already and cannot end at 0.05 s; .* or a new Simulation"):
+        sim.run(0.05)
+    with pytest.raises(OutsideLimits, match=r"checkpoint .*kept has come to t = 0.1 s already .* or another file"):
+        flow.Simulation(still_setup(step=0.05)).run(0.05, checkpoint=kept)
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.1, float("nan"), float("inf")])
+def test_a_step_that_leads_nowhere_is_refused(dt):
+    with pytest.raises(OutsideLimits, match=f"a step is to last {dt} s; give a positive time"):
+        flow.Simulation(still_setup()).advance(dt)
+
+
+def test_a_tolerance_that_loses_the_water_is_refused():
+    with pytest.raises(InvalidDesign, match=r"tolerance is 1; above 0\.01 water is lost .*; *|tolerance is 1"):
+        still_setup(tolerance=1)
+    still_setup(tolerance=0.01)
+
+
+def two(apart, **changes):
+    """Two circles of diameter 0.6, 9.6 cells, side by side."""
+    circle = flow.Cylinder(diameter=0.6)
+    bodies = tuple(
+        flow.Body(shape=circle, motion=flow.Pose(position=(way * apart / 2, 0.0)), name=name)
+        for name, way in (("one", -1), ("other", 1))
+    )
+    return still_setup(bodies=bodies, viscosity=0.05, **changes)
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.3, 0.5])
+def test_bodies_that_stand_in_each_other_are_refused(apart):
+    with pytest.raises(InvalidDesign, match=r"t = 0 s one and other lie .* deep in each other, .* Move them apart"):
+        flow.Simulation(two(apart))
+
+
+@pytest.mark.parametrize("apart", [0.56, 0.6, 0.8])
+def test_bodies_that_touch_or_stand_apart_are_taken(apart, recwarn):
+    flow.Simulation(two(apart)).advance()
+    assert not recwarn
+
+
+def test_bodies_that_run_into_each_other_are_warned_of_once(recwarn):
+    circle = flow.Cylinder(diameter=0.6)
+    quick = flow.Body(shape=circle, motion=flow.Glide(start=(-0.35, 0.0), velocity=(1.0, 0.0)), name="one")
+    slow = flow.Body(shape=circle, motion=flow.Pose(position=(0.35, 0.0)), name="other")
+    sim = flow.Simulation(still_setup(bodies=(quick, slow), viscosity=0.05))
+    sim.run(0.1, progress=False)
+    assert not recwarn
+    with pytest.warns(Doubtful, match="one and other lie .* keep free bodies apart by a BodyContact"):
+        sim.run(0.25, progress=False)
+    recwarn.clear()
+    sim.advance()
+    assert not recwarn
 
 
 @pytest.mark.parametrize(("changes", "part"), [

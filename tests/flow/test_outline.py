@@ -96,8 +96,37 @@ def test_scaling_and_turning_do_what_they_say(factor, angle):
     assert (m.x, m.y) == tuple(pytest.approx(a) for a in pose.to_world(n.x, n.y))
 
 
+@pytest.mark.parametrize("function", [
+    lambda x, y: 10 * ELLIPSE.distance(x, y)[0],
+    lambda x, y: (x / 1.0) ** 2 + (y / 0.35) ** 2 - 1,
+    lambda x, y: 1e-4 * (np.hypot(x, y / 0.35) - 1),
+    lambda x, y: np.tanh(ELLIPSE.distance(x, y)[0] / 0.2),
+])  # fmt: skip
+def test_what_is_no_distance_is_divided_by_its_gradient(function):
+    """Near the surface: within a twentieth of the body's width to the first order."""
+    shape, (x, y) = flow.from_sdf(function, BOX), np.random.default_rng(3).uniform(-1.1, 1.1, (2, 4000))
+    right, got = ELLIPSE.distance(x, y), shape.distance(x, y)
+    near = np.abs(right[0]) < 0.03
+    assert got[0][near] == pytest.approx(right[0][near], rel=0.15, abs=1e-4)
+    assert (got[1] * right[1] + got[2] * right[2])[near].min() > 0.97
+    inside, far = right[0] < -0.03, right[0] > 0.03
+    assert got[0][inside].max() < -0.02
+    assert got[0][far].min() > 0.02
+
+
+@pytest.mark.parametrize(("gradient", "kept"), [(1.015, True), (0.985, True), (1.03, False), (0.97, False)])
+def test_a_distance_is_left_as_it_is(gradient, kept):
+    """Also one that has corners, as unions do, and lines on which it has no gradient."""
+    x, y = POINTS
+    for shape in (ELLIPSE, shape_of("union"), shape_of("difference"), shape_of("square")):
+        given = flow.from_sdf(lambda x, y, shape=shape: gradient * shape.distance(x, y)[0], (-1.25, 1.25, -1.25, 1.25))
+        assert np.array_equal(given.distance(x, y)[0], gradient * shape.distance(x, y)[0]) == kept
+
+
 @pytest.mark.parametrize("text", [
     "-0.5 -0.5\n0.5 -0.5\n0.5 0.5\n-0.5 0.5\n",
+    "4\n-0.5 -0.5\n0.5 -0.5\n0.5 0.5\n-0.5 0.5\n",
+    "a square\n  4\n-0.5 -0.5\n0.5 -0.5\n0.5 0.5\n-0.5 0.5\n",
     "x,y\n-0.5,-0.5\n0.5,-0.5  # a corner\n\n0.5,0.5\n-0.5,0.5\n-0.5,-0.5\n",
 ])  # fmt: skip
 def test_an_outline_from_a_file(text, tmp_path):
@@ -107,9 +136,22 @@ def test_an_outline_from_a_file(text, tmp_path):
     assert np.array_equal(flow.from_outline(str(path)).corners, SQUARE)
 
 
+def test_an_outline_of_two_surfaces_begins_with_two_counts(tmp_path):
+    """As collections of aerofoils have it: both from the nose on, the nose in both or in one."""
+    upper, lower = "0 0\n0.5 0.1\n1 0\n", "0 0\n0.4 -0.1\n1 -0.01\n"
+    for text in (f"FOIL\n3. 3.\n\n{upper}\n{lower}", f"3 2\n{upper}{lower.removeprefix('0 0' + chr(10))}"):
+        path = tmp_path / "foil.dat"
+        path.write_text(text)
+        assert flow.from_outline(path).corners.tolist() == [[1, 0], [0.5, 0.1], [0, 0], [0.4, -0.1], [1, -0.01]]
+
+
 @pytest.mark.parametrize(
     ("text", "part"),
     [
+        ("5\n-0.5 -0.5\n0.5 -0.5\n0.5 0.5\n-0.5 0.5\n", "the row '5'; .* the count of rows after it, here 4"),
+        ("0 0\n1 0\n1\n", "the row '1'.$"),
+        ("3\n", "the row '3'; a single number at the beginning is the count of rows after it, here 0"),
+        ("nan\n1 0\n0 1\n", "the row 'nan'"),
         ("1 2 3\n4 5 6\n7 8 9\n", "two columns"),
         ("", "two columns"),
         ("1 2\n3 four\n5 6\n", "two columns"),

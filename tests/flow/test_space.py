@@ -1,5 +1,6 @@
 """Three dimensions: exact flows, symmetries, bodies and what is refused; published numbers in the validation."""
 
+import re
 from functools import cache
 
 import numpy as np
@@ -392,6 +393,23 @@ def test_the_fields_of_a_turning_flow_are_what_was_put_in(tmp_path):
     flow.save_vti(sim, tmp_path / "a.vti")
     head = (tmp_path / "a.vti").read_bytes()[:400].decode("ascii", "ignore")
     assert 'WholeExtent="0 8 0 10 0 12" Origin="-1.0 0.5 2.0" Spacing="0.25 0.25 0.25"' in head
+
+
+def test_a_grid_that_covers_a_box_leaves_mirrors_and_walls_where_they_are():
+    """What it is larger goes to the open ends; else evenly to both."""
+    box = (-1.0, 1.3), (0.0, 1.1), (-1.05, 0.0)
+    free = flow.Grid.covering(*box, cell=0.04)
+    assert free.cells == (58, 28, 28)
+    assert free.origin == pytest.approx((-1.01, -0.01, -1.085))
+    held = flow.Grid.covering(*box, cell=0.04, sides=flow.Sides(bottom=flow.Wall(), high=flow.Mirror()))
+    assert held.cells == free.cells
+    assert held.origin == pytest.approx((-1.01, 0.0, -1.12), abs=1e-12)
+    text = r"along x both sides are held, 2\.3 m apart, and 58 cells of .*; take cells of"
+    with pytest.raises(InvalidDesign, match=text) as caught:
+        flow.Grid.covering(*box[:2], cell=0.04, sides=flow.Sides(left=flow.Wall(), right=flow.Wall()))
+    cell = float(re.search(r"take cells of (\S+) m", str(caught.value))[1])
+    fits = flow.Grid.covering(*box[:2], cell=cell, sides=flow.Sides(left=flow.Wall(), right=flow.Wall()))
+    assert (fits.origin[0], fits.origin[0] + fits.size[0]) == pytest.approx(box[0])
 
 
 def moved(**pose):

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -145,15 +146,25 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
     return [range(first, end) for first, end in pairwise(ends)]
 
 
+class Overlap(NamedTuple):
+    """How deep two bodies lie in each other, if any do."""
+
+    depth: float
+    """Least distance, of the points inside both, of the deepest one from either surface [m]; 0 where there is none."""
+    bodies: tuple[int, int]
+    """Which they are, as they are counted [-]."""
+
+
 def measure_all(
     bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
-) -> tuple[SpaceField, np.ndarray]:
-    """Return the field of all bodies on a window, at every point that of the nearest body, and whose row it is.
+) -> tuple[SpaceField, np.ndarray, Overlap]:
+    """Return the field of the bodies on a window, that of the nearest at each point; whose row it is; what overlaps.
 
     ``points`` are the coordinates of the window along each axis [m].
     """
-    first, owner = None, np.zeros([p.size for p in reversed(points)], np.int8)
-    for rows, body, pose in zip(rows_of(bodies), bodies, poses, strict=True):
+    first, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
+    every = rows_of(bodies)
+    for number, (rows, body, pose) in enumerate(zip(every, bodies, poses, strict=True)):
         measure: Callable[..., Field | SpaceField] = body.shape.measure
         f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
         other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
@@ -162,11 +173,16 @@ def measure_all(
             first = other
             owner = owner if part is None else part.astype(np.int8)
             continue
+        shared = np.maximum(other.distance, first.distance)
+        deepest = np.unravel_index(int(shared.argmin()), shared.shape)
+        if -shared[deepest] > overlap.depth:
+            under = next(k for k, those in enumerate(every) if owner[deepest] in those)
+            overlap = Overlap(-float(shared[deepest]), (under, number))
         nearer = other.distance < first.distance
         first = _chosen(nearer, other, first)
         owner[nearer] = rows.start if part is None else rows.start + part[nearer]
     assert first is not None  # there is a window around bodies only
-    return first, owner
+    return first, owner, overlap
 
 
 def _chosen(where: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:

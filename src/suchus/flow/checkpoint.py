@@ -15,7 +15,7 @@ from suchus.errors import UnreadableFile, Unwritable
 from suchus.fingerprint import fingerprint
 from suchus.flow.setup import Setup
 
-VERSION = 9
+VERSION = 10
 """Layout of the file; rises with every change of it."""
 
 MARK = b"suchus flow checkpoint %d\n" % VERSION

@@ -1,12 +1,18 @@
-"""Whether a motion's velocity is the rate of its position. The wall moves with the one and stands at the other."""
+"""Whether the rates that a motion or a bending body gives are those of its positions.
 
-from dataclasses import dataclass
+The wall moves with the ones and stands at the others: where they differ, forces and power are wrong without a trace.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from suchus import rotation
 from suchus.errors import InvalidDesign
-from suchus.flow.pose import Motion, Pose, length
+from suchus.flow.midline import MidlineState
+from suchus.flow.pose import Motion, Pose
 
 SHARE = 0.1
 """Difference of the two, over the larger one, from which they disagree [-]."""
@@ -14,64 +20,78 @@ SHARE = 0.1
 QUIET = 0.05
 """Speed, over the fastest so far, below which differences count relative to that [-]."""
 
+MINOR = 0.05
+"""Speed, over the fastest now, by which one kind of rate may be off beside the others [-]: half-widths follow what an
+undulation does to arc lengths by some 2 %, and a heading's rate moves an eel's sides by 7 % and more."""
+
 NOTHING = 1e-5
 """Distance by which the two may part in a step without further question [cells]."""
 
 PATIENCE = 3
 """Times in a row that they must disagree: at a kink of the motion they do so once [-]."""
 
+LEAP = 1.0
+"""Distance by which a body may be off the place that its rates lead to [cells]. To it comes what a kink within a step,
+where they change at once, may make: half of the way at the greatest rate so far."""
+
 _LOOK = 0.01  # share of a step over which positions are compared
 
 
-@dataclass(slots=True)
-class Consistency:
-    """A motion under watch."""
+class Seen(NamedTuple):
+    """Coordinates of a body at some times, each of shape (time, coordinate)."""
+
+    places: np.ndarray
+    """Coordinates less those at the first time [m, rad]."""
+    rates: np.ndarray
+    """Their rates as they are given [m/s, rad/s]."""
+    arms: np.ndarray
+    """How far one unit of each moves the surface, shape (coordinate,) [m/m, m/rad]."""
+    kinds: np.ndarray
+    """What kind of coordinate each is, counted from 0, shape (coordinate,) [-]."""
+
+
+class Told(Protocol):
+    """What gives coordinates and their rates."""
+
+    def at(self, times: Sequence[float]) -> Seen:
+        """Return what is told of some times [s]."""
+
+    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+        """Return what is wrong with a coordinate's rate, given and seen, and the remedy."""
+
+    def place(self, worst: int) -> str:
+        """Return what a coordinate is called."""
+
+
+def _short(angle: np.ndarray) -> np.ndarray:
+    """Return angles without whole turns, which move nothing [rad]."""
+    turned: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
+    return turned
+
+
+class GivenMotion(NamedTuple):
+    """The poses of a body."""
 
     name: str
     """Name of the body."""
     motion: Motion
-    """The motion that is watched."""
+    """Its motion."""
     reach: float
     """Distance of the body's surface from the origin of its frame [m]."""
-    cell: float
-    """Side of a cell [m]."""
-    top: float = 0.0
-    """Fastest speed so far, of either kind [m/s]."""
-    strikes: int = 0
-    """Times in a row that velocity and positions disagreed [-]."""
 
-    def start(self, time: float, dt: float) -> None:
-        """Look at the first step, of about ``dt`` [s].
+    def at(self, times: Sequence[float]) -> Seen:
+        """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
+        poses = [self.motion(time) for time in times]
+        axes = len(poses[0].position)
+        places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
+        rates = np.array([[*p.velocity, *([p.spin] if axes == 2 else p.spins)] for p in poses])
+        turns = (np.arange(places.shape[1]) >= axes).astype(int)
+        return Seen(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
 
-        Raises:
-            InvalidDesign: they disagree, with both numbers.
-        """
-        for k in reversed(range(PATIENCE)):  # the message then tells of the start
-            self.look(time + k * dt / PATIENCE, dt)
-        self.strikes = 0
-
-    def look(self, time: float, dt: float) -> None:
-        """Compare velocity and positions at a time [s] in steps of ``dt`` [s].
-
-        Raises:
-            InvalidDesign: they disagree for the third time in a row, with both numbers.
-        """
-        span = _LOOK * dt
-        now, soon, then = (self.motion(time + k * span) for k in range(3))
-        axes = len(now.position)
-        places = [np.array([*p.position, *_turn(now, p)]) for p in (now, soon, then)]
-        spins = [now.spin] if axes == 2 else now.spins
-        given, seen = np.array([*now.velocity, *spins]), (4 * places[1] - 3 * places[0] - places[2]) / (2 * span)
-        size, moved, off = (self._speed(rate) for rate in (given, seen, given - seen))
-        self.top = max(self.top, size, moved)
-        if not (off > SHARE * max(size, moved, QUIET * self.top) and off * dt > NOTHING * self.cell):
-            self.strikes = 0
-            return
-        self.strikes += 1
-        if self.strikes < PATIENCE:
-            return
-        wrong = given - seen
-        turning = length(wrong[axes:]) * self.reach > length(wrong[:axes])
+    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+        """Return both rates and the remedy."""
+        axes = (given.size + 2) // 2  # 3 numbers in the plane, 6 in space
+        turning = worst >= axes
         what, of = ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
 
         def numbers(rate: np.ndarray) -> str:
@@ -79,21 +99,143 @@ class Consistency:
             text = ", ".join(f"{part:.4g}" for part in parts)
             return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 
-        raise InvalidDesign(
-            f"at t = {time:.4g} s the motion of {self.name} gives the {what} {numbers(given)}, and its "
-            f"{of} changes by {numbers(seen)}; give a Pose whose {what} is the rate of its {of}."
+        return (
+            f"the motion of {self.name} gives the {what} {numbers(given)}, and its {of} changes by {numbers(seen)}; "
+            f"give a Pose whose {what} is the rate of its {of}."
         )
 
-    def _speed(self, rate: np.ndarray) -> float:
-        axes = (len(rate) + 2) // 2  # 3 numbers in the plane, 6 in space
-        return max(length(rate[:axes]), length(rate[axes:]) * self.reach)
+    def place(self, worst: int) -> str:  # noqa: ARG002 - a midline says which station it is
+        """Return which body it is."""
+        return self.name
+
+
+class GivenMidline(NamedTuple):
+    """The stations of a body that bends."""
+
+    name: str
+    """Name of the body."""
+    spine: Callable[[float], MidlineState]
+    """Its midline at every time [s]."""
+
+    def at(self, times: Sequence[float]) -> Seen:
+        """Return position, heading and half-width of the stations, one after the other, and their rates.
+
+        Raises:
+            InvalidDesign: the number of stations changes.
+        """
+        states = [self.spine(time) for time in times]
+        for time, state in zip(times, states, strict=True):
+            if state.x.size != states[0].x.size:
+                raise InvalidDesign(
+                    f"the midline of {self.name} has {states[0].x.size} stations at t = {times[0]:.4g} s and "
+                    f"{state.x.size} at t = {time:.4g} s; give as many at every time."
+                )
+        places = np.array([(s.x, s.y, s.heading, s.half_width) for s in states])
+        rates = np.array([(s.x_rate, s.y_rate, s.heading_rate, s.swell) for s in states])
+        places = places - places[0]
+        places[:, 2] = _short(places[:, 2])
+        arms = np.ones(places.shape[1:])
+        arms[2] = states[0].half_width
+        kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
+        return Seen(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
+
+    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+        """Return both rates of the worst station and the remedy."""
+        row, station = divmod(worst, given.size // 4)
+        what, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
+        return (
+            f"the midline of {self.name} gives the {what}_rate {given[worst]:.4g} {unit} at station {station}, and its "
+            f"{what} changes by {seen[worst]:.4g} {unit}; give a MidlineState whose {what}_rate is the rate of its "
+            f"{what}."
+        )
+
+    def place(self, worst: int) -> str:
+        """Return which station it is."""
+        return f"station {worst % self.spine(0.0).x.size} of the midline of {self.name}"
+
+
+@dataclass(slots=True)
+class Consistency:
+    """A motion or a bending body under watch."""
+
+    told: Told
+    """What is watched."""
+    cell: float
+    """Side of a cell [m]."""
+    every: int = 1
+    """Steps from one close look at the rates to the next [-]; for leaps every step is looked at."""
+    top: float = 0.0
+    """Fastest speed so far, of either kind [m/s]."""
+    strikes: int = 0
+    """Times in a row that rates and positions disagreed [-]."""
+    steps: int = 0
+    """Steps looked at [-]."""
+    slack: float = 0.0
+    """Farthest that half of a step led so far [m]."""
+    drift: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    """Way of each coordinate less what its rates add up to [m]."""
+    path: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    """Way of each coordinate, to and fro [m]."""
+
+    def start(self, time: float, dt: float) -> None:
+        """Look at the first step, of about ``dt`` [s].
+
+        Raises:
+            InvalidDesign: rates and positions disagree, with both numbers.
+        """
+        for k in reversed(range(PATIENCE)):  # the message then tells of the start
+            self._compare(time + k * dt / PATIENCE, dt)
+        self.strikes = 0
+
+    def look(self, time: float, dt: float) -> None:
+        """Compare rates and positions at the start of a step, a time [s] and ``dt`` [s], and over all of it.
+
+        Raises:
+            InvalidDesign: they disagree for the third time in a row, with both numbers, or the body is not where its
+                rates have led it.
+        """
+        if self.steps % self.every == 0:
+            self._compare(time, dt)
+        self.steps += 1
+        seen = self.told.at((time, time + dt))
+        way, ahead = seen.places[1] * seen.arms, 0.5 * dt * seen.rates * seen.arms
+        self.slack = max(self.slack, float(np.abs(ahead).max()))
+        off = way - ahead.sum(axis=0)
+        self.drift, self.path = self.drift + off, self.path + np.abs(way)
+        room = LEAP * self.cell + self.slack
+        wrong = (np.abs(off) > room) | (np.abs(self.drift) > np.maximum(room, SHARE * self.path))
+        if not wrong.any():
+            return
+        worst = int(np.where(wrong, np.abs(self.drift), 0.0).argmax())
+        raise InvalidDesign(
+            f"at t = {time + dt:.4g} s {self.told.place(worst)} is {abs(self.drift[worst]):.3g} m away from where its "
+            f"rates have led it ({abs(off[worst]):.3g} m in the last step of {dt:.3g} s; a cell is {self.cell:.3g} m): "
+            f"a body cannot leap. Give places without jumps and rates that are theirs, or, if they are right and only "
+            f"fast, a smaller step."
+        )
+
+    def _compare(self, time: float, dt: float) -> None:
+        span = _LOOK * dt
+        found = self.told.at([time + k * span for k in range(3)])
+        given, seen = found.rates[0], (4 * found.places[1] - found.places[2]) / (2 * span)
+        size, moved, apart = (np.abs(rate * found.arms) for rate in (given, seen, given - seen))
+        sizes = np.array([np.maximum(size, moved)[found.kinds == k].max() for k in range(found.kinds.max() + 1)])
+        self.top = max(self.top, float(sizes.max()))
+        least = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
+        excess = apart / np.maximum(SHARE * sizes, least)[found.kinds]
+        if not (excess > 1).any():
+            self.strikes = 0
+            return
+        self.strikes += 1
+        if self.strikes >= PATIENCE:
+            raise InvalidDesign(f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), given, seen)}")
 
 
 def _turn(now: Pose, then: Pose) -> np.ndarray:
-    """Return the angle of a pose in the plane, in space the rotation vector from another one to it [rad]."""
+    """Return by how much a pose is turned, in space the rotation vector from another one to it [rad]."""
     if len(now.position) == 2:
-        return np.array([then.angle])
+        return _short(np.array([then.angle - now.angle]))
     if now.pitch == then.pitch == 0 and now.roll == then.roll == 0:
-        return np.array([0.0, 0.0, then.angle - now.angle])
+        return _short(np.array([0.0, 0.0, then.angle - now.angle]))
     one, other = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (now, then))
     return rotation.to_vector(rotation.multiply(other, one * [1, -1, -1, -1]), np.zeros(3))

@@ -4,6 +4,7 @@ import os
 from dataclasses import dataclass
 from math import ceil, isfinite
 from numbers import Real
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +13,15 @@ from suchus.flow.compiled import PAD
 from suchus.flow.multigrid import COARSEST, LONGEST
 from suchus.kinds import misfits, show
 
+if TYPE_CHECKING:
+    from suchus.flow.sides import Sides
+
 MOST = 2**16
 """Cells along a side [-]; the fields of a square of so many would take a hundred gigabytes."""
 
+
+HELD = 1e-6
+"""Share of a cell by which a side of the domain may lie off the place that is asked for [-]."""
 
 NARROW = 8
 """Most cells across a channel on the coarsest level that may be long [-]."""
@@ -96,12 +103,24 @@ class Grid:
 
     @classmethod
     def covering(
-        cls, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] | None = None, *, cell: float
-    ) -> "Grid":
-        """Return the smallest fitting grid that covers [x0, x1] x [y0, y1] (x [z0, z1]), grown evenly on all sides [m].
+        cls, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] | None = None, *, cell: float,
+        sides: "Sides | None" = None,
+    ) -> "Grid":  # fmt: skip
+        """Return the smallest fitting grid that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m].
+
+        What it is larger goes evenly to both ends of each axis, or where one end is held all to the other.
+
+        Args:
+            x: first and last place along x [m].
+            y: the same along y.
+            z: the same along z, in space.
+            cell: side of a cell [m].
+            sides: those of the setup; each that is no ``Stream`` and no ``Outflow`` stays where it is asked for.
+                Without them a mirror or a wall may move by some cells.
 
         Raises:
-            InvalidDesign: an empty rectangle or box, or a cell that is not positive.
+            InvalidDesign: an empty rectangle or box, a cell that is not positive, or one that does not fit between two
+                sides that are held.
         """
         pairs = (x, y) if z is None else (x, y, z)
         what, count = ("rectangle", "two") if z is None else ("box", "three")
@@ -111,18 +130,24 @@ class Grid:
                 f"the {what} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; {count} "
                 "pairs of finite numbers and one more are needed."
             )
-        sides = [end - start for start, end in pairs]
-        if cell > 0 and max(sides) / MOST > cell:
-            raise InvalidDesign(f"cells of {cell} m make a side of {max(sides) / cell:.3g}; {MOST} are allowed.")
-        if not (cell > 0 and min(sides) > 0):
+        lengths = [end - start for start, end in pairs]
+        if cell > 0 and max(lengths) / MOST > cell:
+            raise InvalidDesign(f"cells of {cell} m make a side of {max(lengths) / cell:.3g}; {MOST} are allowed.")
+        if not (cell > 0 and min(lengths) > 0):
             raise InvalidDesign(
                 f"the {what} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a positive cell."
             )
-        cells = _fitting(tuple(max(8, ceil(side / cell - 1e-6)) for side in sides))
-        origin = tuple(
-            start - (n * cell - side) / 2 for (start, _), n, side in zip(pairs, cells, sides, strict=True)
-        )  # fmt: skip
-        return cls(cells=cells, cell=cell, origin=origin)  # type: ignore[arg-type]
+        cells = _fitting(tuple(max(8, ceil(side / cell - HELD)) for side in lengths))
+        origin = []
+        for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
+            low, high = (False, False) if sides is None else sides.held(len(pairs))[d]
+            if low and high and abs(n * cell - side) > HELD * cell:
+                raise InvalidDesign(
+                    f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "
+                    f"multigrid needs, are {n * cell:.6g} m; take cells of {side / n:.12g} m."
+                )
+            origin.append(start - (n * cell - side) * (0.0 if low else 1.0 if high else 0.5))
+        return cls(cells=cells, cell=cell, origin=tuple(origin))  # type: ignore[arg-type]
 
     @property
     def axes(self) -> int:

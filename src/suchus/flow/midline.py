@@ -40,7 +40,7 @@ class MidlineState:
     def __post_init__(self) -> None:
         if self.x.ndim != 1 or self.x.size < 3:
             raise InvalidDesign(f"the midline has shape {self.x.shape}; give at least 3 stations in one row.")
-        for name in ("y", "heading", "half_width", "x_rate", "y_rate", "heading_rate", "half_width_rate"):
+        for name in ("x", "y", "heading", "half_width", "x_rate", "y_rate", "heading_rate", "half_width_rate"):
             values = getattr(self, name)
             if values is not None and values.shape != self.x.shape:
                 raise InvalidDesign(f"{name} of the midline has shape {values.shape}; x has {self.x.shape}.")

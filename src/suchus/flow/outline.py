@@ -11,6 +11,8 @@ from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.flow.shape import Solid, positive
 
 _STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
+_MOST, _OFF = 0.9, 0.02  # share of an outline on which a distance has the gradient 1, but for corners, and how nearly
+_FLATTEST = 0.01  # share of it whose gradient is no measure: at corners it is a mean
 _BETWEEN = 8  # points that are then put in each step
 
 
@@ -83,7 +85,9 @@ def from_outline(points: np.ndarray | Path | str) -> Polygon:
 
     Args:
         points: corners in order, shape (corner, 2) [m], or a text file of two columns x and y, split by blanks or
-            commas; lines with ``#`` and a first line of names are passed over, a repeated first point is dropped.
+            commas; what follows a ``#`` and a first line of names are passed over, a repeated first point is dropped. A
+            count of the rows may come first, or two counts, of those of the upper and of the lower surface, each
+            from the nose on.
 
     Raises:
         InvalidDesign: fewer than three corners, or edges that cross.
@@ -97,13 +101,49 @@ def from_outline(points: np.ndarray | Path | str) -> Polygon:
     except (OSError, UnicodeDecodeError) as error:
         raise UnreadableFile(f"the outline {path} cannot be read: {error}.") from error
     rows = [line for line in lines if line]
-    try:
-        corners = np.array([[float(word) for word in row] for row in rows[_is_heading(rows) :]])
-        if corners.ndim != 2 or corners.shape[1] != 2:
-            raise ValueError(f"rows of shape {corners.shape}")
-    except ValueError as error:
-        raise UnreadableFile(f"the outline {path} is not two columns of numbers, x and y ({error}).") from error
-    return Polygon(corners=corners)
+    numbers = _numbers(rows[_is_heading(rows) :], path)
+    return Polygon(corners=np.array(_uncounted(numbers, path)).reshape(-1, 2))
+
+
+def _numbers(rows: list[list[str]], path: Path) -> list[list[float]]:
+    """Return the numbers of an outline's rows.
+
+    Raises:
+        UnreadableFile: there are none, or words that are no numbers.
+    """
+    if not rows:
+        raise UnreadableFile(f"the outline {path} is not two columns of numbers, x and y: it holds no row.")
+    for row in rows:
+        for word in row:
+            if not _is_heading([[word]]):
+                continue
+            raise UnreadableFile(
+                f"the outline {path} is not two columns of numbers, x and y: its row {' '.join(row)!r} holds {word!r}."
+            )
+    return [[float(word) for word in row] for row in rows]
+
+
+def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
+    """Return the corners of an outline that may begin with how many there are, or how many above and below a chord.
+
+    Raises:
+        UnreadableFile: a row is not two numbers, or the count is another.
+    """
+    first, corners = rows[0], rows[1:]
+    whole = all(count == int(count) and count > 1 for count in first if abs(count) < 1e9) and bool(first)
+    if whole and len(first) in (1, 2) and sum(first) == len(corners) and all(len(row) == 2 for row in corners):
+        above = int(first[0])
+        # two surfaces, both from the nose on, which they share
+        return corners if len(first) == 1 else corners[:above][::-1] + corners[above + (corners[0] == corners[above]) :]
+    for row in rows:
+        if len(row) != 2:
+            shown = " ".join(f"{number:g}" for number in row[:6])
+            counted = f"; a single number at the beginning is the count of rows after it, here {len(corners)}"
+            raise UnreadableFile(
+                f"the outline {path} is not two columns of numbers, x and y: it has the row {shown!r}"
+                f"{counted if row is first and len(row) == 1 else ''}."
+            )
+    return rows
 
 
 def _is_heading(rows: list[list[str]]) -> bool:
@@ -123,23 +163,38 @@ class Implicit(Solid):
     """
 
     sdf: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    """Signed distance to the surface at points (x, y) [m], negative inside; exact near the surface."""
+    """Signed distance to the surface at points (x, y) [m], negative inside; or, of another gradient than 1 on the
+    surface, anything that is 0 there and rises outward, which is divided by its gradient."""
     box: tuple[float, float, float, float]
     """A rectangle around the body: x0, x1, y0, y1 [m]."""
     _ring: np.ndarray = field(init=False, repr=False)
+    _least: float | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_ring", _around(self.sdf, self.box))
+        sizes = np.hypot(*self._rises(*self._ring.T)) / (2 * self._step)
+        exact = np.quantile(np.abs(sizes - 1), _MOST) < _OFF
+        object.__setattr__(self, "_least", None if exact else float(np.quantile(sizes, _FLATTEST)))
+
+    @property
+    def _step(self) -> float:
+        return 1e-6 * _size(self.box)
+
+    def _rises(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return by how much the function rises over two steps along x and along y."""
+        step = self._step
+        return self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance and outward normal, the normal by differences."""
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        step = 1e-6 * _size(self.box)
-        gx, gy = self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
+        (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
-        flat = size < 1e-3 * step  # in the very middle: any direction will do
+        flat = size < 1e-3 * self._step * (self._least or 1.0)  # in the very middle: any direction will do
         safe = np.where(flat, 1.0, size)
-        return np.asarray(self.sdf(x, y), float), np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
+        if self._least is not None:
+            value = value / np.maximum(size / (2 * self._step), self._least)
+        return value, np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return points around the body, evenly spaced."""
@@ -160,7 +215,7 @@ def from_sdf(
 
     Args:
         function: signed distance to the surface [m], for arrays of points [m]; its size counts within three cells of
-            the surface only.
+            the surface only. If its gradient there is not 1, it is divided by its gradient.
         box: a rectangle around the body: x0, x1, y0, y1 [m].
 
     Raises:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -69,8 +70,12 @@ class Pose:
         """Return the same pose with as many numbers in position and velocity as there are axes.
 
         Raises:
-            InvalidDesign: it has other than two or three, or what only space has in the plane.
+            InvalidDesign: it has other than two or three, one that is not finite, or what only space has in the plane.
         """
+        for name in ("position", "velocity", "angle", "spin", "pitch", "roll", "spin_x", "spin_y"):
+            given = getattr(self, name)
+            if not all(map(isfinite, given if isinstance(given, tuple) else (given,))):
+                raise InvalidDesign(f"{name} of a pose is {show(given)}; finite numbers are needed.")
         position, velocity = (
             (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
         )

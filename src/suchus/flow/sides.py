@@ -170,6 +170,11 @@ class Sides:
         """Return whether there is a mirror at the low and at the high end, along each axis: ``NAMES``."""
         return tuple(isinstance(side, Mirror) for side in self.around(axes))
 
+    def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
+        """Return whether the place of the low and of the high side counts, along each axis: of all but open ones."""
+        fixed = [not isinstance(side, Stream | Outflow) for side in self.around(axes)]
+        return tuple(zip(fixed[::2], fixed[1::2], strict=True))
+
     def fastest(self, grid: Grid) -> float:
         """Return the fastest speed that a wall or an inflow imposes [m/s]."""
         speeds = [0.0]

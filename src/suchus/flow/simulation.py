@@ -9,32 +9,37 @@ import numba
 import numpy as np
 
 from suchus import threads
-from suchus.errors import OutsideLimits, UnknownName
+from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import added_mass, symmetric
 from suchus.flow.ahead import compile_ahead
-from suchus.flow.body import Body
+from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
-from suchus.flow.consistency import Consistency
+from suchus.flow.consistency import Consistency, GivenMidline, GivenMotion
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns, part_columns
+from suchus.flow.midline import Midline
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
+from suchus.flow.shape import Cylinder, Markers
+from suchus.flow.solid import SkinMarkers, Sphere
 from suchus.flow.swimmer import Swimmer
+from suchus.flow.trunk import Trunk
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Fluid
 
 ADDED_EVERY = 8
 """Steps after which a free body's added mass is computed anew [-]."""
+
+RATES_EVERY = 8
+"""Steps after which the rates of a bending body are compared with its positions anew [-]."""
 
 SLACK = 1.5
 """Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
@@ -93,6 +98,9 @@ class Simulation(Fields):
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
         self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
+        shared = self._watch.shared(self.water, 0.0)
+        if shared is not None:
+            raise InvalidDesign(shared)
         for body, cut in zip(setup.bodies, self.water.cut, strict=True):
             if isinstance(body, FreeBody) and body.free is None:
                 self.swimmers[body.name].go &= np.array(symmetric(cut))
@@ -100,15 +108,30 @@ class Simulation(Fields):
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._motions = [self._watched(b) for b in setup.bodies if isinstance(b, Body) and callable(b.motion)]
+        self._watched = [told for b in setup.bodies for told in self._told(b)]
 
-    def _watched(self, body: Body) -> Consistency:
-        pose = body.pose(0.0).along(self.axes)
-        outline = body.shape.markers(0.0, pose, self.setup.grid.cell)
-        reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
-        motion = Consistency(body.name, lambda time: body.pose(time).along(self.axes), reach, self.setup.grid.cell)
-        motion.start(0.0, self.setup.step or self._limit(max(self.water.fastest(), self._speed)))
-        return motion
+    def _told(self, body: AnyBody) -> list[Consistency]:
+        """Return what is to be watched of a body's rates, after a first look at all that it gives."""
+        cell, found, changing = self.setup.grid.cell, [], []
+        if isinstance(body, Body):
+            pose = body.pose(0.0).along(self.axes)
+            outline = body.shape.markers(0.0, pose, cell)
+            reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
+            fixed = isinstance(body.motion, Pose)
+            if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may turn in its place
+                pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
+            found.append(
+                Consistency(
+                    GivenMotion(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
+                )
+            )
+            changing.append(not fixed)
+        if isinstance(body.shape, Midline | Trunk):
+            found.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
+            changing.append(not body.shape.rigid)
+        for one in found:
+            one.start(0.0, self.setup.step or self._limit(max(self.water.fastest(), self._speed)))
+        return [one for one, does in zip(found, changing, strict=True) if does]
 
     # --- state -------------------------------------------------------------------------------------------------
 
@@ -166,15 +189,18 @@ class Simulation(Fields):
 
         Raises:
             Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
-            InvalidDesign: a body leaves the domain, is too fast for the grid, or its motion contradicts itself.
+            InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates are not those of its places.
+            OutsideLimits: ``dt`` is not positive.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
             self._speed = max(self._speed, self._reference, self.setup.sides.fastest(self.setup.grid))
         dt = self.next_step() if dt is None else dt
-        for motion in self._motions:
-            motion.look(self.time, dt)
+        if not (isfinite(dt) and dt > 0):
+            raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
+        for told in self._watched:
+            told.look(self.time, dt)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
@@ -189,6 +215,7 @@ class Simulation(Fields):
             self.water.offset = offset
             self.water.place(list(self.setup.bodies), poses, time)
             self._placed = True
+            self._watch.overlap(self.water, time)
         if moving:
             cell = self.setup.grid.cell
             self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self.setup.bodies, poses, strict=True)]
@@ -255,8 +282,7 @@ class Simulation(Fields):
                 swimmer.load = np.array([*act.force, *act.moment])
                 if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
                     asked = swimmer.go if self.axes == 3 else None
-                    added = added_mass(water, markers, point, setup.density, k, asked)
-                    swimmer.added = np.nan_to_num(added)
+                    swimmer.take_added(added_mass(water, markers, point, setup.density, k, asked), self.time)
             values += columns(load, act, drift, place, self._watch.errors[k])
             along += part_columns(body, parts, point, poses[k], self.time, drift)
             body_speed = max(body_speed, _fastest_marker(markers))
@@ -323,13 +349,15 @@ class Simulation(Fields):
             Diverged: see ``advance``.
             UnreadableFile: the checkpoint is broken or belongs to another setup.
             Unwritable: the checkpoint cannot be written.
-            OutsideLimits: ``until`` is not a time.
+            OutsideLimits: ``until`` is not a time, or one that has passed.
         """
         if not isfinite(until):
             raise OutsideLimits(f"the run is to last until {until} s; give a finite time.")
+        self._refuse_past(until, "the run", "a new Simulation")
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
+            self._refuse_past(until, f"the run of the checkpoint {path}", "another file")
         cells = prod(self.setup.grid.cells)
         watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
         due = due_after(self.time, every)
@@ -350,6 +378,18 @@ class Simulation(Fields):
                 saver.save(self, now=True)
         self._watch.sides(self.water, self.time)
         return self.record
+
+    def _refuse_past(self, until: float, what: str, remedy: str) -> None:
+        """Refuse a time that has passed.
+
+        Raises:
+            OutsideLimits: naming both times and the remedy.
+        """
+        if until < self.time * (1 - 1e-12):
+            raise OutsideLimits(
+                f"{what} has come to t = {self.time:.6g} s already and cannot end at {until:.6g} s; give a later time, "
+                f"or {remedy}."
+            )
 
     def control(self, margin: float) -> None:
         """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``.

@@ -21,6 +21,9 @@ _FEWEST = 16
 _RIM = 96
 """Corners of the ellipse in the middle of a thin ellipsoid [-]."""
 
+_BLUNT = 2.0
+"""Longest over shortest axis of a body up to which its drag on a grid is off as a sphere's is [-]."""
+
 _ROUND = 1e-3
 """Length of that ellipse, over the smallest half-axis, below which the ellipsoid is taken for round there [-]."""
 
@@ -106,6 +109,11 @@ class SpaceShape(ABC):
         """Whether the shape never changes."""
         return True
 
+    @property
+    def blunt(self) -> bool:
+        """Whether it is about as long along each axis, for ``resolution``."""
+        return False
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipsoid(SpaceShape):
@@ -175,6 +183,11 @@ class Ellipsoid(SpaceShape):
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest axis."""
         return np.zeros(1), np.full(1, 2 * float(self.half.min()))
+
+    @property
+    def blunt(self) -> bool:
+        """Whether no axis is more than ``_BLUNT`` times another."""
+        return float(self.half.max()) <= _BLUNT * float(self.half.min())
 
     def volume(self, time: float) -> float:
         """Return the volume."""

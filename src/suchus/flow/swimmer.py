@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus import rotation
-from suchus.errors import InvalidDesign
+from suchus.errors import Diverged, InvalidDesign
 from suchus.flow.free import FreeBody
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, turned
@@ -171,6 +171,21 @@ class Swimmer:
             return self._pose(place, self.rate[:3], self.rate[3:])
         (x, y, angle), (u, v, spin) = place.tolist(), self.rate.tolist()
         return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
+
+    def take_added(self, mass: np.ndarray, time: float) -> None:
+        """Take the added mass of a time [s]; NaN, in degrees of freedom that are not free alone, is nothing.
+
+        Raises:
+            Diverged: it is not finite in one that is free.
+        """
+        own = mass[np.ix_(self.go, self.go)]
+        if not np.isfinite(own).all():
+            raise Diverged(
+                f"at t = {time:.4g} s the added mass of {self.body.name} is {own[~np.isfinite(own)][0]} in a degree of "
+                f"freedom in which it may move; take a finer grid around it, precision='double', or lock that degree.",
+                time=time,
+            )
+        self.added = np.nan_to_num(mass)
 
     def state(self) -> dict[str, np.ndarray]:
         """Return all that changes, by name."""

@@ -1,4 +1,4 @@
-"""What a simulation warns of, once each: a layer too thin for the grid, and vortices at a side that cannot move."""
+"""What a simulation warns of, once each: thin layers, bodies in each other, and vortices at a side that cannot move."""
 
 from dataclasses import dataclass, field
 from warnings import warn
@@ -16,6 +16,9 @@ EVERY = 256
 
 STRONG = 0.05
 """Vorticity at a side, over the largest in the domain, that is too strong for the side to be held [-]."""
+
+SHARED = 0.5
+"""Depth from which two bodies lie in each other [cells]: what a grid hardly tells from bodies that touch."""
 
 FELT = 0.02
 """Speed that the vortex gives a cell at the side, over the fastest water, below which nothing is said [-]."""
@@ -58,6 +61,25 @@ class Watch:
             text = self.setup.layer_warning(body, error)
             if text is not None:
                 self._say(f"layer {body.name}", text)
+
+    def shared(self, water: Fluid, time: float) -> str | None:
+        """Return what is to be said of two bodies that lie in each other at a time [s], if any do."""
+        depth, pair = water.overlap
+        if depth <= SHARED * water.grid.cell:
+            return None
+        one, other = (self.setup.bodies[k].name for k in pair)
+        return (
+            f"at t = {time:.4g} s {one} and {other} lie {depth:.3g} m deep in each other, "
+            f"{depth / water.grid.cell:.2g} cells: the water meets the nearer surface alone, so that neither's force "
+            f"is its own. Move them apart, keep free bodies apart by a BodyContact, or make one shape of them (union, "
+            f"difference)."
+        )
+
+    def overlap(self, water: Fluid, time: float) -> None:
+        """Warn of bodies that have run into each other."""
+        text = self.shared(water, time)
+        if text is not None:
+            self._say(f"overlap {water.overlap.bodies}", text)
 
     def sides(self, water: Fluid, time: float) -> None:
         """Warn of vortices at a side that is held to the far stream, which they should move."""

@@ -13,7 +13,7 @@ import numpy as np
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance
-from suchus.flow.body import AnyBody, cuts, measure_all, rows_of, unite, window_of
+from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, rows_of, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
@@ -81,6 +81,7 @@ class Fluid:
         owners: for each component, the row of the part that is nearest to the points of the window.
         given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
         solves: how the last two pressure solves went.
+        overlap: the two bodies that lie deepest in each other.
     """
 
     def __init__(self, grid: Grid, sides: Sides, viscosity: float, dtype: type) -> None:
@@ -112,6 +113,7 @@ class Fluid:
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
+        self.overlap = Overlap(0.0, (0, 0))
         self.rows: list[range] = []
         self.given = np.zeros((0, sums_of(self.axes)))
         self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
@@ -239,10 +241,12 @@ class Fluid:
 
     def _measure(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
         h, grid, here = self.grid.cell, self.grid, self._here(self.window)
+        self.overlap = Overlap(0.0, (0, 0))
         ends = [(s.start, s.stop) for s in reversed(here)]
         for c in range(self.axes):
             points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.axes)]
-            f, self.owners[c] = measure_all(bodies, poses, points, time, h)
+            f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
+            self.overlap = max(self.overlap, overlap)
             near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             mu0: np.ndarray = np.empty(near.size, self.dtype)
             mu1: np.ndarray = np.empty((self.axes, near.size), self.dtype)
