@@ -26,8 +26,8 @@ from suchus.progress import Progress, silent, staged
 from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
 
 __all__ = [
-    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "ends", "ranged", "silent", "staged",
-    "stopwatch", "templates", "write",
+    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged", "silent",
+    "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
@@ -41,6 +41,44 @@ class Measure:
     value: float
     unit: str
     """SI unit, ``-`` for none."""
+
+
+_RESAMPLES = 2000
+"""Number of times an ensemble is drawn anew for an interval [-]."""
+_COVERED = 0.95
+"""Share of the resamples whose middle lies in the interval [-]."""
+
+
+def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> dict[str, Measure]:
+    """Return the middle of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
+
+    The interval is that of the bootstrap (Efron 1979): the middle of ensembles that are drawn from this one with
+    replacement, by the same draws for every ensemble of this size. It tells how well the repeats know the middle, and
+    becomes narrower with their number.
+
+    Args:
+        name: of the measure.
+        repeats: a number of every repeat; none that is not finite makes a middle.
+        unit: of the numbers.
+        middle: median or mean, along an axis.
+    """
+    values = np.asarray(repeats, float).ravel()
+    found = float(middle(values, axis=-1))
+    if np.isfinite(values).all():
+        low, high = np.quantile(middle(values[_drawn(values.size)], axis=-1), [(1 - _COVERED) / 2, (1 + _COVERED) / 2])
+    else:
+        low = high = found
+    return {
+        name: Measure(found, unit),
+        f"{name}_low": Measure(float(min(low, found)), unit),
+        f"{name}_high": Measure(float(max(high, found)), unit),
+    }
+
+
+@cache
+def _drawn(count: int) -> np.ndarray:
+    """Return which repeats each resample holds."""
+    return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
 
 
 def ranged(name: str, value: Any, repeats: Any, unit: str) -> dict[str, Measure]:

@@ -18,7 +18,7 @@ from suchus.metrics import displacement, loss, swing_lift, swing_loads, whole
 from suchus.motion import cycle_targets, movement
 from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
-from suchus.verdict import RULES, judge
+from suchus.verdict import RULES, between, judge
 
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]
@@ -261,4 +261,4 @@ def test_a_run_that_comes_apart_is_not_measured():
 def _says(claim: str, change: float) -> bool:
     """Tell whether the sentence of a claim about a fault is true of a change of displacement."""
     rule = RULES[claim]
-    return rule.held({rule.measure: change})
+    return rule.held(between(rule.measure, change, change)) is True

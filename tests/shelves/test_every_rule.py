@@ -86,8 +86,9 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
     if numeric and rule.kind != "animals":
         yield f"{rule.claim}: rounding doubled", rule, 2.0
         yield f"{rule.claim}: rounding removed", rule, 0.0
-        if rule.band is not None:
-            yield f"{rule.claim}: without the spread of repeats", replace(rule, band=None), 1.0
+    for name in rule.spread:
+        rest = tuple(other for other in rule.spread if other != name)
+        yield f"{rule.claim}: without the interval of {name}", replace(rule, spread=rest), 1.0
 
 
 def _with(rule: Rule, at: int, clauses: tuple[Clause, ...]) -> Rule:

@@ -13,7 +13,7 @@ from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
 from suchus.study import Claims, Plan
 from suchus.study.claim_measures import RUNS, asked_rules, held, measures_of
-from suchus.verdict import Band, Clause, Rule
+from suchus.verdict import Clause, Rule
 
 LEAST = 0.05
 
@@ -87,8 +87,8 @@ RULE = Rule(
     claim="displacement_ratio",
     experiment="",
     measure="ratio",
-    holds=(Clause("ratio_low", ">", 1.0, ""), Clause("duty", "<=", "ratio_high", "")),
-    band=Band(low="ratio_low", high="ratio_high", of="repeats"),
+    holds=(Clause("ratio", ">", 1.0, ""), Clause("duty", "<=", "ratio", "")),
+    spread=("ratio",),
     why="",
 )
 
@@ -101,8 +101,10 @@ def test_a_rule_is_applied_to_every_sample_whose_number_is_there():
 
 
 def test_repeats_that_were_measured_are_not_replaced():
-    measures = {"ratio": np.array([2.0]), "ratio_low": np.array([0.9]), "duty": np.array([0.5])}
-    assert held(RULE, measures)[1].tolist() == [False]
+    measures = {"ratio": np.array([2.0, 2.0]), "ratio_low": np.array([0.9, 1.1]), "duty": np.array([0.5, 0.5])}
+    number, holds = held(RULE, measures)
+    assert holds.tolist() == [False, True]
+    assert np.isnan(number).tolist() == [True, False]  # undecided is not judged
 
 
 def test_a_rule_that_needs_what_is_not_measured_is_named():

@@ -5,12 +5,16 @@ import sys
 from dataclasses import replace
 from math import nan
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import suchus.experiments
 from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.verdict import RULES, Clause, Share, examples_of, judge, rules_of
-from suchus.verdict.judging import ROBUST
+from suchus.experiment import estimated
+from suchus.verdict import RULES, Clause, Share, between, examples_of, judge, rules_of
+from suchus.verdict.judging import ROBUST, WORDS
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
@@ -38,12 +42,95 @@ def test_a_clause_compares(relation, below, at, above):
     assert [other.holds({"x": x, "y": 2.0}) for x in (1.9, 2.0, 2.1)] == [below, at, above]
 
 
+@pytest.mark.parametrize(
+    ("relation", "words"),
+    [
+        ("<", [True, None, None, False, False]),
+        ("<=", [True, True, None, None, False]),
+        (">", [False, False, None, None, True]),
+        (">=", [False, None, None, True, True]),
+    ],
+)
+def test_a_clause_is_undecided_where_the_interval_covers_both_sides(relation, words):
+    ends = [(1.8, 1.9), (1.9, 2.0), (1.9, 2.1), (2.0, 2.1), (2.1, 2.2)]
+    clause, other = Clause("x", relation, 2.0, "why"), Clause("x", relation, "y", "why")
+    for (low, high), word in zip(ends, words, strict=True):
+        assert clause.holds(between("x", low, high), ("x",)) is word
+        assert other.holds(between("x", low, high) | {"y": 2.0}, ("x",)) is word
+    assert clause.holds(between("x", 1.0, 3.0)) is clause.holds({"x": 2.0})
+    apart = between("x", 1.0, 2.0) | between("y", 3.0, 4.0)
+    assert other.holds(apart, ("x", "y")) is (relation in ("<", "<="))
+    assert other.holds(apart | between("y", 1.5, 4.0), ("x", "y")) is None
+    assert clause.holds(between("x", nan, 3.0), ("x",)) is False
+
+
+def test_one_clause_that_fails_for_sure_contradicts_whatever_is_undecided():
+    rule = replace(RULES["tail_supports"], holds=(Clause("a", ">", 0.0, "why"), Clause("b", ">", 0.0, "why")),
+                   spread=("a", "b"))  # fmt: skip
+    sure, open_, not_so = (-1.0, -0.5), (-0.5, 0.5), (0.5, 1.0)
+    for a, b, held in (
+        (open_, sure, False), (sure, open_, False), (sure, not_so, False), (open_, not_so, None), (open_, open_, None),
+        (not_so, not_so, True),
+    ):  # fmt: skip
+        assert rule.held(between("a", *a) | between("b", *b)) is held
+
+
+SHARPER = {
+    "undecided": {*WORDS} - {"not testable"},
+    "reproduced": {"reproduced", "same sense"},
+    "fitted": {"fitted", "same sense"},
+    "same sense": {"same sense"},
+    "contradicted": {"contradicted"},
+}
+"""Words that a narrower interval may make of a word of measured numbers."""
+
+
+@given(
+    wide=st.tuples(st.floats(-1.0, 2.0), st.floats(-1.0, 2.0)).map(sorted),
+    inner=st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)).map(sorted),
+    claim=st.sampled_from(["displacement_coordinated", "tail_swing", "wagging_balances", "fault_hind_yaw_limbs_only"]),
+)
+def test_a_narrower_interval_makes_a_word_sharper_and_never_kinder(wide, inner, claim):
+    rule = RULES[claim]
+    measures = examples_of(rule.experiment)[claim][0][0]
+    low, high = wide
+    words = [
+        judge(rule, measures | between(rule.measure, *ends)).verdict
+        for ends in (wide, [low + share * (high - low) for share in inner])
+    ]
+    assert words[1] in SHARPER[words[0]]
+
+
+def test_more_repeats_make_a_narrower_interval_around_the_middle():
+    rng = np.random.default_rng(3)
+    widths = []
+    for count in (4, 12, 48, 192):
+        ends = [estimated("x", rng.normal(size=count), "-") for _ in range(40)]
+        assert all(one["x_low"].value <= one["x"].value <= one["x_high"].value for one in ends)
+        widths.append(float(np.mean([one["x_high"].value - one["x_low"].value for one in ends])))
+        if count >= 12:
+            covered = np.mean([one["x_low"].value <= 0.0 <= one["x_high"].value for one in ends])
+            assert covered >= 0.85  # of 40 intervals of 95 % each
+    assert widths == sorted(widths, reverse=True)
+    assert widths[1] / widths[3] == pytest.approx(4.0, rel=0.35)  # as the root of the number
+
+
+def test_the_same_repeats_give_the_same_interval_and_one_that_is_none_gives_none():
+    values = np.random.default_rng(5).normal(size=12)
+    assert estimated("x", values, "m") == estimated("x", values.copy(), "m")
+    assert {one.value for one in estimated("x", [2.0], "m").values()} == {2.0}
+    assert all(np.isnan(one.value) for one in estimated("x", [1.0, nan], "m").values())
+    mean = estimated("x", [0.0, 0.0, 0.0, 1.0], "-", middle=np.mean)
+    assert mean["x"].value == 0.25
+    assert mean["x_low"].value == 0.0
+
+
 def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
     measures = SWINGS[0][0]  # reproduced
     for share, held in ((ROBUST + 0.01, False), (ROBUST - 0.01, True)):
         verdict = judge(RULES["tail_swing"], measures, {"tail_swing": replace(SHARE, share=share)})
         assert verdict.fragile is held
-    contradicted = SWINGS[1][0]
+    contradicted = SWINGS[2][0]
     for share, held in ((1 - ROBUST - 0.01, False), (1 - ROBUST + 0.01, True)):
         verdict = judge(RULES["tail_swing"], contradicted, {"tail_swing": replace(SHARE, share=share)})
         assert verdict.fragile is held

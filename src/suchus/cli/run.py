@@ -32,6 +32,8 @@ _COLOURS = {
     "reproduced": "green",
     "same sense": "yellow",
     "contradicted": "red",
+    "undecided": "magenta",
+    "models disagree": "magenta",
     "not testable": "dim",
     "by construction": "cyan",
     "fitted": "cyan",

@@ -23,6 +23,8 @@ MARKS = {
     "reproduced": "●",
     "same sense": "◐",
     "contradicted": "✕",
+    "undecided": "◑",
+    "models disagree": "≠",
     "not testable": "○",
     "fitted": "◇",
     "by construction": "□",

@@ -122,7 +122,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "measured": _finite(verdict.measured),
         "low": _finite(verdict.low),
         "high": _finite(verdict.high),
-        "repeats": rule.band.of if rule.band else "",
+        "repeats": rule.of,
         "unit": claim.unit,
         "kind": rule.kind,
         "rule": [str(clause) for clause in rule.holds],

@@ -122,7 +122,7 @@ def _faults(forward: Mapping[str, np.ndarray], able: np.ndarray) -> dict[str, np
 
 
 def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return what a rule needs; a sample is run once, so that its value stands for the least and greatest of repeats.
+    """Return what a rule needs; a sample is run once, so that its value stands for the ends of an interval.
 
     Args:
         rule: the claim's.
@@ -133,7 +133,7 @@ def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray
     """
     found = {}
     for name in sorted(rule.needs):
-        plain = name if name in measures else name.removesuffix("_low").removesuffix("_high").removesuffix("_repeated")
+        plain = name if name in measures else name.removesuffix("_low").removesuffix("_high")
         if plain not in measures:
             raise IncompatibleRecord(
                 f"the rule for {rule.claim} needs {name}, which the study of the claims does not measure; "
@@ -144,7 +144,9 @@ def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray
 
 
 def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the number of a claim in every sample, NaN where it cannot be judged, and whether its statement holds.
+    """Return the number of a claim in every sample, NaN where it is not judged, and whether its statement holds.
+
+    A sample whose intervals leave the statement undecided is not judged.
 
     Args:
         rule: the claim's.
@@ -153,5 +155,6 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
     needed = once(rule, measures)
     number = np.asarray(needed[rule.measure], dtype=float)
     rows = zip(*(values.tolist() for values in needed.values()), strict=True)
-    holds = np.array([rule.held(dict(zip(needed, row, strict=True))) for row in rows], dtype=bool)
-    return number, holds & np.isfinite(number)
+    answers = [rule.held(dict(zip(needed, row, strict=True))) for row in rows]
+    number = np.where([answer is None for answer in answers], np.nan, number)
+    return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)

@@ -1,13 +1,12 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
 from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
-from suchus.verdict.rule import Band, Clause, Kind, Reading, Rule, Varied, compared, listed
+from suchus.verdict.rule import Clause, Kind, Reading, Rule, Varied, between, compared, interval, listed
 from suchus.verdict.table import RULES, examples_of, rules_of, varied_of
 
 __all__ = [
     "RULES",
     "SHARES",
-    "Band",
     "Clause",
     "Examples",
     "Kind",
@@ -17,8 +16,10 @@ __all__ = [
     "Varied",
     "Verdict",
     "Word",
+    "between",
     "compared",
     "examples_of",
+    "interval",
     "judge",
     "listed",
     "rules_of",

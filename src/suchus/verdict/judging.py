@@ -14,7 +14,7 @@ from typing import Literal, get_args
 
 from suchus.errors import IncompatibleRecord
 from suchus.paper import CLAIMS, Claim
-from suchus.verdict.rule import Rule
+from suchus.verdict.rule import Rule, interval
 
 ROBUST = 0.9
 """A verdict is fragile if fewer plausible designs than this share agree with it [-].
@@ -73,11 +73,15 @@ SHARES: Mapping[str, Share] = _shipped()
 """By claim."""
 
 
-Word = Literal["reproduced", "same sense", "contradicted", "not testable", "by construction", "fitted"]
-"""``reproduced``: it came out, within the printed digits and the spread of repeats. ``same sense``: another number, but
+Word = Literal[
+    "reproduced", "same sense", "contradicted", "undecided", "models disagree", "not testable", "by construction",
+    "fitted",
+]  # fmt: skip
+"""``reproduced``: it came out, within the printed digits and the interval of ours. ``same sense``: another number, but
 the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
-``not testable``: nothing was measured that could decide. ``by construction``: an input, a count or a commanded shape
-that is read back. ``fitted``: a free number was chosen so that it comes out.
+``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
+carry the claim say different words. ``not testable``: nothing was measured that could decide. ``by construction``:
+an input, a count or a commanded shape that is read back. ``fitted``: a free number was chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
 Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
@@ -95,9 +99,9 @@ class Verdict:
     measured: float | None
     """What was measured, in the unit of ``unit``; None where nothing can be measured."""
     low: float | None
-    """The least of its repeats; None where nothing was repeated."""
+    """Lower end of its interval; None where it has none."""
     high: float | None
-    """The greatest of its repeats."""
+    """Upper end of its interval."""
     verdict: Word
     """The verdict in a word or two."""
     why: str
@@ -108,7 +112,7 @@ class Verdict:
     @property
     def held(self) -> bool:
         """Whether the statement, apart from its number, was found to hold."""
-        return self.verdict not in ("contradicted", "not testable")
+        return self.verdict in ("reproduced", "same sense", "by construction", "fitted")
 
     @property
     def fragile(self) -> bool:
@@ -130,9 +134,7 @@ def judge(rule: Rule, measures: Mapping[str, float], shares: Mapping[str, Share]
     """
     claim = CLAIMS[rule.claim]
     value = _value(rule, measures)
-    low = high = None
-    if rule.band is not None:
-        low, high = rule.band.spread(value, measures)
+    low, high = interval(rule.measure, measures, rule.spread) if rule.measure in rule.spread else (None, None)
     return Verdict(
         claim=claim,
         rule=rule,
@@ -146,12 +148,7 @@ def judge(rule: Rule, measures: Mapping[str, float], shares: Mapping[str, Share]
 
 
 def _value(rule: Rule, measures: Mapping[str, float]) -> float:
-    needed = (
-        {rule.measure} | {c.measure for c in rule.holds} | {c.bound for c in rule.holds if isinstance(c.bound, str)}
-    )
-    if rule.band is not None:
-        needed |= {rule.band.low, rule.band.high}
-    missing = sorted(needed - set(measures))
+    missing = sorted(rule.needs - set(measures))
     if missing:
         raise IncompatibleRecord(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
@@ -163,6 +160,8 @@ def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float])
     if not isfinite(value):
         return "not testable"
     held = rule.held(measures)
+    if held is None:
+        return "undecided"
     if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
         return "same sense" if held else "not testable"
     near = claim.value is None or rule.near(claim.value, claim.rounding, measures)

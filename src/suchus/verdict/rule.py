@@ -4,7 +4,7 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 """
 
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import degrees, isfinite
 from types import MappingProxyType
@@ -78,31 +78,37 @@ class Clause:
     why: str
     """Reason for the bound, one that was there before the result."""
 
-    def holds(self, measures: Mapping[str, float]) -> bool:
-        """Return whether the comparison is true; a number that is not finite makes it false."""
-        bound = measures[self.bound] if isinstance(self.bound, str) else self.bound
-        value = measures[self.measure]
-        return isfinite(value) and isfinite(bound) and _RELATIONS[self.relation](value, bound)
+    def holds(self, measures: Mapping[str, float], spread: Collection[str] = ()) -> bool | None:
+        """Return whether the comparison is true; None where intervals cover both answers.
+
+        A number that is not finite makes it false.
+
+        Args:
+            measures: by name; those of ``spread`` with their intervals.
+            spread: names of the measures that have an interval.
+        """
+        value = interval(self.measure, measures, spread)
+        bound = interval(self.bound, measures, spread) if isinstance(self.bound, str) else (self.bound, self.bound)
+        if not all(map(isfinite, (*value, *bound))):
+            return False
+        relation = _RELATIONS[self.relation]
+        answers = {relation(one, other) for one in value for other in bound}
+        return answers.pop() if len(answers) == 1 else None
 
     def __str__(self) -> str:
         bound = self.bound if isinstance(self.bound, str) else f"{self.bound:g}"
         return f"{self.measure} {self.relation} {bound}: {self.why}"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Band:
-    """The spread of a measured number: least and greatest of its repeats."""
+def interval(name: str, measures: Mapping[str, float], spread: Collection[str]) -> tuple[float, float]:
+    """Return the ends of a measure's interval, ``NAME_low`` and ``NAME_high``; twice its value where it has none."""
+    low, high = (f"{name}_low", f"{name}_high") if name in spread else (name, name)
+    return measures[low], measures[high]
 
-    low: str
-    """Measure with the least value of the repeats."""
-    high: str
-    """Measure with the greatest value of the repeats."""
-    of: str
-    """Description of the repeated runs, for people."""
 
-    def spread(self, value: float, measures: Mapping[str, float]) -> tuple[float, float]:
-        """Return the least and greatest value that repeats gave, the measured value itself included."""
-        return min(value, measures[self.low]), max(value, measures[self.high])
+def between(name: str, low: float, high: float) -> dict[str, float]:
+    """Return a measure with its interval, for the examples of a rule: the middle and the two ends."""
+    return {name: 0.5 * (low + high), f"{name}_low": low, f"{name}_high": high}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,8 +125,10 @@ class Rule:
     """Kind of evidence for the claim."""
     holds: tuple[Clause, ...] = ()
     """The statement apart from its number: all of these. None only where a printed number alone is read back."""
-    band: Band | None = None
-    """How the measured number scatters; None where nothing was repeated."""
+    spread: tuple[str, ...] = ()
+    """Which of the measures it reads have an interval, ``NAME_low`` to ``NAME_high``."""
+    of: str = ""
+    """What the intervals are of, for people; empty where there are none."""
     why: str
     """What decided it, in a sentence or two with measures in braces: ``{forward_ratio:.2f}``, see ``reading``."""
     unswept: str = ""
@@ -131,28 +139,31 @@ class Rule:
         """Names of the measures that decide, those of the sentence not counted."""
         needed = {self.measure, *(clause.measure for clause in self.holds)}
         needed |= {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
-        return needed if self.band is None else needed | {self.band.low, self.band.high}
+        return needed | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
 
     def reason(self, measures: Mapping[str, float]) -> str:
         """Return what decided it, with its numbers."""
         return " ".join(self.why.format_map({name: Reading(value) for name, value in measures.items()}).split())
 
     def near(self, printed: float, rounding: float, measures: Mapping[str, float]) -> bool:
-        """Return whether the printed number, as rounded, lies among the repeats of the measured one.
+        """Return whether the printed number, as rounded, lies in the interval of the measured one.
 
         Args:
             printed: the article's number.
             rounding: half of its last digit, in the same unit.
             measures: of the experiment.
         """
-        value = measures[self.measure]
-        low, high = (value, value) if self.band is None else self.band.spread(value, measures)
+        low, high = interval(self.measure, measures, self.spread)
         slack = 1e-9 * max(1.0, abs(printed))  # a value on the edge of its own rounding is inside
         return low - rounding - slack <= printed <= high + rounding + slack
 
-    def held(self, measures: Mapping[str, float]) -> bool:
-        """Return whether the statement, apart from its number, holds."""
-        return all(clause.holds(measures) for clause in self.holds)
+    def held(self, measures: Mapping[str, float]) -> bool | None:
+        """Return whether the statement, apart from its number, holds.
+
+        It fails if one clause fails for sure; None where none does and intervals leave some undecided.
+        """
+        answers = [clause.holds(measures, self.spread) for clause in self.holds]
+        return False if False in answers else None if None in answers else True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import STANDING, Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import scaled
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.bipedal_reach.figure import (
     draw_angles,
@@ -358,18 +358,16 @@ class BipedalReach(Experiment):
 
 
 def _heights(record: xr.Dataset) -> dict[str, Measure]:
-    """Return the heights that are reached crawling and standing and their ratio, each with the ends of its repeats."""
+    """Return the heights that are reached crawling and standing and their ratio, of the repeats."""
     start, rise_at, up, leave, _, _ = record.attrs["stages"]
-    calm, noisy = record.reach.isel(run=0), record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
-    heights = {}
-    for end, reached in (("", calm), ("_repeated_low", noisy), ("_repeated_high", noisy)):
-        crawl = reached.sel(time=slice(start, rise_at)).max("time")
-        stand = reached.sel(time=slice(up, leave)).min("time")
-        for name, unit, value in (("crawl", "m", crawl), ("standing", "m", stand), ("ratio", "-", stand / crawl)):
-            heights[f"reach_{name}{end}"] = Measure(
-                float(value.max() if end == "_repeated_high" else value.min()), unit
-            )
-    return heights
+    reached = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
+    crawl = reached.sel(time=slice(start, rise_at)).max("time")
+    stand = reached.sel(time=slice(up, leave)).min("time")
+    return (
+        estimated("reach_crawl", crawl, "m")
+        | estimated("reach_standing", stand, "m")
+        | estimated("reach_ratio", stand / crawl, "-")
+    )
 
 
 def _pushes(record: xr.Dataset) -> dict[str, Measure]:

@@ -3,15 +3,11 @@
 from math import radians
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Band, Clause, Rule
+from suchus.verdict.rule import Clause, Rule, between
 
 _REPEATS = "repeats with noise on the servos and a tenth of spread in the friction"
-_EACH = "in each of the repeats, not only in their mean"
+_STEADIER = "steadier is a smaller fluctuation"
 _SNAPSHOT = "one instant of one crawl; the designs of the study walk with other phases and would be judged at another"
-
-
-def _repeated(measure: str) -> Band:
-    return Band(low=f"{measure}_low", high=f"{measure}_high", of=_REPEATS)
 
 
 RULES = (
@@ -19,8 +15,9 @@ RULES = (
         claim="com_fluctuation",
         experiment="crawl_stability",
         measure="com_height_pp_change",
-        holds=(Clause("com_height_pp_change_high", "<", 0.0, _EACH),),
-        band=_repeated("com_height_pp_change"),
+        holds=(Clause("com_height_pp_change", "<", 0.0, _STEADIER),),
+        spread=("com_height_pp_change",),
+        of=_REPEATS,
         why="Highest less lowest height: {com_height_pp_coordinated:mm.1f} mm with spine and tail, "
         "{com_height_pp_limbs_only:mm.1f} mm with limbs only and the tail lying still, a change of "
         "{com_height_pp_change:+.0%} (repeats {com_height_pp_change_low:+.0%} to {com_height_pp_change_high:+.0%}); "
@@ -60,9 +57,10 @@ RULES = (
         measure="tail_contact_pp_change",
         holds=(
             Clause("tail_load_share", ">=", 0.05, "what carries less than a twentieth of the weight supports nothing"),
-            Clause("tail_contact_pp_change_high", "<", 0.0, _EACH),
+            Clause("tail_contact_pp_change", "<", 0.0, _STEADIER),
         ),
-        band=_repeated("tail_contact_pp_change"),
+        spread=("tail_contact_pp_change",),
+        of=_REPEATS,
         why="On the ground the tail carries {tail_load_share:.0%} of the weight and changes the fluctuation by "
         "{tail_contact_pp_change:+.0%} against the same crawl with the tail in the air (repeats "
         "{tail_contact_pp_change_low:+.0%} to {tail_contact_pp_change_high:+.0%}), by "
@@ -72,8 +70,9 @@ RULES = (
         claim="wagging_balances",
         experiment="crawl_stability",
         measure="wagging_pp_change",
-        holds=(Clause("wagging_pp_change_high", "<", 0.0, _EACH),),
-        band=_repeated("wagging_pp_change"),
+        holds=(Clause("wagging_pp_change", "<", 0.0, _STEADIER),),
+        spread=("wagging_pp_change",),
+        of=_REPEATS,
         why="Against a tail that is dragged without a swing wagging changes the fluctuation by "
         "{wagging_pp_change:+.0%} (repeats {wagging_pp_change_low:+.0%} to {wagging_pp_change_high:+.0%}).",
     ),
@@ -119,7 +118,8 @@ _WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_ch
 EXAMPLES: Examples = {
     "com_fluctuation": [
         (_HEIGHT, "reproduced"),
-        (_HEIGHT | {"com_height_pp_change_high": 0.001}, "contradicted"),
+        (_HEIGHT | {"com_height_pp_change_high": 0.001}, "undecided"),
+        (_HEIGHT | between("com_height_pp_change", 0.001, 0.1), "contradicted"),
     ],
     "com_on_support_line": [
         ({"line_distance_max_limbs_only": 0.0239}, "reproduced"),
@@ -136,11 +136,13 @@ EXAMPLES: Examples = {
     "tail_supports": [
         (_TAIL, "reproduced"),
         (_TAIL | {"tail_load_share": 0.0495}, "contradicted"),
-        (_TAIL | {"tail_contact_pp_change_high": 0.001}, "contradicted"),
+        (_TAIL | {"tail_contact_pp_change_high": 0.001}, "undecided"),
+        (_TAIL | between("tail_contact_pp_change", 0.001, 0.1), "contradicted"),
     ],
     "wagging_balances": [
         (_WAG, "reproduced"),
-        (_WAG | {"wagging_pp_change_high": 0.001}, "contradicted"),
+        (_WAG | {"wagging_pp_change_high": 0.001}, "undecided"),
+        (_WAG | between("wagging_pp_change", 0.001, 0.1), "contradicted"),
     ],
     "spine_sinusoidal": [
         ({"spine_sine_r2": 0.951}, "by construction"),

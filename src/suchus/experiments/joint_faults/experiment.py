@@ -15,7 +15,7 @@ from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
 from suchus.design import Chosen, Robot, layout, unit_at, value_at, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.joint_faults.figure import draw_held, draw_losses, draw_over_time, draw_tracks
 from suchus.gaits import GAITS, conditions_of, control_group
@@ -575,7 +575,7 @@ def _kept(record: xr.Dataset) -> xr.DataArray:
 
 
 def _over_variations(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
-    return ranged(name, values.median(), values, unit)
+    return estimated(name, values, unit)
 
 
 experiment = JointFaults()

@@ -4,11 +4,10 @@ from itertools import product
 
 from suchus.paper import CLAIMS
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Band, Clause, Rule
+from suchus.verdict.rule import Clause, Rule
 
 CHANCE = 0.05
 """How probable by chance a difference between the arms may be at most [-]."""
-_REPEATS = "repeats with noise on the servos and a tenth of spread in the friction"
 _LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
 _MOST = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
 _ENDS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
@@ -47,7 +46,8 @@ def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
         experiment="joint_faults",
         measure=measure,
         holds=tuple(Clause(measure, one.relation, one.bound, one.why) for one in said),
-        band=Band(low=f"{measure}_repeated_low", high=f"{measure}_repeated_high", of=_REPEATS),
+        spread=(measure,),
+        of="gaits and frictions",
         why=why + (_bare(joint) if arm == "limbs_only" else ""),
     )
 
@@ -120,11 +120,11 @@ def _loss(joint: str, arm: str, value: float, low: float | None = None, high: fl
     said |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
     return said | {
         f"loss_{joint}_limp_one_limbs_tail_lifted": -0.8,
-        f"{judged}_low": value - 0.1,
-        f"{judged}_high": value + 0.1,
         judged: value,
-        f"{judged}_repeated_low": value if low is None else low,
-        f"{judged}_repeated_high": value if high is None else high,
+        f"{judged}_low": value if low is None else low,
+        f"{judged}_high": value if high is None else high,
+        f"{judged}_repeated_low": value,
+        f"{judged}_repeated_high": value,
     }
 
 

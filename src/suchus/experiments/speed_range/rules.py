@@ -1,7 +1,7 @@
 """When the claims on the animals' high walk count as what (section II.A)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Band, Clause, Rule
+from suchus.verdict.rule import Clause, Rule, between
 
 _KMH = 1 / 3.6
 _UNSWEPT = "Said of crocodiles; no design of a robot says how fast or how they walk."
@@ -16,7 +16,8 @@ RULES = (
         measure="speed_high_walk_slowest",
         kind="animals",
         holds=(Clause("speed_high_walk_slowest", ">=", 4.5 * _KMH, f"5 km/h, as rounded{_ROBOT}"),),
-        band=Band(low="speed_high_walk_slowest_low", high="speed_high_walk_slowest_high", of=_MODELS),
+        spread=("speed_high_walk_slowest",),
+        of=_MODELS,
         why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at "
         "{animals_high_walk_slowest:.1f} to {animals_high_walk_fastest:.1f} m/s (Michel). The robot, 1 m long, walks "
         "high at {speed_high_walk_slowest:.2f} to {speed_high_walk_fastest:.2f} m/s.",
@@ -28,7 +29,8 @@ RULES = (
         measure="speed_high_walk_fastest",
         kind="animals",
         holds=(Clause("speed_high_walk_fastest", ">=", 9.5 * _KMH, f"10 km/h, as rounded{_ROBOT}"),),
-        band=Band(low="speed_high_walk_fastest_low", high="speed_high_walk_fastest_high", of=_MODELS),
+        spread=("speed_high_walk_fastest",),
+        of=_MODELS,
         why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at up to "
         "{animals_high_walk_fastest:.1f} m/s (Michel), the robot at up to {speed_high_walk_fastest:.2f} m/s.",
         unswept=_UNSWEPT,
@@ -42,7 +44,8 @@ RULES = (
             Clause("tail_on_ground_high_walk", ">=", 0.35, _HALF),
             Clause("tail_on_ground_high_walk", "<=", 0.65, _HALF),
         ),
-        band=Band(low="tail_on_ground_high_walk_low", high="tail_on_ground_high_walk_high", of="the cycle times"),
+        spread=("tail_on_ground_high_walk",),
+        of="the cycle times",
         why="Said of crocodiles. The robot's tail touches the ground {tail_touches_high_walk:.0%} of the time; of its "
         "length {tail_on_ground_high_walk:.0%} lie within 5 mm of it.",
         unswept=_UNSWEPT,
@@ -66,20 +69,22 @@ _WHY = {
 
 EXAMPLES: Examples = {
     "high_walk_speed_low": [
-        (_WHY | {"speed_high_walk_slowest": 1.251}, "same sense"),  # 4.5 km/h are 1.25 m/s
-        (_WHY | {"speed_high_walk_slowest": 1.249}, "not testable"),
+        (_WHY | between("speed_high_walk_slowest", 1.251, 1.3), "same sense"),  # 4.5 km/h are 1.25 m/s
+        (_WHY | between("speed_high_walk_slowest", 1.249, 1.251), "undecided"),
+        (_WHY | between("speed_high_walk_slowest", 1.2, 1.249), "not testable"),
         (_WHY, "not testable"),
     ],
     "high_walk_speed_high": [
-        (_WHY | {"speed_high_walk_fastest": 2.64}, "same sense"),  # 9.5 km/h are 2.639 m/s
-        (_WHY | {"speed_high_walk_fastest": 2.637}, "not testable"),
+        (_WHY | between("speed_high_walk_fastest", 2.64, 2.7), "same sense"),  # 9.5 km/h are 2.639 m/s
+        (_WHY | between("speed_high_walk_fastest", 2.637, 2.64), "undecided"),
+        (_WHY | between("speed_high_walk_fastest", 2.6, 2.637), "not testable"),
         (_WHY, "not testable"),
     ],
     "tail_on_ground_in_high_walk": [
-        (_WHY, "same sense"),
-        (_WHY | {"tail_on_ground_high_walk": 0.351}, "same sense"),
-        (_WHY | {"tail_on_ground_high_walk": 0.349}, "not testable"),
-        (_WHY | {"tail_on_ground_high_walk": 0.649}, "same sense"),
-        (_WHY | {"tail_on_ground_high_walk": 0.651}, "not testable"),
+        (_WHY | between("tail_on_ground_high_walk", 0.351, 0.649), "same sense"),
+        (_WHY | between("tail_on_ground_high_walk", 0.349, 0.5), "undecided"),
+        (_WHY | between("tail_on_ground_high_walk", 0.3, 0.349), "not testable"),
+        (_WHY | between("tail_on_ground_high_walk", 0.5, 0.651), "undecided"),
+        (_WHY | between("tail_on_ground_high_walk", 0.651, 0.7), "not testable"),
     ],
 }

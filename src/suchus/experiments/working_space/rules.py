@@ -1,7 +1,7 @@
 """When the claim on the working space counts as what (section IV.D)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Band, Clause, Rule
+from suchus.verdict.rule import Clause, Rule, between
 
 RULES = (
     Rule(
@@ -9,10 +9,11 @@ RULES = (
         experiment="working_space",
         measure="volume_ratio",
         holds=(
-            Clause("volume_ratio_low", ">=", 2.0, "less than twice as much is no great improvement"),
-            Clause("area_ratio_low", ">", 1.0, "larger from the side too, as Fig. 23 shows it"),
+            Clause("volume_ratio", ">=", 2.0, "less than twice as much is no great improvement"),
+            Clause("area_ratio", ">", 1.0, "larger from the side too, as Fig. 23 shows it"),
         ),
-        band=Band(low="volume_ratio_low", high="volume_ratio_high", of="what counting cells leaves open"),
+        spread=("volume_ratio", "area_ratio"),
+        of="what counting cells leaves open",
         why="Standing, the snout reaches {volume_ratio:.0f} times the volume that it reaches on four feet "
         "({volume_ratio_low:.0f} to {volume_ratio_high:.0f}), and {area_ratio:.1f} times the area seen from the side "
         "({area_ratio_low:.1f} to {area_ratio_high:.1f}); joint ranges and balance are met, torques not looked at.",
@@ -32,8 +33,10 @@ _ROOM = {
 EXAMPLES: Examples = {
     "working_space": [
         (_ROOM, "reproduced"),
-        (_ROOM | {"volume_ratio_low": 1.98}, "contradicted"),
-        (_ROOM | {"area_ratio_low": 0.99}, "contradicted"),
+        (_ROOM | {"volume_ratio_low": 1.98}, "undecided"),
+        (_ROOM | between("volume_ratio", 1.5, 1.98), "contradicted"),
+        (_ROOM | {"area_ratio_low": 0.99}, "undecided"),
+        (_ROOM | between("area_ratio", 0.9, 0.99), "contradicted"),
         (_ROOM | {"volume_ratio": float("nan")}, "not testable"),
     ],
 }
