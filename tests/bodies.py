@@ -4,10 +4,13 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
+from body_files import eight
 from suchus import blueprint
 from suchus.design import Robot, crocodile
 from suchus.design.scale import scaled
 from suchus.robots import ROBOTS
+
+__all__ = ["CAIMAN", "eel", "eight", "hatchling", "six"]
 
 CAIMAN: Robot = ROBOTS["caiman"]
 
@@ -21,14 +24,6 @@ def six() -> Robot:
 def hatchling() -> Robot:
     """The article's tables in a body of 0.3 m."""
     return crocodile(replace(scaled(CAIMAN.tables, length_factor=0.3 / CAIMAN.length), name="hatchling"))
-
-
-def eight() -> Robot:
-    """A body of eight legs, light ones in the middle, the hind ones not at the root's origin; no tables make it."""
-    front, hind = CAIMAN.girdles
-    light = replace(front.limb, links=tuple(replace(link, mass=0.01) for link in front.limb.links))
-    middle = [replace(front, name=name, segment=f"spine_{i}", at=0.0, limb=light) for name, i in (("M", 3), ("N", 2))]
-    return replace(CAIMAN, name="eight", girdles=(front, *middle, replace(hind, at=-0.02, above=-0.006)))
 
 
 def eel() -> Robot:

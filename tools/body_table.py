@@ -1,11 +1,11 @@
-"""Try every experiment and tool on every body of the shelf, for the table in docs/robots_from_files.md.
+"""Try every experiment and tool on every body of the shelf and of files, for the tables in docs/robots_from_files.md.
 
-Usage: python tools/body_table.py [--only NAME ...] [--table]
+Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--table]
 
 Each pair is tried at the command line in a short form: it answers, or it refuses in a sentence with the exit code 2;
 anything else is written down as it came. The result of each pair goes into docs/bodies.json as soon as it is known, so
-that a run that was stopped goes on; the table is made from that file alone. ``--only`` tries the rows named anew, and
-``--table`` nothing but writes the table.
+that a run that was stopped goes on; the tables are made from that file alone. ``--only`` tries the rows named anew,
+``--bodies`` none but these bodies, and ``--table`` nothing but writes the tables.
 """
 
 import argparse
@@ -15,14 +15,23 @@ import json
 import shlex
 import sys
 import tempfile
+from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
+from unittest import mock
 
+import gymnasium
+
+from body_files import FILES, write_files
+from suchus import blueprint
 from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.cli.entry import main as suchus
 from suchus.design import Robot
 from suchus.design.scale import coarse_step
+from suchus.envs import TASKS
+from suchus.errors import SuchusError
 from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS, own_gait
+from suchus.gaits import own_gait
 from suchus.robots import ROBOTS
 
 ROOT = Path(__file__).parents[1]
@@ -30,7 +39,7 @@ FOUND, PAGE = ROOT / "docs" / "bodies.json", ROOT / "docs" / "robots_from_files.
 MARKS = "<!-- bodies: made by tools/body_table.py -->\n", "<!-- /bodies -->\n"
 LEAST = {
     "crawl_stability": "--cycles 1 --repeats 1",
-    "displacement": "--cycles 1 --repeats 1 --phases 0.0 --shares 1.0 --strokes 0.03 --bends 1.0 --pitches 0.1",
+    "displacement": "--cycles 1 --repeats 1 --phases 0.0 --strokes 0.5 1.0 --bends 0.5 1.0",
     "feedback": "--starts 1 --cycles 1 --hold 0.1 --after 1",
     "gait_diagram": "--cycles 2",
     "joint_faults": "--cycles 1 --variations 1 --repeats 1 --holds 0.5",
@@ -46,8 +55,13 @@ TOOLS = {
     "optimise": "`suchus optimise FILE.toml`",
     "capture": "`suchus capture TRACKS`",
     "export": "`suchus export`",
+    "view": "`suchus view`",
+    "lake": "`suchus view --lake`",
+    **{f"task {name}": f"task `{name}`" for name in TASKS},
 }
-"""Commands that take any body: their rows, and what the table calls them."""
+"""Commands and tasks that take any body: their rows, and what the table calls them."""
+BODIES = (*ROBOTS, *FILES)
+"""Names of the bodies, those of files with .toml."""
 LIZARD = SyntheticAnimal(
     trunk=0.12,
     tail=0.20,
@@ -67,37 +81,55 @@ CAMERA = Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, height
 """The walk that is captured, and who films it."""
 
 
+@cache
+def _files() -> tuple[tempfile.TemporaryDirectory[str], dict[str, Path]]:
+    """Return a folder that lasts as long as this process, and the bodies' files in it."""
+    folder = tempfile.TemporaryDirectory()
+    return folder, write_files(Path(folder.name))
+
+
+def asked(body: str) -> str:
+    """Return by what a body is asked for: its name, or the path of its file."""
+    return body if body in ROBOTS else str(_files()[1][body])
+
+
+def robot_of(body: str) -> Robot:
+    """Return a body."""
+    robot: Robot = ROBOTS[body] if body in ROBOTS else blueprint.read(asked(body), Robot, ROBOTS)
+    return robot
+
+
 def main() -> int:
-    """Try what is not yet known, and write the table; return 1 where a pair neither answered nor refused."""
+    """Try what is not yet known, and write the tables; return 1 where a pair neither answered nor refused."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--only", action="append", default=[], metavar="NAME")
+    parser.add_argument("--only", action="append", default=[], metavar="ROW")
+    parser.add_argument("--bodies", nargs="+", default=BODIES, metavar="BODY")
     parser.add_argument("--table", action="store_true")
-    asked = parser.parse_args()
+    given = parser.parse_args()
     found = json.loads(FOUND.read_text()) if FOUND.exists() else {}
-    for row in () if asked.table else (*sorted(EXPERIMENTS, key=lambda name: name not in LEAST), *TOOLS):
-        if asked.only and row not in asked.only:
+    for row in () if given.table else (*sorted(EXPERIMENTS, key=lambda name: name not in LEAST), *TOOLS):
+        if given.only and row not in given.only:
             continue
-        for robot in sorted(ROBOTS, key=lambda name: ROBOTS[name].tables is not None):  # they take long
-            if row in asked.only or robot not in found.get(row, {}):
-                found.setdefault(row, {})[robot] = answer = tried(row, robot)
+        for body in sorted(given.bodies, key=lambda body: robot_of(body).tables is not None):  # they take long
+            if row in given.only or body not in found.get(row, {}):
+                found.setdefault(row, {})[body] = answer = tried(row, body)
                 FOUND.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
-                print(f"{row} {robot}: {answer}", flush=True)
+                print(f"{row} {body}: {answer}", flush=True)
     write(found)
-    every = [(row, robot, answer) for row, cells in found.items() for robot, answer in cells.items()]
-    odd = [(row, robot) for row, robot, answer in every if answer.startswith("exit ")]
-    for row, robot in odd:
-        print(f"{row} on {robot}: {found[row][robot]}", file=sys.stderr)
+    every = [(row, body, answer) for row, cells in found.items() for body, answer in cells.items()]
+    odd = [(row, body) for row, body, answer in every if answer.startswith("exit ")]
+    for row, body in odd:
+        print(f"{row} on {body}: {found[row][body]}", file=sys.stderr)
     return bool(odd)
 
 
-def tried(row: str, robot: str) -> str:
-    """Return what came of a row on a robot: nothing where it answers, else the sentence of refusal or failure."""
+def tried(row: str, body: str) -> str:
+    """Return what came of a row on a body: nothing where it answers, else the sentence of refusal or failure."""
     with tempfile.TemporaryDirectory() as folder:
-        words = command(row, robot, Path(folder))
         out, err = io.StringIO(), io.StringIO()
         try:
             with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-                code = suchus(words)
+                code = door(row, body, Path(folder))()
         except Exception as error:
             return f"exit 1: {type(error).__name__}: {error}"
     if code == 0:
@@ -106,48 +138,82 @@ def tried(row: str, robot: str) -> str:
     return said[0] if code == 2 else f"exit {code}: {said[0]}"
 
 
-def command(row: str, name: str, folder: Path) -> list[str]:
-    """Return the words by which a row is tried on a robot, in a folder of its own."""
-    robot = ROBOTS[name]
+def door(row: str, body: str, folder: Path) -> Callable[[], int]:
+    """Return what tries a row on a body, in a folder of its own."""
+    if row.startswith("task "):
+        return lambda: _step(row.removeprefix("task "), asked(body))
+    words = command(row, body, folder)
+    if row not in ("view", "lake"):
+        return lambda: suchus(words)
+
+    def viewed() -> int:
+        with mock.patch("suchus.cli.view._serve", return_value=0):  # all but the browser
+            return suchus(words)
+
+    return viewed
+
+
+def _step(task: str, body: str) -> int:
+    """Take the first step of an episode of a task; what is refused is told as at the command line."""
+    try:
+        env = gymnasium.make(f"suchus/{task}-v0", robot=body)
+        env.reset(seed=1)
+        env.step(env.action_space.sample())
+    except SuchusError as error:
+        print(f"suchus: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def command(row: str, body: str, folder: Path) -> list[str]:
+    """Return the words by which a row is tried on a body, in a folder of its own."""
     if row in EXPERIMENTS:
-        words = ["run", row, "--quick", "--robot", name, "--out", str(folder), *shlex.split(LEAST.get(row, ""))]
+        words = ["run", row, "--quick", "--robot", asked(body), "--out", str(folder), *shlex.split(LEAST.get(row, ""))]
         timed = row in LEAST and hasattr(EXPERIMENTS[row], "timestep")
-        return [*words, "--timestep", f"{coarse_step(robot):g}"] if timed else words
+        return [*words, "--timestep", f"{coarse_step(robot_of(body)):g}"] if timed else words
+    if row in ("view", "lake"):
+        return ["view", asked(body), *["--lake"] * (row == "lake")]
     if row == "capture":
         tracks = write_table(film_animal(LIZARD, CAMERA, cycles=3), folder / "tracks.csv")
-        return ["capture", str(tracks), "--robot", name, "--out", str(folder / "captured.toml")]
+        return ["capture", str(tracks), "--robot", asked(body), "--out", str(folder / "captured.toml")]
     if row == "export":
-        return ["export", "--robot", name, "--out", str(folder / "exported")]
+        return ["export", "--robot", asked(body), "--out", str(folder / "exported")]
     file = folder / f"{row}.toml"
-    file.write_text(asked_of(row, name, robot))
+    file.write_text(asked_of(row, body))
     return [row, str(file), "--out", str(folder / "found")]
 
 
-def asked_of(row: str, name: str, robot: Robot) -> str:
-    """Return a study or a search, of four runs of two seconds, of the period of a robot's own gait."""
-    own = own_gait(robot)
-    gait = next(one for one in GAITS if GAITS[one] == own)
-    lines = [f'name = "{row}_{name}"', f'robot = "{name}"', f'gait = "{gait}"', f"timestep = {coarse_step(robot):g}"]
+def asked_of(row: str, body: str) -> str:
+    """Return a study or a search, of four runs of two seconds, of the period of a body's own gait."""
+    robot = robot_of(body)
+    period = own_gait(robot).period
+    lines = [f'name = "{row}_{robot.name}"', f'robot = "{asked(body)}"', f"timestep = {coarse_step(robot):g}"]
     lines.append(f"duration = {2.0 if row == 'study' else 3.0}")
     lines += ["measure = ['displacement']"] if row == "study" else ["evaluations = 4", "population = 4"]
-    lines += ["[[vary]]", 'field = "gait.period"', f"low = {0.9 * own.period}", f"high = {1.1 * own.period}"]
+    lines += ["[[vary]]", 'field = "gait.period"', f"low = {0.9 * period}", f"high = {1.1 * period}"]
     lines += ["steps = 2"] if row == "study" else ["[[aims]]", 'name = "displacement"']
     return "\n".join(lines) + "\n"
 
 
 def write(found: dict[str, dict[str, str]]) -> None:
-    """Write the table into the page."""
+    """Write the tables into the page."""
     begin, end = MARKS
     before, rest = PAGE.read_text().split(begin)
-    PAGE.write_text(before + begin + table(found) + end + rest.split(end)[1])
+    PAGE.write_text(before + begin + tables(found) + end + rest.split(end)[1])
 
 
-def table(found: dict[str, dict[str, str]]) -> str:
-    """Return the table, and below it why rows refuse."""
-    rows = [row for row in (*EXPERIMENTS, *TOOLS) if row in found]
-    lines = ["| | " + " | ".join(f"`{robot}`" for robot in ROBOTS) + " |", "|---" * (len(ROBOTS) + 1) + "|"]
+def tables(found: dict[str, dict[str, str]]) -> str:
+    """Return the table of the bodies of the shelf, and that of files."""
+    return f"{table(found, ROBOTS)}\n{table(found, FILES)}"
+
+
+def table(found: dict[str, dict[str, str]], bodies: Iterable[str]) -> str:
+    """Return the table of some bodies."""
+    bodies = tuple(bodies)
+    rows = [row for row in (*EXPERIMENTS, *TOOLS) if set(bodies) & set(found.get(row, {}))]
+    lines = ["| | " + " | ".join(f"`{body}`" for body in bodies) + " |", "|---" * (len(bodies) + 1) + "|"]
     for row in rows:
-        cells = [mark(found[row].get(robot)) for robot in ROBOTS]
+        cells = [mark(found[row].get(body)) for body in bodies]
         lines.append(f"| {TOOLS.get(row, f'`{row}`')} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -14,6 +14,7 @@ from typing import Any, Generic, TypeVar, get_args
 
 from suchus.errors import BrokenFile, InvalidDesign, SuchusError, UnknownName
 from suchus.kinds import show
+from suchus.reading import there
 from suchus.sources import Source, current, gather
 
 T = TypeVar("T")
@@ -146,13 +147,37 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
-    def resolve(self, value: Any) -> T:
-        """Return what a value stands for: itself, or what carries its name on the shelf.
+    def file(self, value: Any, place: Path = Path()) -> Path | None:
+        """Return the file that a value names, None where it names none.
+
+        A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
+
+        Args:
+            value: as a user gives it.
+            place: the folder from which paths are read.
+        """
+        if not isinstance(value, (str, Path)) or self._read is None or (isinstance(value, str) and value in self):
+            return None
+        path = place / value
+        return path if path.suffix == ".toml" or there(path) else None
+
+    def resolve(self, value: Any, place: Path = Path()) -> T:
+        """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
+
+        Args:
+            value: the thing, its name, or the path of its file.
+            place: the folder from which paths are read.
 
         Raises:
             UnknownName: a name that is not on the shelf.
+            UnreadableFile: there is no such file, or it is no TOML.
+            MistakenFile: the file describes nothing that can be.
             InvalidDesign: neither a name nor what stands on this shelf.
         """
+        path = self.file(value, place)
+        if path is not None and self._read is not None:
+            found: T = self._read(path)
+            return found
         if isinstance(value, str):
             return self[value]
         wanted = self._wanted()

@@ -2,10 +2,12 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 
 import body_table as tool
+from body_files import FILES, write_files
 from suchus.design import lacking
 from suchus.experiments import EXPERIMENTS
 from suchus.robots import ROBOTS
@@ -18,7 +20,7 @@ def test_the_page_holds_the_table_of_what_was_found():
     begin, end = tool.MARKS
     page = tool.PAGE.read_text()
     assert page.count(begin) == page.count(end) == 1
-    assert page.split(begin)[1].split(end)[0] == tool.table(FOUND)
+    assert page.split(begin)[1].split(end)[0] == tool.tables(FOUND)
 
 
 def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
@@ -31,7 +33,7 @@ def test_nothing_that_was_tried_failed_and_who_lacks_something_was_refused():
     for row, cells in FOUND.items():
         for name, told in cells.items():
             if row in EXPERIMENTS and told:
-                assert re.search(rf"\b{name}\b", told)
+                assert re.search(rf"\b{name.removesuffix('.toml')}\b", told)
 
 
 def test_a_cell_tells_answers_refusals_and_failures_apart():
@@ -41,9 +43,22 @@ def test_a_cell_tells_answers_refusals_and_failures_apart():
         "failed",
         "not tried",
     ]
-    table = tool.table({"terrain": {"caiman": "", "swimmer": "suchus: no."}})
-    assert "| `terrain` | answers |" in table
-    assert "| refuses |" in table
+    found = {"terrain": {"caiman": "", "swimmer": "suchus: no."}, "export": {"giant.toml": ""}}
+    assert tool.table(found, ("caiman", "swimmer")).splitlines()[2:] == ["| `terrain` | answers | refuses |"]
+    assert tool.table(found, ("snake.toml", "giant.toml")).splitlines()[2:] == [
+        "| `suchus export` | not tried | answers |"
+    ]
+
+
+def test_the_files_hold_what_they_are_called_and_a_name_and_its_file_are_one_robot(tmp_path):
+    robots = {name: ROBOTS.resolve(path) for name, path in write_files(tmp_path).items()}
+    assert tuple(robots) == FILES
+    assert (round(robots["hatchling.toml"].length, 3), round(robots["hatchling.toml"].mass, 3)) == (0.3, 0.06)
+    assert round(robots["giant.toml"].length, 3) == 3.0
+    assert [len(robots[f"{name}.toml"].girdles) for name in ("eight", "rigid", "quadruped", "snake")] == [4, 3, 2, 0]
+    assert [lacking(robots[f"{name}.toml"], ["axis"]) for name in ("rigid", "snake")] == [["axis"], []]
+    assert robots["general.toml"] == replace(ROBOTS["caiman"], name="general")
+    assert "[[axis]]" in (tmp_path / "general.toml").read_text()  # part by part, not by tables
 
 
 def test_every_pair_that_cannot_be_is_refused_at_the_command_line_in_one_sentence(tmp_path, monkeypatch):
@@ -57,7 +72,7 @@ def test_every_pair_that_cannot_be_is_refused_at_the_command_line_in_one_sentenc
 
 
 @pytest.mark.validate
-@pytest.mark.parametrize("name", list(ROBOTS))
+@pytest.mark.parametrize("name", tool.BODIES)
 @pytest.mark.parametrize("row", [*EXPERIMENTS, *tool.TOOLS])
 def test_every_pair_answers_or_is_refused_in_a_sentence(row, name, tmp_path, monkeypatch):
     if (row, name) in REFUSED:

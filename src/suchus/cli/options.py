@@ -5,25 +5,20 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
-from types import NoneType
-from typing import Annotated, Any, TypeVar, get_args
+from typing import Annotated, Any, TypeVar
 
 import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
-from suchus import blueprint
-from suchus.catalog import Catalog
 from suchus.cli.entry import BadCommand
 from suchus.design import Robot
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
-from suchus.gaits import GAITS
+from suchus.gaits import gait_of
 from suchus.motion import Gait
-from suchus.record import there
 from suchus.robots import ROBOTS
 
 _SHELF = "caiman"
@@ -108,7 +103,7 @@ def _robot(words: Sequence[str]) -> Robot | None:
     if not named or named[-1].startswith("-"):
         return None
     try:
-        robot: Robot = _find(named[-1], Robot, ROBOTS, lambda path: blueprint.read(path, Robot, ROBOTS))
+        robot: Robot = ROBOTS.resolve(named[-1])
     except SuchusError:
         return None
     return robot
@@ -195,22 +190,19 @@ def _registry(walker: Callable[[], Robot]) -> ConstructorRegistry:
     registry = ConstructorRegistry()
     robots: tuple[Any, ...] = (Robot, Robot | None)
     for kind in robots:
-        read = partial(blueprint.read, kind=kind, shelf=ROBOTS)
-        registry.primitive_rule(_shelf_rule(kind, ROBOTS, "ROBOT", "the record's", read))
+        registry.primitive_rule(_shelf_rule(kind, "ROBOT", "the record's", ROBOTS.resolve))
     for kind in (Gait, Gait | None):
-        registry.primitive_rule(
-            _shelf_rule(kind, GAITS, "GAIT", "own", lambda path: blueprint.read_gait(path, walker(), GAITS))
-        )
+        registry.primitive_rule(_shelf_rule(kind, "GAIT", "own", lambda word: gait_of(walker(), word)))
     return registry
 
 
 def _shelf_rule(
-    kind: Any, shelf: Catalog[Any], metavar: str, own: str, read: Callable[[Path], Any]
+    kind: Any, metavar: str, own: str, meant: Callable[[str], Any]
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
         metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _find(_first(words), kind, shelf, read),
+        instance_from_str=lambda words: _meant(_first(words), meant),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [own if value is None else str(value.name)],
     )
@@ -230,32 +222,14 @@ def _first(words: Any) -> str:
     return words
 
 
-def _find(word: str, kind: Any, shelf: Catalog[Any], read: Callable[[Path], Any]) -> Any:
+def _meant(word: str, meant: Callable[[str], Any]) -> Any:
     """What a word stands for: a name on the shelf, or a file."""
     try:
-        if word not in shelf and (word.endswith(".toml") or there(Path(word))):
-            return read(Path(word))
-        thing = shelf[word]
-        if not isinstance(thing, kind):
-            raise BadCommand(_unsuited(thing, kind, shelf))
-        return thing
+        return meant(word)
     except UnknownName as error:
         raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
         raise BadCommand(str(error)) from error
-
-
-def _unsuited(found: Any, kind: Any, shelf: Catalog[Any]) -> str:
-    fit = [name for name, thing in shelf.items() if isinstance(thing, kind)]
-    return (
-        f"the {shelf.kind} {found.name!r} is a {type(found).__name__}, and this needs a {named(kind)}: take "
-        f"{', '.join(fit)}, or a file that starts from one of them."
-    )
-
-
-def named(kind: Any) -> str:
-    """Return the name of a type, or of each of a union."""
-    return " or ".join(member.__name__ for member in get_args(kind) or (kind,) if member is not NoneType)
 
 
 def _sentence(box: str, owner: str) -> str:

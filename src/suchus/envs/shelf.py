@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from math import radians, sin
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
 from suchus.design import Robot
 from suchus.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task
 from suchus.errors import InvalidDesign, SuchusError, UnknownName
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, gait_of
 from suchus.land import Ground, Lake
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
@@ -74,7 +75,8 @@ TASKS: Mapping[str, Task] = MappingProxyType(
 def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
-    A robot or a gait may be given by its name on the shelf; a robot brings its gait and its size, see ``Task.on``.
+    A robot or a gait may be given by its name on the shelf or the path of its file; a robot brings its gait and its
+    size, see ``Task.on``.
 
     Raises:
         UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
@@ -89,11 +91,12 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     for name in changes:
         if name not in names:
             raise UnknownName("field of a task", name, names)
-    shelves: Mapping[str, Mapping[str, Any]] = {"robot": ROBOTS, "gait": GAITS}
-    values = {
-        name: shelves[name][value] if name in shelves and isinstance(value, str) else value
-        for name, value in changes.items()
-    }
+    values = dict(changes)
+    if isinstance(values.get("robot"), (str, Path)):
+        values["robot"] = ROBOTS.resolve(values["robot"])
+    for name in ("gait", "swim"):
+        if isinstance(values.get(name), (str, Path)):
+            values[name] = gait_of(values.get("robot", task.robot), values[name])
     kinds: Mapping[str, tuple[type, ...]] = {
         "robot": (Robot,),
         "gait": (Gait,),

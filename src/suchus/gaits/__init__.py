@@ -73,6 +73,30 @@ def own_gait(robot: Robot) -> Gait:
         ) from error
 
 
+def gait_of(robot: Robot, gait: Gait | str | Path | None, place: Path = Path()) -> Gait:
+    """Return the gait that is meant for a robot: itself, by its name, by the path of its file, or the robot's own.
+
+    Args:
+        robot: for whose limbs a file's metres are, and in whose hinges its places.
+        gait: the gait, its name, or the path of a TOML file; None for the robot's own.
+        place: the folder from which paths are read.
+
+    Raises:
+        UnknownName: a name that is not on the shelf.
+        UnreadableFile: there is no such file, or it is no TOML.
+        MistakenFile: the file describes no gait that can be.
+        UnsuitedRobot: none is given, no gait of the shelf suits the robot, and none can be drafted.
+    """
+    if gait is None:
+        return own_gait(robot)
+    path = GAITS.file(gait, place)
+    if path is None:
+        return GAITS.resolve(gait)
+    from suchus import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    return blueprint.read_gait(path, robot, GAITS)
+
+
 @lru_cache(maxsize=64)
 def _drafted(robot: Robot) -> Gait:
     return draft_gait(robot, DRAFTED)
@@ -131,4 +155,6 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
     return found
 
 
-__all__ = ["ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "own_gait", "suits"]
+__all__ = [
+    "ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "gait_of", "own_gait", "suits",
+]  # fmt: skip

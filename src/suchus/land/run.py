@@ -9,7 +9,7 @@ from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
-from suchus.gaits import GAITS
+from suchus.gaits import gait_of
 from suchus.land.lake import Lake
 from suchus.model import compile_model
 from suchus.motion import Gait
@@ -73,7 +73,7 @@ class Push:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """One run of a batch; robot and gait may be given by their names on the shelves."""
+    """One run of a batch; robot and gait may be given by their names on the shelves or the paths of their files."""
 
     robot: Robot
     """The robot that walks: a body of any kind, as ``suchus.ROBOTS`` names them."""
@@ -100,7 +100,7 @@ class Run:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
-        object.__setattr__(self, "gait", GAITS.resolve(self.gait))
+        object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
         with Checks("run", self) as check:
             check.number("noise", 0.0, 1.0, "rad")
             check.whole("seed", 0, 2**32 - 1)

@@ -12,7 +12,7 @@ from suchus.design.ground import Ground
 from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
-from suchus.gaits import GAITS
+from suchus.gaits import gait_of
 from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.readings import with_equal_variables
@@ -152,7 +152,7 @@ def crawl(
 
     Args:
         robot: the robot that walks, or its name on the shelf.
-        gait: the gait, or its name on the shelf.
+        gait: the gait, its name on the shelf, or the path of its file.
         duration: including the first second, in which the robot settles [s]; 9 s where ``cycles`` is not given.
         cycles: cycles of the gait after that second, in the place of ``duration``, above 0 [-]: gaits of other cycle
             times are compared over equal cycles, and by their speed.
@@ -175,7 +175,7 @@ def crawl(
     """
     run = Run(
         robot=ROBOTS.resolve(robot),
-        gait=GAITS.resolve(gait),
+        gait=gait_of(ROBOTS.resolve(robot), gait),
         ground=ground or Ground(),
         lake=lake,
         faults=tuple(faults),

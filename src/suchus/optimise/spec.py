@@ -9,14 +9,14 @@ from typing import Any, Literal
 
 from suchus import blueprint
 from suchus.control import Control, OpenLoop, Standing, Walking
-from suchus.design import Robot, value_at, with_values
+from suchus.design import value_at, with_values
 from suchus.design.checks import Checks, InvalidFields
 from suchus.errors import InvalidDesign, UnknownName
+from suchus.gaits import gait_of
 from suchus.land import Ground, Run
 from suchus.optimise.aims import AIMS, LIMITS
 from suchus.robots import ROBOTS
 from suchus.study import Arm, Vary
-from suchus.study.page import find, find_gait
 
 WHOLE = Arm(name="best")
 """The only condition of a search without a comparison."""
@@ -222,8 +222,8 @@ class SearchFile(Search):
 
     robot: str = "caiman"
     """Name on the shelf, or path of a TOML file beside this one."""
-    gait: str = "belly_crawl"
-    """Name on the shelf, or path of a TOML file beside this one."""
+    gait: str | None = None
+    """Name on the shelf, or path of a TOML file beside this one; by default the robot's own."""
     task: Task = "crawl"
     """Task: ``crawl``, ``turn`` or ``stand``."""
     ground: Ground = field(default_factory=Ground)
@@ -248,10 +248,10 @@ def read_optimisation(path: Path) -> Optimisation:
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
     page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
-    robot = find(page.robot, path.parent, Robot, ROBOTS)
+    robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(
         robot=robot,
-        gait=find_gait(page.gait, path.parent, robot),
+        gait=gait_of(robot, page.gait, path.parent),
         ground=page.ground,
         control=TASKS[page.task],
     )

@@ -6,16 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from suchus import blueprint
-from suchus.catalog import Catalog
 from suchus.control import CONTROLLERS, Control
 from suchus.design import Robot
 from suchus.errors import InvalidDesign
 from suchus.fault import Fault
 from suchus.faults import from_table
-from suchus.gaits import GAITS
+from suchus.gaits import gait_of
 from suchus.kinds import show
 from suchus.land import Ground, Run
-from suchus.motion import Gait
 from suchus.robots import ROBOTS
 from suchus.study.arm import Arm
 from suchus.study.study import Design, Study, Vary
@@ -33,8 +31,8 @@ class StudyFile:
     """Names of ``suchus.metrics``."""
     robot: str = "caiman"
     """Name on the shelf, or path of a TOML file beside this one."""
-    gait: str = "belly_crawl"
-    """Name on the shelf, or path of a TOML file beside this one."""
+    gait: str | None = None
+    """Name on the shelf, or path of a TOML file beside this one; by default the robot's own."""
     ground: Ground = field(default_factory=Ground)
     """Ground: its friction scale, slopes and relief."""
     faults: tuple[dict[str, Any], ...] = ()
@@ -83,10 +81,10 @@ def read_study(path: Path) -> Study:
         InvalidDesign: a field cannot take one of its values.
     """
     page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
-    robot = find(page.robot, path.parent, Robot, ROBOTS)
+    robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(
         robot=robot,
-        gait=find_gait(page.gait, path.parent, robot),
+        gait=gait_of(robot, page.gait, path.parent),
         ground=page.ground,
         faults=tuple(from_table(table) for table in page.faults),
         control=_control(page.control),
@@ -140,9 +138,9 @@ def _resolved(vary: Vary, place: Path, robot: Robot) -> Vary:
 def _meant(field: str, value: Any, place: Path, robot: Robot) -> Any:
     """Return what a value of a file stands for: robots and gaits have names, faults are tables, lists are tuples."""
     if field == "robot" and isinstance(value, str):
-        return find(value, place, Robot, ROBOTS)
+        return ROBOTS.resolve(value, place)
     if field == "gait" and isinstance(value, str):
-        return find_gait(value, place, robot)
+        return gait_of(robot, value, place)
     if field == "faults":
         return _faults(value)
     return tuple(value) if isinstance(value, list) else value
@@ -155,25 +153,3 @@ def _faults(value: Any) -> tuple[Fault, ...]:
             f"{show(value)}."
         )
     return tuple(from_table(item) for item in value)
-
-
-def find(name: str, place: Path, kind: type, shelf: Catalog[Any]) -> Any:
-    """Return what a file names: something on a shelf, or described by a TOML file beside it.
-
-    Raises:
-        UnknownName: it is not on the shelf.
-        UnreadableFile: there is no such file, or it is no TOML.
-        MistakenFile: the file describes nothing that can be.
-    """
-    return blueprint.read(place / name, kind, shelf) if name.endswith(".toml") else shelf[name]
-
-
-def find_gait(name: str, place: Path, robot: Robot) -> Gait:
-    """Return the gait that a file names: one of the shelf, or described by a TOML file beside it.
-
-    Raises:
-        UnknownName: it is not on the shelf.
-        UnreadableFile: there is no such file, or it is no TOML.
-        MistakenFile: the file describes no gait that can be.
-    """
-    return blueprint.read_gait(place / name, robot, GAITS) if name.endswith(".toml") else GAITS[name]
