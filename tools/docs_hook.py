@@ -8,7 +8,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from pages import article, gallery, reference
+from pages import article, gallery, links, reference
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
 from pages.stated import page as stated_page
@@ -41,10 +41,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Keep the formulas of a page aside, and lead links to scripts to the pages that show them."""
+    """Keep the formulas of a page aside, and lead links to files of the repository to the pages made of them."""
     _formulas[page.file.src_uri] = Formulas()
-    linked = re.sub(r"\]\(\.\./examples/(\w+)\.py\)", r"](examples/\1.md)", markdown)
-    return _formulas[page.file.src_uri].take(linked)
+    return _formulas[page.file.src_uri].take(links.built(markdown))
 
 
 def on_page_content(html: str, page: Page, **_: Any) -> str:

@@ -1,18 +1,22 @@
-"""Take the pictures of the viewer's pages and of a replay, in docs/pictures, with a browser.
+"""Take the pictures of the viewer's pages and of a replay, still and moving, in docs/pictures, with a browser.
 
-Usage: python tools/viewer_pictures.py [live] [replay] [animal] [file]; needs the extra viewer, playwright and chromium.
+Usage: python tools/viewer_pictures.py [live] [replay] [animal] [file] [film]; needs the extra viewer, playwright and
+chromium.
 """
 
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import xarray as xr
-from playwright.sync_api import sync_playwright
+from PIL import Image
+from playwright.sync_api import Page, sync_playwright
 
 from lighter import lighten
 from suchus.capture import Camera, SyntheticAnimal, film_animal
@@ -32,6 +36,7 @@ _SLOWEST = 0.05  # playback speed [-]: hardly anything moves while the picture i
 _PATIENCE = 300.0  # [s]; a browser without a graphics card draws a picture every few seconds
 _SHOWN = 6.9  # [s]; time at which the replay as one file is shown
 _PAINTED = 20.0  # [s] until scene and plots have been drawn
+_FRAMES = 60  # of the moving picture [-]
 
 
 def live(client: Any) -> LivePage:
@@ -86,14 +91,21 @@ DRAWN: dict[str, tuple[Callable[[Any], Any], str]] = {
 """What is shown, and the name of the picture, by the word on the command line."""
 
 
+@contextmanager
+def _browser(width: int, height: int) -> Iterator[Page]:
+    """Open a page of a browser, as large as said [px]."""
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_SOFTWARE)
+        yield browser.new_page(viewport={"width": width, "height": height})
+        browser.close()
+
+
 def take(name: str) -> Path:
     """Take a picture and return its path."""
     page, file = DRAWN[name]
     viewer = Viewer(page, port=0)
     try:
-        with sync_playwright() as driver:
-            browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_SOFTWARE)
-            tab = browser.new_page(viewport=SIZE)
+        with _browser(**SIZE) as tab:
             tab.set_default_timeout(1000 * _PATIENCE)
             tab.goto(viewer.url, wait_until="commit")
             tab.get_by_text("feet that stand").wait_for(state="attached")
@@ -101,36 +113,70 @@ def take(name: str) -> Path:
                 button.evaluate("button => button.click()")
             tab.wait_for_timeout(1000 * _PAINTED)
             tab.screenshot(path=PICTURES / file)
-            browser.close()
     finally:
         viewer.stop()
     return lighten(PICTURES / file)
 
 
-def take_file() -> Path:
-    """Take the picture of a replay as one file, near the end of the two crawls, and return its path."""
+@contextmanager
+def _crawls_shown(at: str = "", **size: int) -> Iterator[Page]:
+    """Show the replay of the two crawls as one file, ``at`` what follows its address."""
     record = _crawls()
     page = replay_file(
         record.isel(run=0), ROBOTS["caiman"], ghost=record.isel(run=1), labels=("spine and tail", "limbs only"),
         title="Crawling with spine and tail, and without",
     )  # fmt: skip
-    with TemporaryDirectory() as folder, sync_playwright() as driver:
+    with TemporaryDirectory() as folder:
         place = Path(folder) / "replay.html"
         place.write_text(page, encoding="utf-8")
-        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_SOFTWARE)
-        tab = browser.new_page(viewport={"width": 1200, "height": 720})
-        tab.goto(place.as_uri())
+        with _browser(**size) as tab:
+            tab.goto(place.as_uri() + at)
+            yield tab
+
+
+def take_file() -> Path:
+    """Take the picture of a replay as one file, near the end of the two crawls, and return its path."""
+    with _crawls_shown(width=1200, height=720) as tab:
         tab.locator("#time").evaluate(
             f"slider => {{ slider.value = {_SHOWN}; slider.dispatchEvent(new Event('input')) }}"
         )
         tab.wait_for_timeout(1000 * _PAINTED)
         tab.screenshot(path=PICTURES / "replay.png")
-        browser.close()
     return lighten(PICTURES / "replay.png")
 
 
+def take_film() -> Path:
+    """Take the moving picture of the two crawls, two cycles at twice their speed, and return its path."""
+    pictures = []
+    with _crawls_shown(at="#t=1", width=720, height=360) as tab:
+        tab.add_style_tag(content="header, footer { display: none !important }")
+        tab.evaluate(
+            "() => { const { state, camera } = window.suchus; state.follow = state.support = state.forces = false;"
+            "Object.assign(camera, { azimuth: -2.0, elevation: 0.6, distance: 1.8, target: [0.36, 0.36, 0.0] }); }"
+        )
+        for frame in range(_FRAMES + 1):
+            tab.evaluate(f"window.suchus.seek({1.0 + 8.0 * frame / _FRAMES})")
+            tab.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            pictures.append(Image.open(BytesIO(tab.locator("main").screenshot())).convert("RGB"))
+    lasting = [4000 // _FRAMES] * _FRAMES + [1500]
+    pictures[0].save(
+        PICTURES / "crawl.webp",
+        save_all=True,
+        append_images=pictures[1:],
+        duration=lasting,
+        loop=0,
+        quality=55,
+        method=6,
+    )
+    return PICTURES / "crawl.webp"
+
+
+ONE_FILE = {"file": take_file, "film": take_film}
+"""How pictures of a replay as one file are taken, by the word on the command line."""
+
+
 if __name__ == "__main__":
-    for word in sys.argv[1:] or (*DRAWN, "file"):
-        if word not in (*DRAWN, "file"):
-            sys.exit(f"viewer_pictures: {word!r} is not a picture; {', '.join(DRAWN)} or file is allowed.")
-        print(take_file() if word == "file" else take(word))
+    for word in sys.argv[1:] or (*DRAWN, *ONE_FILE):
+        if word not in (*DRAWN, *ONE_FILE):
+            sys.exit(f"viewer_pictures: {word!r} is not a picture; {', '.join((*DRAWN, *ONE_FILE))} is allowed.")
+        print(ONE_FILE[word]() if word in ONE_FILE else take(word))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pages import gallery, reference
+from pages import gallery, links, reference
 from suchus.cli.entry import COMMANDS
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
@@ -60,10 +60,10 @@ def test_each_kind_of_reader_has_a_path_of_at_most_ten_steps():
 def test_every_step_leads_to_a_page_or_a_command_that_is_there(reader):
     there = pages()
     for _, step in paths(PAGE)[reader]:
-        links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", step)
+        led = [link.partition("#")[0] for link in links.found(links.built(step))]
         commands = [shlex.split(text) for text in re.findall(r"`(suchus [^`]+)`", step)]
-        assert links or commands or "`" in step, step
-        assert [link for link in links if link not in there] == []
+        assert led or commands or "`" in step, step
+        assert [link for link in led if link not in there] == []
         assert [wrong for command in commands if (wrong := wrong_command(command))] == []
 
 
