@@ -16,7 +16,7 @@ from suchus.verdict import RULES
 ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "docs" / "verdicts.json"
 README = ROOT / "README.md"
-_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile")
+_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models")
 
 
 def collected(out: Path) -> dict[str, dict[str, Any]]:
@@ -28,7 +28,7 @@ def collected(out: Path) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
-            found[verdict["claim"]] = {name: verdict[name] for name in _KEPT}
+            found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
     missing = [claim for claim in RULES if claim not in found]
     if missing:
         raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce in full first.")

@@ -192,7 +192,7 @@ class Experiment(ABC):
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
-                verdicts=() if unjudged else tuple(judge(rule, numbers) for rule in self.rules()),
+                verdicts=() if unjudged else self._judged(numbers, simulated.record),
                 record=simulated.record,
                 settings=self.settings(),
                 tables=simulated.tables,
@@ -206,6 +206,15 @@ class Experiment(ABC):
     @abstractmethod
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Do what is to be measured, and return the record of it."""
+
+    def _judged(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
+        unable = self.unable(record)
+        return tuple(judge(rule, numbers, unable=unable) for rule in self.rules())
+
+    def unable(self, record: xr.Dataset) -> Mapping[str, str]:
+        """Return why models could not be run, in a sentence, by the names of rungs; none by default."""
+        del record
+        return {}
 
     @abstractmethod
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:

@@ -32,7 +32,7 @@ MARKS = {
 """Sign of each verdict, for those who do not see its colour."""
 MOST = 6
 """Numbers that stand below an answer [-]."""
-_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": ()}
+_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": (), "models": ()}
 """What outcomes of version 0.1 do not say of a verdict."""
 _HEAVY = 2 * 2**20
 """Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""

@@ -15,7 +15,7 @@ from suchus.experiment import Experiment, Measure, Outcome
 from suchus.report.outcome_page import write_outcome_page
 from suchus.report.rendering import number
 from suchus.report.result import OUTCOME, RECORD
-from suchus.verdict import Verdict
+from suchus.verdict import Verdict, ladder
 
 
 def check_place(folder: Path) -> None:
@@ -126,6 +126,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "unit": claim.unit,
         "kind": rule.kind,
         "rule": [str(clause) for clause in rule.holds],
+        "models": ladder.rows(verdict.voices, rule.form),
         "verdict": verdict.verdict,
         "fragile": verdict.fragile,
         "share": None if share is None else record.plain(asdict(share)),

@@ -8,12 +8,13 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from math import isfinite
+from math import isfinite, nan
 from types import MappingProxyType
 from typing import Literal, get_args
 
 from suchus.errors import IncompatibleRecord
 from suchus.paper import CLAIMS, Claim
+from suchus.verdict import ladder
 from suchus.verdict.rule import Rule, interval
 
 ROBUST = 0.9
@@ -108,6 +109,8 @@ class Verdict:
     """One or two sentences: what decided it."""
     share: Share | None
     """Fraction of plausible designs for which the statement holds; None where that is not known."""
+    voices: tuple[ladder.Voice, ...] = ()
+    """What each model says; none where one measure decides."""
 
     @property
     def held(self) -> bool:
@@ -121,52 +124,64 @@ class Verdict:
         return judged and self.share is not None and not self.share.robust(self.held)
 
 
-def judge(rule: Rule, measures: Mapping[str, float], shares: Mapping[str, Share] = SHARES) -> Verdict:
+def judge(
+    rule: Rule,
+    measures: Mapping[str, float],
+    shares: Mapping[str, Share] = SHARES,
+    unable: Mapping[str, str] = ladder.NOTHING,
+) -> Verdict:
     """Return the verdict of a rule on measures.
 
     Args:
         rule: the claim's.
         measures: of its experiment, by name, in SI units.
         shares: in how many plausible designs each claim holds, by claim.
+        unable: why models of the rule could not be run, in a sentence, by the names of its rungs.
 
     Raises:
         IncompatibleRecord: a measure that the rule names is not there.
     """
     claim = CLAIMS[rule.claim]
-    value = _value(rule, measures)
-    low, high = interval(rule.measure, measures, rule.spread) if rule.measure in rule.spread else (None, None)
+    missing = sorted(rule.needs - set(measures))
+    if missing:
+        raise IncompatibleRecord(
+            f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
+        )
+    said = ladder.voices(rule, measures, unable)
+    value, low, high, why = nan, None, None, rule.reason(measures)
+    if said:
+        value, least, greatest = ladder.spread(said)
+        low, high = (least, greatest) if isfinite(value) else (None, None)
+        why = f"{why} {ladder.sentence(said, rule.form)}"
+    else:
+        value = float(measures[rule.measure])
+        low, high = interval(rule.measure, measures, rule.spread) if rule.measure in rule.spread else (None, None)
     return Verdict(
         claim=claim,
         rule=rule,
         measured=value if isfinite(value) else None,
         low=low,
         high=high,
-        verdict=_word(rule, claim, value, measures),
-        why=rule.reason(measures),
+        verdict=_word(rule, claim, value, measures, said),
+        why=why,
         share=shares.get(rule.claim),
+        voices=said,
     )
 
 
-def _value(rule: Rule, measures: Mapping[str, float]) -> float:
-    missing = sorted(rule.needs - set(measures))
-    if missing:
-        raise IncompatibleRecord(
-            f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
-        )
-    return float(measures[rule.measure])
-
-
-def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float]) -> Word:
+def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:
     if not isfinite(value):
         return "not testable"
-    held = rule.held(measures)
+    if ladder.disagree(said):
+        return "models disagree"
+    held = ladder.agreed(said) if said else rule.held(measures)
     if held is None:
         return "undecided"
     if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
         return "same sense" if held else "not testable"
-    near = claim.value is None or rule.near(claim.value, claim.rounding, measures)
     if not held:
         return "contradicted"
+    near = claim.value is None or (not said and rule.near(claim.value, claim.rounding, measures))
     if rule.kind == "construction":
         return "by construction" if near else "contradicted"
     if not near:

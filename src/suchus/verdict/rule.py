@@ -112,6 +112,20 @@ def between(name: str, low: float, high: float) -> dict[str, float]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Rung:
+    """One of several models that a claim is asked of, see ``Rule.rungs``."""
+
+    name: str
+    """Its short name: the measures that it gave are those of the rule with ``_NAME`` behind them."""
+    model: str
+    """Its name in words."""
+    why: str
+    """Reason why it can carry the claim, or why it cannot; one that was there before the result."""
+    carries: bool = True
+    """Whether it can carry the claim at all."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
     """When a claim counts as what; it is applied by ``judge``."""
 
@@ -131,6 +145,13 @@ class Rule:
     """What the intervals are of, for people; empty where there are none."""
     why: str
     """What decided it, in a sentence or two with measures in braces: ``{forward_ratio:.2f}``, see ``reading``."""
+    rungs: tuple[Rung, ...] = ()
+    """Models that are asked one by one, all by the same clauses, see ``ladder``; none where one measure decides."""
+    settled: float = 0.1
+    """Greatest spread of a rung's halves and starting sides, over the size of what is measured, with which it has a
+    word: ``MEASURE_NAME_apart`` [-]."""
+    form: str = ".3g"
+    """How the rungs' numbers are written, see ``Reading``."""
     unswept: str = ""
     """Why no share of plausible designs is known; empty where ``suchus study claims`` answers the claim."""
 
@@ -138,8 +159,12 @@ class Rule:
     def needs(self) -> set[str]:
         """Names of the measures that decide, those of the sentence not counted."""
         needed = {self.measure, *(clause.measure for clause in self.holds)}
-        needed |= {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
-        return needed | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
+        bounds = {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
+        if self.rungs:
+            ends, carrying = ("", "_low", "_high", "_apart"), [rung.name for rung in self.rungs if rung.carries]
+            spread = {f"{name}_{rung}{end}" for name in needed for rung in carrying for end in ends}
+            return spread | {f"{name}_{rung}" for name in bounds for rung in carrying}
+        return needed | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
 
     def reason(self, measures: Mapping[str, float]) -> str:
         """Return what decided it, with its numbers."""
