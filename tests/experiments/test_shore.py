@@ -11,7 +11,7 @@ from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.shore import experiment as shore
-from suchus.experiments.shore.figure import _obliquely, levelled
+from suchus.experiments.shore.figure import _obliquely, levelled, posture_times
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate
@@ -191,6 +191,23 @@ def test_the_caption_says_that_a_robot_which_comes_obliquely_looks_shorter():
     assert "obliquely, at 49 degrees" in _obliquely(0.85)
     assert "obliquely, at 49 degrees" in _obliquely(-0.85)
     assert _obliquely(0.0) == ""
+
+
+def test_a_robot_is_drawn_when_its_head_is_ahead_of_its_feet():
+    time = np.arange(0.0, 40.0, 0.1)
+    ahead = -2.0 + 0.08 * time
+    reach = 0.1 + 0.1 * np.sin(2 * np.pi * time / 2.0)  # of the foremost foot, which hides the head above 0.13 m
+    level = xr.Dataset(
+        {
+            "snout": (("time", "xyz"), np.stack([ahead + 0.13, 0 * ahead, 0 * ahead], axis=-1)),
+            "foot_position": (("time", "leg", "xyz"), np.stack([ahead + reach, 0 * ahead, 0 * ahead], -1)[:, None]),
+        },
+        {"time": time, "xyz": ["x", "y", "z"]},
+    )
+    path = xr.Dataset({"ahead": ("moment", ahead)}, {"moment": time})
+    times = posture_times(level, path)
+    assert np.interp(times, time, reach) == pytest.approx([0.0] * 4, abs=0.02)
+    assert np.diff(np.interp(times, time, ahead)) == pytest.approx([1.0] * 3, abs=0.25)
 
 
 def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():

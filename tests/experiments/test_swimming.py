@@ -1,3 +1,4 @@
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import xarray as xr
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._taken import TAKEN
+from suchus.experiments.swim_sweep.figure import draw_maps
 from suchus.experiments.swimming.experiment import ARMS, PlaneSwims, _compared, _track, _wave
 from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
@@ -39,6 +41,17 @@ def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["mine.npz"]
     assert outcome.films
     assert all(name.endswith(".gif") for name in outcome.films)
+
+
+def test_a_map_of_motions_that_no_servo_can_follow_says_so_and_shows_no_number(quick_outcome):
+    record = quick_outcome("swim_sweep").record
+    none = {f"possible_by_{axis}": 0 * record[f"possible_by_{axis}"] for axis in ("frequency", "waves")}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figures = [draw_maps(one, "resistive") for one in (record, record.assign(none))]
+    told = [[text.get_text() for ax in figure.axes for text in ax.texts] for figure in figures]
+    assert not any("empty" in text for text in told[0])
+    assert told[1] == ["empty: joints or servos can follow none"] * 6
 
 
 @pytest.mark.parametrize(

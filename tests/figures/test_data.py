@@ -67,6 +67,28 @@ def test_ticks_that_are_written_as_numbers_are_numbers():
     assert column(rows(figure), "period [s]", "a") == [0.5, 3.0]
 
 
+def test_ticks_at_indices_that_are_written_as_numbers_are_those_numbers():
+    with styled():
+        figure, axes = panels(1, 1)
+        axes[0, 0].imshow([[7.0, 8.0]], origin="lower")
+        axes[0, 0].set_xticks([0, 1], ["5", "12"])
+        axes[0, 0].set_yticks([0], ["0"])
+        axes[0, 0].set(xlabel="slope [deg]", ylabel="air [%]")
+    assert [(row["slope [deg]"], row["air [%]"], row["value"]) for row in rows(figure)] == [
+        ("5", "0", "7"),
+        ("12", "0", "8"),
+    ]
+
+
+def test_rounded_numbers_at_ticks_are_numbers_still():
+    with styled():
+        figure, axes = panels(1, 1)
+        axes[0, 0].plot([1.0 / 3.0, 0.5, 1e-3], [1.0, 2.0, 3.0], label="a")
+        axes[0, 0].set_xticks([1.0 / 3.0, 1e-3], ["0.33", "1e-3"])
+        axes[0, 0].set(xlabel="period [s]", ylabel="speed [m/s]")
+    assert column(rows(figure), "period [s]", "a") == [0.333333, 0.5, 0.001]
+
+
 def test_a_field_is_told_at_its_cells_with_the_label_of_its_colour_bar():
     with styled():
         figure, axes = panels(1, 1)

@@ -7,10 +7,13 @@ from dataclasses import fields, replace
 from math import isfinite
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption
+from suchus.figures.data import field_of
+from suchus.figures.uncover import covering
 from suchus.paper import CLAIMS
 from suchus.sources import current
 from suchus.verdict import judge
@@ -79,13 +82,34 @@ def test_every_variable_of_its_record_has_a_unit(quick):
     assert missing == []
 
 
-def test_its_figures_have_captions(quick):
+@pytest.fixture(scope="module")
+def drawn(quick):
     experiment, outcome = quick
-    figures = experiment.draw(outcome)
-    assert figures
-    for name, figure in figures.items():
+    return experiment.draw(outcome)
+
+
+def test_its_figures_have_captions(drawn):
+    assert drawn
+    for name, figure in drawn.items():
         assert name.isidentifier()
         assert len(caption(figure)) > 20, name
+
+
+def test_no_legend_covers_data_and_no_colour_bar_ends_below_the_greatest_value(drawn):
+    for name, figure in drawn.items():
+        if any(ax.get_legend() for ax in figure.axes):
+            figure.get_layout_engine().execute(figure)
+            assert [ax.get_title("left") for ax, _ in covering(figure)] == [], name
+        assert all(getattr(legend, "_outside_loc", None) for legend in figure.legends), name
+        coloured = (one for ax in figure.axes for one in (*ax.collections, *ax.images) if one.colorbar)
+        for one in coloured:
+            values, bar = field_of(one), one.colorbar
+            if not np.isfinite(values).any():
+                assert one.axes.texts, f"{name}: an empty map does not say why"
+                continue
+            rounding = 1e-9 * (bar.vmax - bar.vmin)
+            assert bar.vmax >= np.nanmax(values) - rounding or bar.extend in ("max", "both"), name
+            assert bar.vmin <= np.nanmin(values) + rounding or bar.extend in ("min", "both"), name
 
 
 def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):

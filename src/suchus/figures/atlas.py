@@ -23,7 +23,7 @@ from suchus.atlas import (
     published,
 )
 from suchus.errors import SuchusError
-from suchus.figures.style import COLOURS, styled
+from suchus.figures.style import COLOURS, new, styled
 from suchus.flow import ALONG_THE_SKIN
 from suchus.record import new_file
 
@@ -225,7 +225,7 @@ def draw_group(listed: Sequence[Entry]) -> Figure:
     high = -(-len(listed) // _COLUMNS)
     wide = min(len(listed), _COLUMNS)
     with styled():
-        figure = Figure(figsize=(3.5 * wide + 0.3, 2.9 * high), layout="constrained")
+        figure = new(width=3.5 * wide + 0.3, height=2.9 * high)
         panels = np.ravel(figure.subplots(high, wide, squeeze=False))
         for axes, entry in zip(panels, listed, strict=False):
             _draw(axes, entry)
@@ -282,7 +282,7 @@ def _draw_numbers(axes: Axes, row: AtlasRow, found: CurveComparison) -> None:
 def draw_parity(listed: Sequence[Entry]) -> Figure:
     """Return all points, ours over theirs, each over the peak of its row, and the difference of each row."""
     with styled():
-        figure = Figure(figsize=(9.6, 0.17 * len(listed) + 2.2), layout="constrained")
+        figure = new(width=9.6, height=0.17 * len(listed) + 2.2)
         left, right = figure.subplots(1, 2)
         shown = [(entry, entry.comparison) for entry in listed if entry.comparison is not None]
         for entry, found in shown:

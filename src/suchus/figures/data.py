@@ -78,6 +78,13 @@ def carry(
     setattr(artist, _CARRIED, CarriedField(np.asarray(values), x, y))
 
 
+def field_of(drawn: Artist | ScalarMappable) -> np.ndarray:
+    """Return the field that a picture shows, NaN where it has no value: what it carries, else its colours'."""
+    carried = getattr(drawn, _CARRIED, None)
+    values: Any = carried.values if carried is not None else drawn.get_array()  # type: ignore[union-attr]
+    return np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
+
+
 def table(figure: Figure) -> str:
     """Return the numbers of a figure as CSV; empty where it shows none."""
     rows = list(_rows(figure))
@@ -107,7 +114,7 @@ def _labelled(panels: Sequence[Axes]) -> Mapping[tuple[str, ...], str]:
     """Return the label of each look that a labelled line has: lines that look alike elsewhere show the same."""
     found: dict[tuple[str, ...], str] = {}
     for line in (line for ax in panels for line in ax.lines):
-        if not _hidden(line.get_label()):
+        if not hidden(line.get_label()):
             found.setdefault(_look(line), _plain(str(line.get_label())))
     return found
 
@@ -159,9 +166,7 @@ def _of_collection(ax: Axes, drawn: Collection, names: _Quantities) -> Iterator[
     elif isinstance(drawn, QuadMesh):
         corners = np.asarray(drawn.get_coordinates(), dtype=float)
         middle: np.ndarray = 0.25 * (corners[1:, 1:] + corners[1:, :-1] + corners[:-1, 1:] + corners[:-1, :-1])
-        values: np.ndarray = np.ma.filled(np.ma.asarray(drawn.get_array(), dtype=float), np.nan).reshape(
-            middle.shape[:2]
-        )
+        values = field_of(drawn).reshape(middle.shape[:2])
         yield from _of_field(middle[0, :, 0], middle[:, 0, 1], values, names, _colour(drawn))
     elif isinstance(drawn, PathCollection):
         coloured: Any = drawn.get_array()
@@ -175,8 +180,7 @@ def _of_collection(ax: Axes, drawn: Collection, names: _Quantities) -> Iterator[
 
 
 def _of_image(image: AxesImage, names: _Quantities) -> Iterator[Cells]:
-    carried = getattr(image, _CARRIED, None)
-    values = np.ma.filled(np.ma.asarray(image.get_array()), np.nan) if carried is None else carried.values
+    values = field_of(image)
     if values.ndim > 2:  # colours, which are no numbers of anything
         return
     x0, x1, y0, y1 = image.get_extent()
@@ -243,32 +247,36 @@ def _scale(drawn: Any) -> tuple[str, float | None, float | None]:
 
 
 def _ticks(axis: Axis) -> tuple[np.ndarray, list[str]]:
-    """Return the places and the words at the ticks of an axis; no words where numbers stand there."""
+    """Return the places and the words at the ticks of an axis; no words where the places themselves stand there."""
     locator = axis.get_major_locator()
     places: np.ndarray = np.array(locator() if isinstance(locator, FixedLocator) else [], dtype=float)
     if not places.size:
         return places, []
     words = [_plain(word) for word in axis.get_major_formatter().format_ticks(places.tolist())]
-    return places, words if any(word and not _is_number(word) for word in words) else []
+    told = any(word and not _says(word, place) for word, place in zip(words, places, strict=True))
+    return places, words if told else []
 
 
-def _is_number(word: str) -> bool:
+def _says(word: str, place: float) -> bool:
+    """Return whether a word beside an axis is the number of its place, as it was rounded."""
+    number = word.replace("\N{MINUS SIGN}", "-")
+    digits = number.lower().partition("e")[0].partition(".")[2]
     try:
-        float(word.replace("\N{MINUS SIGN}", "-"))
+        return abs(float(number) - place) <= 0.5000001 * 10.0 ** -len(digits)
     except ValueError:
         return False
-    return True
 
 
 def _called(label: object, otherwise: str) -> str:
     """Return the name of a series: its label, or what follows the ``_`` that keeps a label out of the legend."""
     text = _plain(str(label))
-    if not _hidden(label):
+    if not hidden(label):
         return text
     return otherwise if label is None or not text or text.startswith(("_child", "_nolegend")) else text[1:]
 
 
-def _hidden(label: object) -> bool:
+def hidden(label: object) -> bool:
+    """Return whether a label is none that a legend shows."""
     return label is None or not str(label) or str(label).startswith("_")
 
 

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 
 from suchus.design import LEGS, Robot, layout
 from suchus.figures.data import table
+from suchus.figures.uncover import Uncovering
 from suchus.record import new_file
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
@@ -131,14 +132,14 @@ def styled(**settings: Any) -> AbstractContextManager[None]:
 
 
 def new(*, width: float = WIDTH, height: float = 3.8) -> Figure:
-    """Return an empty figure with constrained layout; add axes to it inside ``styled()``.
+    """Return an empty figure whose legends move off its data; add axes to it inside ``styled()``.
 
     Args:
         width: [inch].
         height: [inch].
     """
     with styled():
-        return Figure(figsize=(width, height), layout="constrained")
+        return Figure(figsize=(width, height), layout=Uncovering())
 
 
 def panels(

@@ -44,7 +44,7 @@ def mark_cycles(ax: Axes, times: Sequence[float]) -> None:
 
 
 def mark_printed(ax: Axes, values: Mapping[str, float], at: float, *, scale: float = 1.0) -> None:
-    """Mark the article's values with a short bar and their number.
+    """Mark the article's values with diamonds; the first has an entry in the legend.
 
     Args:
         ax: to draw on.
@@ -52,5 +52,6 @@ def mark_printed(ax: Axes, values: Mapping[str, float], at: float, *, scale: flo
         at: position along the axis of time [s].
         scale: factor on the values.
     """
-    for role, value in values.items():
-        ax.plot([at], [scale * value], marker="D", color=COLOURS[role], markeredgecolor="black", markersize=8, zorder=5)
+    for i, (role, value) in enumerate(values.items()):
+        ax.plot([at], [scale * value], "D", color=COLOURS[role], markeredgecolor="black", markersize=8, zorder=5,
+                clip_on=False, label=None if i else "article")  # fmt: skip

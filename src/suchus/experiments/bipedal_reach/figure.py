@@ -81,11 +81,12 @@ def draw_limits(robot: Robot, record: xr.Dataset, up: float) -> Figure:
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=7.6, height=4.8)
         ax = axes[0, 0]
-        mesh = ax.pcolormesh(masses, torques, found, cmap=SEQUENTIAL, vmin=0.0, vmax=0.7, shading="nearest")
+        most = max(0.7, float(found.max()))
+        mesh = ax.pcolormesh(masses, torques, found, cmap=SEQUENTIAL, vmin=0.0, vmax=most, shading="nearest")
         for j, torque in enumerate(torques):
             for i, mass in enumerate(masses):
                 value = float(found[j, i])
-                colour = "black" if value > 0.4 else "white"
+                colour = "black" if value > 0.57 * most else "white"
                 weight = "bold" if value > up else "normal"
                 ax.text(mass, torque, f"{value:.2f}", ha="center", va="center", color=colour, fontweight=weight)
         fine = np.linspace(masses[0] - 0.1, masses[-1] + 0.1, 50)
@@ -324,7 +325,7 @@ def _mark_support(ax: Axes, now: xr.Dataset) -> None:
 
 
 def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
-    """Draw the angles of pelvis, trunk and tail over time, up positive, while it rises and while it lies down.
+    """Draw the angles of pelvis, trunk and tail over time, down positive, while it rises and while it lies down.
 
     Args:
         robot: who stands up.
@@ -335,14 +336,14 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
     place = layout(robot)
     first, *others = place.trunk_pitch
     lines: list[tuple[str, xr.DataArray, dict[str, Any]]] = [
-        ("pelvis against the ground", -tilt(one)["pitch"], {"color": COLOURS["ours"]}),
-        ("trunk, first pitch joint", -one.servo_angle[:, first], {"color": COLOURS["spine"]}),
+        ("pelvis against the ground", tilt(one)["pitch"], {"color": COLOURS["ours"]}),
+        ("trunk, first pitch joint", one.servo_angle[:, first], {"color": COLOURS["spine"]}),
     ]
     for number, (servo, dashes) in enumerate(zip(others, cycle(_DASHES), strict=False), 2):
         word = {2: "second", 3: "third"}.get(number, f"{number}th")
         style = {"color": COLOURS["spine"], "linestyle": dashes}
-        lines.append((f"trunk, {word} pitch joint", -one.servo_angle[:, servo], style))
-    lines.append(("tail, pitch joint", -one.servo_angle[:, place.tail_pitch[0]], {"color": COLOURS["tail"]}))
+        lines.append((f"trunk, {word} pitch joint", one.servo_angle[:, servo], style))
+    lines.append(("tail, pitch joint", one.servo_angle[:, place.tail_pitch[0]], {"color": COLOURS["tail"]}))
     with styled():
         figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True)
         for ax, begin, end, zero, title, since in (
@@ -355,10 +356,11 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
             ax.set_title(title)
             ax.set_xlabel(since)
             ax.set_xlim(begin - zero, end - zero)
-        axes[0, 0].set_ylabel("angle, front end or tip up [deg]")
+        axes[0, 0].set_ylabel("angle, front end or tip down [deg]")
         axes[0, 1].legend(loc="upper right", bbox_to_anchor=(1.0, min(0.93 + 0.07 * (len(lines) - 4), 1.0)))
     return captioned(
         figure,
-        "Angles of pelvis, trunk and tail while standing up (left) and sitting down (right). The trunk bends up first, "
+        "Angles of pelvis, trunk and tail while standing up (left) and sitting down (right), up negative as in the "
+        "article. The trunk bends up first, "
         "then the pelvis pitches up while the trunk straightens; the tail's joint makes room for the pelvis.",
     )

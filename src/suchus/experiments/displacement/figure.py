@@ -208,15 +208,20 @@ def draw_map(
     Args:
         ax: to draw on; its labels come from the ``long_name`` and ``units`` of the coordinates.
         values: two-dimensional, the first dimension up, the second to the right.
-        levels: of the lines, increasing.
+        levels: of the lines, increasing; doubled on from the last until none of the values lies above them.
         label: of the colour bar.
         emphasised: level to draw thick.
         form: how a level is written.
     """
     up, right = (values[d] for d in values.dims)
-    data = np.clip(np.nan_to_num(values.values.astype(float), nan=levels[0], posinf=levels[-1]), levels[0], levels[-1])
-    fine = np.geomspace(levels[0], levels[-1], 40)
-    filled = ax.contourf(right, up, data, levels=fine, cmap=SEQUENTIAL, norm=LogNorm(levels[0], levels[-1]))
+    known = values.values.astype(float)
+    greatest = float(np.max(known, where=np.isfinite(known), initial=levels[0]))
+    while levels[-1] < greatest:
+        levels = (*levels, 2 * levels[-1])
+    least, most = levels[0], levels[-1]
+    data = np.ma.masked_invalid(np.clip(known, 0.5 * least, most))
+    filled = ax.contourf(right, up, data, levels=np.geomspace(least, most, 40), cmap=SEQUENTIAL,
+                         norm=LogNorm(least, most), extend="min" if (known < least).any() else "neither")  # fmt: skip
     carry(filled, values.values, right.values, up.values)
     lines = ax.contour(right, up, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
     ax.clabel(lines, fmt=form, fontsize=11)

@@ -4,6 +4,7 @@ And the topology of the article's Fig. 10: sensors, controllers and what they sh
 """
 
 from collections.abc import Mapping, Sequence
+from math import ceil
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -138,7 +139,8 @@ def draw_gain(distance: xr.DataArray) -> Figure:
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=8.2, height=5.2)
         ax = axes[0, 0]
-        scale = TwoSlopeNorm(100.0, vmin=20.0, vmax=140.0)
+        least, most = min(20, int(100 * share.min())), max(140, ceil(100 * share.max()))
+        scale = TwoSlopeNorm(100.0, vmin=least, vmax=most)
         shown = ax.pcolormesh(100 * share.values, cmap=DIVERGING, norm=scale, edgecolors="white", linewidth=2)
         for (row, column), value in np.ndenumerate(share.values):
             dark = not 0.5 < value < 1.3
@@ -157,7 +159,9 @@ def draw_gain(distance: xr.DataArray) -> Figure:
         ax.set_xlabel("which rules are on")
         for side in ax.spines.values():
             side.set_visible(False)
-        figure.colorbar(shown, ax=ax, label="displacement forward [%]", pad=0.02, ticks=range(20, 141, 20))
+        figure.colorbar(
+            shown, ax=ax, label="displacement forward [%]", pad=0.02, ticks=range(20 * (least // 20), most + 1, 20)
+        )
     return captioned(
         figure,
         "Displacement in the cycles after a disturbance, in percent of that without disturbance and feedback; "

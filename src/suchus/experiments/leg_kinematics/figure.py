@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patches import Circle
 from matplotlib.patheffects import withStroke
 
@@ -22,14 +23,17 @@ def leg_inverse(record: xr.Dataset) -> Figure:
     """Return where the printed inverse (14) misses, and by how much, beside ours."""
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, width=8.2, height=3.9, width_ratios=[1.25, 1])
-        figure.set_layout_engine("constrained", wspace=0.08)
+        engine = figure.get_layout_engine()
+        assert isinstance(engine, ConstrainedLayoutEngine)
+        engine.set(wspace=0.08)
         left, right = axes[0]
         miss = record.printed_error.values
         x, z = _MM * record.outward, _MM * record.down
         exact = np.where(miss < _EXACT, 1.0, np.nan)
         left.pcolormesh(x, z, exact, cmap="Blues", vmin=0, vmax=4, rasterized=True)
         wrong = np.where(miss < _EXACT, np.nan, _MM * miss)
-        mesh = left.pcolormesh(x, z, wrong, cmap=SEQUENTIAL, vmin=0, vmax=350, rasterized=True)
+        most = max(350.0, float(np.max(wrong, where=np.isfinite(wrong), initial=0.0)))
+        mesh = left.pcolormesh(x, z, wrong, cmap=SEQUENTIAL, vmin=0, vmax=most, rasterized=True)
         figure.colorbar(mesh, ax=left, label="foot lands off by [mm]", shrink=0.85)
         hip = _MM * record.attrs["hip_offset"]
         left.plot(hip, 0, "o", color=_ALARM, markersize=6)

@@ -71,7 +71,7 @@ def draw_feet(
             ax.set_title(f"{pair} feet")
             ax.set_xlabel("share of stance [%]")
         axes[0, 0].set_ylabel("force [body weight]")
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=3, fontsize=10)
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=4, fontsize=10)
     return captioned(
         figure,
         "The force of the ground on single feet over their mean stance, left and right. Diamonds: the animal's "
@@ -99,4 +99,6 @@ def _mark_animal(ax: Axes, animal: Mapping[str, Any], pair: str) -> None:
     for part, _, role in _PARTS:
         value = animal[f"foot_force_{'peak' if part == 'vertical' else part}_{pair}"].value
         bar = spread if part == "vertical" else None
-        ax.errorbar(at, value, yerr=bar, fmt="D", color=COLOURS[role], markeredgecolor="black", markersize=8, capsize=4)
+        label = "animal" if part == "vertical" else None
+        ax.errorbar(at, value, yerr=bar, fmt="D", color=COLOURS[role], markeredgecolor="black", markersize=8, capsize=4,
+                    label=label)  # fmt: skip

@@ -14,7 +14,7 @@ from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 from suchus.record import ground_of
 from suchus.rotation import multiply, rotate
 
-_POSTURES = 5
+_POSTURES = 4
 _POINTS = ("position", "centre_of_mass", "snout", "tail_tip", "foot_position", "foot_force")
 _VIEW = (-2.6, 1.7)
 
@@ -52,7 +52,7 @@ def draw_ashore(robot: Robot, record: xr.Dataset) -> Figure:
         figure, axes = panels(2, 1, width=13.0, height=6.4, height_ratios=(1.5, 1.0), sharex=True)
         ax = axes[0, 0]
         _shore(ax, steep)
-        for time in _times(path):
+        for time in posture_times(one, path):
             draw_posture(ax, robot, one, time, view="side", support=False, ground=False)
             here = float(one.centre_of_mass.sel(xyz="x").sel(time=time, method="nearest"))
             ax.annotate(f"{time:.0f} s", (here, 0.0), (here, 0.42), ha="center", color="#333333")
@@ -103,11 +103,23 @@ def _obliquely(course: float) -> str:
     )
 
 
-def _times(path: xr.Dataset) -> list[float]:
-    """Return times at which the robot is drawn, at equal steps of the distance [s]."""
+def posture_times(level: xr.Dataset, path: xr.Dataset) -> list[float]:
+    """Return times at which the robot is drawn, at about equal steps of the distance, its head ahead of its feet [s].
+
+    A limb that reaches forward, or a bend of the trunk towards the viewer, hides the head; so of the times near each
+    step the one is taken at which the snout is farthest ahead of every foot.
+
+    Args:
+        level: of ``levelled``.
+        path: of the same run, with ``ahead`` over ``moment``.
+    """
     ahead, moment = path.ahead.values, path.moment.values
-    end = min(float(np.nanmax(ahead)), _VIEW[1] - 0.55)
-    return [float(moment[np.argmax(ahead >= x)]) for x in np.linspace(float(ahead[0]) + 0.02, end, _POSTURES)]
+    feet = level.foot_position.sel(xyz="x").max("leg")
+    clear = (level.snout.sel(xyz="x") - feet).sel(time=moment, method="nearest").values
+    steps = np.linspace(float(ahead[0]) + 0.02, min(float(np.nanmax(ahead)), _VIEW[1] - 0.55), _POSTURES)
+    near = 0.15 * (steps[1] - steps[0])
+    spans = [(int(np.argmax(ahead >= x - near)), int(np.argmax(ahead >= min(x + near, steps[-1])))) for x in steps]
+    return [float(moment[first + np.argmax(clear[first : last + 1])]) for first, last in spans]
 
 
 def _shore(ax: Axes, steep: float) -> None:

@@ -63,7 +63,7 @@ def draw_wake(record: xr.Dataset) -> Figure:
             if across == "z":  # the other half is the image
                 values, places = np.concatenate([values[::-1], values]), np.concatenate([-places[::-1], places])
             image = ax.pcolormesh(record.x, places, values, vmin=0.0, vmax=strong, cmap="Purples")
-            figure.colorbar(image, ax=ax, label="Q [1/s²]", extend="max")
+            figure.colorbar(image, ax=ax, label="Q [1/s²]", extend="both")
             ax.set_title(title, fontsize=12)
         for ax in axes[:2, 0]:
             _above(ax, record)

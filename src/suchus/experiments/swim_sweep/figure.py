@@ -61,22 +61,23 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
 
 
 def _greatest(record: xr.Dataset, name: str) -> float:
-    """Return the greatest value in both maps of a quantity that the robot can do."""
-    values = np.concatenate(
-        [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
-    )
-    return max(float(np.nanmax(values)), 1e-9)
+    """Return the greatest value in both maps of a quantity that the robot can do; 1 where it can do none."""
+    maps = [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
+    known = np.concatenate(maps)
+    known = known[np.isfinite(known)]
+    return max(float(known.max()), 1e-9) if known.size else 1.0
 
 
 def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -> ScalarMappable:
     x, y = record[axis].values, record.amplitude.values
     values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
     possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
-    edges = _edges(x), _edges(y)
-    drawn = ax.pcolormesh(
-        *edges, np.where(possible, values, np.nan), cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8
-    )
-    carry(drawn, values, x, y)
+    edges, done = (_edges(x), _edges(y)), np.where(possible, values, np.nan)
+    drawn = ax.pcolormesh(*edges, done, cmap=SEQUENTIAL, norm=scale, edgecolors="white", linewidth=0.8)
+    carry(drawn, done, x, y)
+    if not np.isfinite(done).any():
+        why = "no value was found" if possible.any() else "joints or servos can follow none"
+        ax.text(0.5, 0.5, f"empty: {why}", transform=ax.transAxes, ha="center", va="center", bbox=_PAPER, zorder=6)
     for j, i in np.ndindex(values.shape):
         if not possible[j, i]:
             corners = (edges[0][i], edges[0][i + 1])
@@ -97,6 +98,7 @@ def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -
     return drawn
 
 
+_PAPER: Mapping[str, Any] = {"facecolor": "white", "edgecolor": "none", "alpha": 0.9}
 _DOTTED: Mapping[str, Any] = {"color": COLOURS["limbs_only"], "linewidth": 1.8, "linestyle": (0, (1, 1.5)), "zorder": 4}
 _CHECKED: Mapping[str, Any] = {"marker": "o", "linestyle": "none", "markersize": 18, "markerfacecolor": "none",
             "markeredgecolor": COLOURS["limbs_only"], "markeredgewidth": 1.8, "zorder": 5}  # fmt: skip

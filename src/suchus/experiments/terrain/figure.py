@@ -17,6 +17,8 @@ from suchus.robots import ROBOTS
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
 _USUAL = ROBOTS["caiman"].length
 """Length of the robot for which the pictures' sizes are [m]."""
+_FELL: Mapping[str, Any] = {"marker": "x", "linestyle": "none", "color": COLOURS["alarm"], "markersize": 11,
+         "markeredgewidth": 2}  # fmt: skip
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
@@ -35,13 +37,14 @@ def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Fi
                 x, y = 1000 * grounds.height.values, one.forward.mean("seed").values
                 ax.plot(x, y, **(dict(lines[str(arm)]) | {"markersize": 6}))
                 fell = one.fell.mean("seed").values
-                ax.plot(x[fell > 0], y[fell > 0], "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
+                ax.plot(x[fell > 0], y[fell > 0], **_FELL)
             ax.set_title(_KINDS[kind])
             ax.set_xlabel("height [mm]")
             ax.set_ylim(0.0, None)
         axes[0, 0].set_ylabel(f"displacement in {float(record.walked):g} s [m]")
+        axes[0, 0].plot([], [], **_FELL, label="some robots fell")
         handles, labels = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=10)
+        figure.legend(handles, labels, loc="outside lower center", ncols=-(-len(labels) // 2), fontsize=10)
     return captioned(
         figure,
         f"Displacement on rough ground, means over {record.sizes['seed']} seeds; crosses where some robots fell. "
@@ -72,7 +75,7 @@ def _rough_bars(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> F
                     f"{distance:.2f}", (max(distance, 0.0), row), (4, 0), textcoords="offset points", va="center"
                 )
                 if fell > 0:
-                    ax.plot(distance, row, "x", color=COLOURS["alarm"], markersize=11, markeredgewidth=2)
+                    ax.plot(distance, row, **_FELL)
             ax.set_title(f"{_KINDS[str(one.kind.item())]}, {height:.0f} mm" if height else "even ground")
             ax.set_xlabel(f"displacement in {float(record.walked):g} s [m]")
         axes[0, 0].set_yticks(range(len(arms)), [str(lines[arm]["label"]) for arm in arms])
