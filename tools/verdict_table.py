@@ -11,7 +11,7 @@ from typing import Any
 
 from pages.stated import templates, wrapped
 from suchus.errors import IncompatibleRecord
-from suchus.verdict import RULES
+from suchus.verdict import RULES, counted
 
 ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "docs" / "verdicts.json"
@@ -38,8 +38,11 @@ def collected(out: Path) -> dict[str, dict[str, Any]]:
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
     """Return the README with result, summary and questions in their places, of the words in ``docs/stated/readme``."""
+    count = counted(
+        {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
+    )
     for name in ("verdicts", "result", "questions"):
-        text = templates().get_template(f"readme/{name}.md").render(verdicts=table)
+        text = templates().get_template(f"readme/{name}.md").render(verdicts=table, count=count)
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"
         readme = _between(readme, start, end, wrapped(text, width=len(text)).rstrip("\n"))
     return readme

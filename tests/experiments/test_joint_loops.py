@@ -44,6 +44,7 @@ def record(droops=(0.03, 0.01), end=0.1, ripple=0.0):
 def test_measures_of_a_record_with_a_known_answer():
     m = {name: measure.value for name, measure in JointLoops().measure(record(ripple=0.002)).items()}
     assert m["droop_taken"] == pytest.approx(2 / 3)
+    assert m["load_error_pid"] == pytest.approx(0.01)
     assert m["droop_by_kp"] == pytest.approx(0.03)
     assert m["ripple_pid"] == pytest.approx(0.002, rel=1e-3)
     assert m["tracking_error_ki_0"] == pytest.approx(np.sqrt(3e-4))

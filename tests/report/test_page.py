@@ -21,7 +21,7 @@ from suchus.report import Failure, load_result, number, quantity, render_outcome
 from suchus.report.page import _place
 from suchus.report.saving import differing
 from suchus.robots import ROBOTS
-from suchus.verdict import Rule, Verdict
+from suchus.verdict import Rule, Verdict, counted
 
 
 def said(key, measured, why, word):
@@ -338,3 +338,14 @@ def test_wide_figures_take_the_whole_page_and_others_half(result, tmp_path):
     assert [picture.wide for picture in load_result(file.parent).pictures] == [True, False]
     shutil.copy(file, tmp_path / "question" / "second.svg")
     assert render_outcome_page(load_result(file.parent)).count('class="across"') == 1
+
+
+def test_the_page_counts_as_the_readme_does_and_names_what_is_no_evidence(result):
+    text = render_page([result], [])
+    words = {row["claim"]: row["verdict"] for row in result.outcome["verdicts"]}
+    assert str(counted(words)) in text
+    assert "1 not testable" in str(counted(words))
+    first = text[text.index("Read this first") : text.index("</aside>")]
+    assert "Fitted" in first  # of another word, and fitted nonetheless
+    assert "same sense" in first
+    assert "Said twice</h4>" not in first

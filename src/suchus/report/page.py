@@ -24,11 +24,12 @@ from suchus.report.outcome_page import MARKS, PAGE, told, write_outcome_page
 from suchus.report.rendering import embedded, number, quantity, render, tied
 from suchus.report.result import Failure, Result
 from suchus.robots import ROBOTS
+from suchus.verdict import counted, standings
 
 _ENOUGH = 60
 """Letters that say something [-]."""
-_TOLD = ("fitted", "by construction")
-"""Words for what is no evidence: it was put in. They are counted apart."""
+_PUT_IN = ("by construction", "fitted", "said twice")
+"""Standings of what is no evidence though it may agree."""
 
 
 HEADLINE = (
@@ -88,7 +89,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
     verdicts = [verdict for result in results for verdict in told(result) if judged]
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
-    counts = _counts(verdicts)
+    words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
+    worth = standings(words)
     named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
@@ -103,10 +105,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
         "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
         "marks": MARKS,
-        "counts": {word: n for word, n in counts.items() if word not in _TOLD},
-        "put_in": {word: n for word, n in counts.items() if word in _TOLD},
-        "inputs": [verdict for verdict in verdicts if verdict["verdict"] in _TOLD],
-        "fragile": sum(bool(verdict["fragile"]) for verdict in verdicts),
+        "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
+        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _PUT_IN},
         "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
         "untouched": [c for c in CLAIMS.values() if judged and c.key not in {v["claim"] for v in verdicts}],
         "beside": beside(robot, {result.name: result for result in results}),

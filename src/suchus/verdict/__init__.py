@@ -1,5 +1,6 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
+from suchus.verdict.counting import EvidenceCount, Standing, counted, standings
 from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
 from suchus.verdict.rule import Clause, Kind, Reading, Rule, Rung, Varied, between, compared, interval, listed
 from suchus.verdict.table import RULES, examples_of, rules_of, varied_of
@@ -8,21 +9,25 @@ __all__ = [
     "RULES",
     "SHARES",
     "Clause",
+    "EvidenceCount",
     "Examples",
     "Kind",
     "Reading",
     "Rule",
     "Rung",
     "Share",
+    "Standing",
     "Varied",
     "Verdict",
     "Word",
     "between",
     "compared",
+    "counted",
     "examples_of",
     "interval",
     "judge",
     "listed",
     "rules_of",
+    "standings",
     "varied_of",
 ]

@@ -82,7 +82,8 @@ Word = Literal[
 the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
 ``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
 carry the claim say different words. ``not testable``: nothing was measured that could decide. ``by construction``:
-an input, a count or a commanded shape that is read back. ``fitted``: a free number was chosen so that it comes out.
+an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
+chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
 Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]

@@ -56,8 +56,8 @@ Kind = Literal["measured", "construction", "fitted", "animals"]
 """What a claim's number or statement rests on.
 
 ``measured``: it came out of a run or a calculation and could have come out otherwise. ``construction``: an input, a
-count or a commanded shape that is read back. ``fitted``: a free number was chosen so that it comes out. ``animals``:
-the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
+count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was chosen so that
+it comes out. ``animals``: the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
 """
 Relation = Literal["<", "<=", ">", ">="]
 _RELATIONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(

@@ -38,7 +38,14 @@ class JointLoops(Experiment):
 
     title = "What does an integral term in the joint controllers improve, and what does it cost?"
     shows = "Section III.D, Fig. 10"
-    answers = ("droop_taken", "step_error_pid", "ripple_pid", "tracking_by_droop", "tracking_by_damping")
+    answers = (
+        "droop_taken",
+        "load_error_pid",
+        "step_error_pid",
+        "ripple_pid",
+        "tracking_by_droop",
+        "tracking_by_damping",
+    )
     needs = ("limbs",)
     judged_with = ("robot", "gait", "joint", "step")
     judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
@@ -155,6 +162,7 @@ class JointLoops(Experiment):
             "load": Measure(record.attrs["load"], "N m"),
             "droop_by_kp": Measure(record.attrs["load"] / record.attrs["kp"], "rad"),
             "droop_taken": Measure(1.0 - float(droops[last] / droops[0]), "-"),
+            "load_error_pid": Measure(float(droops[last]), "rad"),
             "step_error_pid": Measure(abs(float(tail.sel(test="step")[-1]) - step), "rad"),
             "ripple_pid": Measure(float((tail.max("time") - tail.min("time")).max()), "rad"),
             "tracking_by_droop": Measure(by_load, "-"),

@@ -10,6 +10,7 @@ RULES = (
         claim="leg_inverse",
         experiment="leg_kinematics",
         measure="printed_inverse_holds_crawl",
+        kind="construction",
         holds=(
             Clause(
                 "printed_inverse_holds_crawl",
@@ -51,7 +52,7 @@ _INVERSE = {
 
 EXAMPLES: Examples = {
     "leg_inverse": [
-        (_INVERSE, "reproduced"),
+        (_INVERSE, "by construction"),
         (_INVERSE | {"printed_inverse_holds_crawl": 0.999}, "contradicted"),
         (_INVERSE | {"printed_inverse_holds": 1.0, "printed_inverse_holds_crawl": 0.98}, "contradicted"),
     ],

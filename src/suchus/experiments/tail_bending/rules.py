@@ -32,6 +32,7 @@ RULES = (
         claim="tail_cords_inextensible",
         experiment="tail_bending",
         measure="cords_opposed_share",
+        kind="construction",
         holds=(Clause("cords_opposed_share", ">=", 1.0, "one cord is shorter and the other longer at every bend"),),
         why="At {cords_opposed_share:.0%} of the bends one cord is shorter and the other longer. They do not change by "
         "the same: up to {slack_max:mm.1f} mm of cord hang loose, so that one of them needs a spring. The article says "
@@ -42,6 +43,7 @@ RULES = (
         claim="tail_joint_positions",
         experiment="tail_bending",
         measure="printed_last_joint_error_share",
+        kind="construction",
         holds=(Clause("printed_last_joint_error_share", "<=", EXACT, "positions of a chain are exact up to rounding"),),
         why="The last joint by (19) is {printed_last_joint_error_straight:mm.0f} mm off in a straight tail and up to "
         "{printed_last_joint_error_max:mm.0f} mm off in a bent one, the measured share of the section's length: "
@@ -113,11 +115,11 @@ EXAMPLES: Examples = {
         (_SMALL | {"error_of_eq_17_max": 0.0505}, "contradicted"),
     ],
     "tail_cords_inextensible": [
-        (_CORDS, "reproduced"),
+        (_CORDS, "by construction"),
         (_CORDS | {"cords_opposed_share": 0.99}, "contradicted"),
     ],
     "tail_joint_positions": [
-        (_POSITIONS, "reproduced"),
+        (_POSITIONS, "by construction"),
         (_POSITIONS | {"printed_last_joint_error_share": 1.01e-9}, "contradicted"),
         (_POSITIONS | {"printed_last_joint_error_share": 1.72}, "contradicted"),
     ],
