@@ -8,11 +8,19 @@ import pytest
 from suchus.design import value_at
 from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
+from suchus.study.claim_measures import claims_varied
+from suchus.study.varied import LEAST
 from suchus.verdict import RULES, SHARES
 from suchus.verdict.judging import digest
 
 FILE = resources.files("suchus.verdict") / "claims.json"
 TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
+WAITING = {
+    "crawl_structure_flat", "erect_structure_rough", "feedback_rules", "height_crawl", "height_from_spine_head_legs",
+    "height_ratio", "height_standing", "high_walk_speed_high", "high_walk_speed_low", "joint_pid", "shared_variables",
+    "switches_structure", "tail_on_ground_in_high_walk", "tail_quadratic_small", "tilt_limbs_only", "working_space",
+}  # fmt: skip
+"""Claims that are asked with other designs since the table was made; the next ``suchus study claims`` fills them in."""
 shipped = pytest.mark.skipif(not TOLD, reason="no table has been shipped yet")
 
 
@@ -32,18 +40,21 @@ def test_its_digest_is_that_of_its_rows():
 
 @shipped
 def test_every_rule_without_an_excuse_has_a_row_and_every_row_a_rule():
-    assert set(SHARES) == {claim for claim, rule in RULES.items() if not rule.unswept}
+    assert not set(SHARES) & WAITING
+    assert set(SHARES) | WAITING == {claim for claim, rule in RULES.items() if not rule.unswept}
 
 
 @shipped
 @pytest.mark.parametrize("share", SHARES.values(), ids=list(SHARES))
 def test_a_row_says_a_share_with_its_interval_and_what_turns_it(share):
     assert 0.0 <= share.low <= share.share <= share.high <= 1.0
-    assert 0 < share.designs <= TOLD["samples"]
+    assert LEAST <= share.designs <= TOLD["samples"]
     assert share.high - share.low < 4 / share.designs**0.5
     assert (share.turned_by == "") == (share.at is None)
     if share.turned_by:
         of, _, name = share.turned_by.partition(".")
+        if share.claim in claims_varied():  # a field of its experiment, see tests/study/test_varied.py
+            return
         rows = {"robot": ROBOTS.beside("caiman", "chosen", ()), "gait": GAITS.beside("belly_crawl", "chosen", ())}[of]
         (one,) = [row for row in rows if row.field == name]
         assert one.low <= share.at <= one.high

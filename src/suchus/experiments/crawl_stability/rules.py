@@ -3,11 +3,10 @@
 from math import radians
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule, between
+from suchus.verdict.rule import Clause, Rule, Varied, between
 
 _REPEATS = "repeats with noise on the servos and a tenth of spread in the friction"
 _STEADIER = "steadier is a smaller fluctuation"
-_SNAPSHOT = "one instant of one crawl; the designs of the study walk with other phases and would be judged at another"
 
 
 RULES = (
@@ -49,7 +48,6 @@ RULES = (
         "{lean_limbs_only_1200_ms:deg.1f} degrees, against {lean_coordinated_1200_ms:deg.1f} with spine and tail and "
         "{lean_limbs_tail_lifted_1200_ms:deg.1f} on {standing_feet_limbs_tail_lifted_1200_ms:.0f} feet with limbs only "
         "and the tail in the air; a line of support needs two feet.",
-        unswept=_SNAPSHOT,
     ),
     Rule(
         claim="tail_supports",
@@ -85,6 +83,8 @@ RULES = (
         why="A sine is commanded; {spine_sine_r2:.1%} of the variance of the joints' angles follow it.",
     ),
 )
+
+VARIED = Varied(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=32)
 
 _HEIGHT = {
     "com_height_pp_change": -0.1,

@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule
+from suchus.verdict.rule import Clause, Rule, Varied
 
 _DEAD = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
 
@@ -22,9 +22,10 @@ RULES = (
         "load of the crawl: the integral takes {droop_taken:.0%} of the droop away. Without load a step ends "
         "{step_error_pid:deg.2f} degrees off its target and swings by {ripple_pid:deg.2f} degrees at most in its last "
         "half second.",
-        unswept="one joint on a stand, loaded by one crawl; the designs of the study have no integral term",
     ),
 )
+
+VARIED = Varied(claims=("joint_pid",), designs=("robot",), samples=64)
 
 _PID = {
     "load_error_pid": radians(0.396),

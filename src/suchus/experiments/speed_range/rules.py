@@ -1,10 +1,9 @@
 """When the claims on the animals' high walk count as what (section II.A)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule, between
+from suchus.verdict.rule import Clause, Rule, Varied, between
 
 _KMH = 1 / 3.6
-_UNSWEPT = "Said of crocodiles; no design of a robot says how fast or how they walk."
 _MODELS = "both models of the legs' servos"
 _ROBOT = "; the robot resembles it if it walks as fast"
 _HALF = "about half: what is nearer to a half than to a fifth or to four fifths"
@@ -21,7 +20,6 @@ RULES = (
         why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at "
         "{animals_high_walk_slowest:.1f} to {animals_high_walk_fastest:.1f} m/s (Michel). The robot, 1 m long, walks "
         "high at {speed_high_walk_slowest:.2f} to {speed_high_walk_fastest:.2f} m/s.",
-        unswept=_UNSWEPT,
     ),
     Rule(
         claim="high_walk_speed_high",
@@ -33,7 +31,6 @@ RULES = (
         of=_MODELS,
         why="Said of crocodiles, of which the article gives no size. Nile crocodiles of 1.5 to 7 kg walk high at up to "
         "{animals_high_walk_fastest:.1f} m/s (Michel), the robot at up to {speed_high_walk_fastest:.2f} m/s.",
-        unswept=_UNSWEPT,
     ),
     Rule(
         claim="tail_on_ground_in_high_walk",
@@ -48,8 +45,14 @@ RULES = (
         of="the cycle times",
         why="Said of crocodiles. The robot's tail touches the ground {tail_touches_high_walk:.0%} of the time; of its "
         "length {tail_on_ground_high_walk:.0%} lie within 5 mm of it.",
-        unswept=_UNSWEPT,
     ),
+)
+
+VARIED = Varied(
+    claims=("high_walk_speed_low", "high_walk_speed_high", "tail_on_ground_in_high_walk"),
+    designs=("robot",),
+    settings={"slower": (0.75, 0.875, 1.0, 1.3)},
+    samples=32,
 )
 
 _WHY = {

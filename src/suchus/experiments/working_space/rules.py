@@ -1,7 +1,7 @@
 """When the claim on the working space counts as what (section IV.D)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule, between
+from suchus.verdict.rule import Clause, Rule, Varied, between
 
 RULES = (
     Rule(
@@ -17,9 +17,10 @@ RULES = (
         why="Standing, the snout reaches {volume_ratio:.0f} times the volume that it reaches on four feet "
         "({volume_ratio_low:.0f} to {volume_ratio_high:.0f}), and {area_ratio:.1f} times the area seen from the side "
         "({area_ratio_low:.1f} to {area_ratio_high:.1f}); joint ranges and balance are met, torques not looked at.",
-        unswept="kinematics alone, of one robot; the study walks",
     ),
 )
+
+VARIED = Varied(claims=("working_space",), designs=("robot",), samples=32)
 
 _ROOM = {
     "volume_ratio": 5.0,
