@@ -174,10 +174,11 @@ def test_a_robot_that_sinks_is_told_by_how_much_and_one_that_floats_is_not():
     lacking = caiman.mass - 1000.0 * sum(volumes(caiman).values())
     with pytest.raises(InvalidDesign, match="robot 'caiman' sinks") as refused:
         check_floats(caiman, Lake(level=1.0))
-    assert f"{1e3 * lacking:.0f} g heavier" in str(refused.value)
-    assert f"{lacking / 0.96:.2f} l more foam" in str(refused.value)
+    assert f"{1e3 * lacking:.3g} g heavier" in str(refused.value)
+    assert f"{lacking / 0.96:.3g} l of foam more" in str(refused.value)
+    assert f"{lacking:.3g} l more air" in str(refused.value)
     check_floats(floating, Lake(level=1.0))
-    with pytest.raises(InvalidDesign, match="keep more of its air"):
+    with pytest.raises(InvalidDesign, match="robot 'floating_caiman' sinks"):
         check_floats(floating, Lake(level=1.0, air_fraction=0.0))
     check_floats(caiman, Lake(level=1.0, water=Water(density=2000.0)))
 

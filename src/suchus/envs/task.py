@@ -18,7 +18,7 @@ from suchus.fault import Fault
 from suchus.faults import FAULTS
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
-from suchus.land.afloat import capacity
+from suchus.land.afloat import check_floats
 from suchus.land.lake import check_lake
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
@@ -492,18 +492,3 @@ def check_water(robot: Robot, lake: Lake) -> None:
             "begin at different times: give each as one number."
         )
     check_lake(robot, lake)
-
-
-def check_floats(robot: Robot, lake: Lake) -> None:
-    """Refuse a robot that sinks.
-
-    Raises:
-        InvalidDesign: it displaces less than it weighs; the message says by how much.
-    """
-    litres, needed = (1e3 * value for value in capacity(robot, lake))
-    if litres <= needed:
-        raise InvalidDesign(
-            f"robot {robot.name!r} sinks: it weighs {robot.mass:.3g} kg and displaces at most {litres:.3g} l, of which "
-            f"it needs more than {needed:.3g}; a task that begins swimming needs a robot that floats, as "
-            "'floating_caiman', or a design.Hull."
-        )

@@ -1,4 +1,8 @@
-"""A robot put on the water: level with the surface, as deep as its weight asks for."""
+"""A robot put on the water: whether it floats upright, and level with the surface as deep as its weight asks for."""
+
+import warnings
+from functools import lru_cache
+from math import isnan
 
 import mujoco
 import numpy as np
@@ -8,13 +12,23 @@ from scipy.optimize import brentq
 from suchus.design import Robot
 from suchus.design.hull import Hull
 from suchus.design.pieces import pieces
-from suchus.errors import InvalidDesign
+from suchus.errors import Doubtful, InvalidDesign
 from suchus.hydro import column, unpacked
 from suchus.hydro.forces import hydrostatic
 from suchus.land import wetting
 from suchus.land.lake import Lake
+from suchus.model.hydrostatics import hydrostatics
 from suchus.model.wet import wet_model
 from suchus.rotation import about, multiply
+
+HEAVIER = 1e-3
+"""Share of its mass by which a swimmer may be heavier than its water; the water holds one that swims so slowly down."""
+INDIFFERENT = 1e-4
+"""Metacentric height over length down to which a body is not said to capsize, if it is below zero [-]."""
+AIRBORNE = 0.15
+"""Share of the volume in the air from which a swimmer is told so: limbs and tail then beat the air [-]."""
+_ABOVE, _MOVED = 0.05, 0.1
+"""Share of the volume that is above the surface once it is mended, and of the mass that is moved to mend it [-]."""
 
 
 def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
@@ -41,12 +55,72 @@ def check_floats(robot: Robot, lake: Lake) -> None:
     """
     volume, weight = capacity(robot, lake)
     if volume < weight:
-        surplus, foam = (weight - volume) * lake.water.density, Hull(foam=()).density
-        raise InvalidDesign(
-            f"robot {robot.name!r} sinks: it is {1e3 * surplus:.0f} g heavier than the water that it displaces; give "
-            f"it a design.Hull with at least {1e3 * surplus / (lake.water.density - foam):.2f} l more foam, as "
-            "design.flotation.float_hull makes, or keep more of its air."
+        raise InvalidDesign(_sinks(robot, lake.water.density, (weight - volume) * lake.water.density))
+
+
+def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"]) -> None:
+    """Warn of a swimmer that sinks, capsizes or lies in the air, before it moves; say what would mend it.
+
+    Args:
+        robot: the design.
+        lake: the water, as it is at the beginning.
+        posture: the angles of its servos in which it begins [rad].
+
+    Warns:
+        Doubtful: it is heavier than its water by ``HEAVIER`` of its mass; upright its metacentric height is below zero
+            by ``INDIFFERENT`` of its length; or a share ``AIRBORNE`` of its volume and more is above the surface.
+    """
+    text = _doubt(robot, lake.water.density, lake.at(0.0)[1], tuple(map(float, posture)))
+    if text:
+        warnings.warn(text, Doubtful, stacklevel=2)
+
+
+@lru_cache(maxsize=64)
+def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
+    """Return what is doubtful about a swimmer at rest in a sentence; nothing where all is well."""
+    rest = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
+    if rest.surplus > HEAVIER * rest.mass:
+        return _sinks(robot, density, rest.surplus)
+    above = 1.0 - rest.mass / (density * rest.volume)
+    lever = -rest.metacentric_height
+    if isnan(lever):
+        return (
+            f"robot {robot.name!r} floats on end: no pitch up to 80 degrees balances it; give it foam where it is "
+            "heavy, as design.flotation.float_hull does, or move mass along its axis."
         )
+    if lever > INDIFFERENT * robot.length:
+        return (
+            f"robot {robot.name!r} capsizes: upright its metacentric height is {-1e3 * lever:.3g} mm; lower more than "
+            f"{_grams(_MOVED * rest.mass)} of its mass by {1e3 * lever / _MOVED:.3g} mm, or give its back foam."
+        )
+    if above >= AIRBORNE:
+        lacking = (1.0 - _ABOVE) * density * rest.volume - rest.mass
+        spare = rest.volume - rest.mass / ((1.0 - _ABOVE) * density)
+        return (
+            f"robot {robot.name!r} floats with {above:.0%} of its volume in the air, where it moves no water; "
+            f"{_grams(lacking)} more mass, or {_litres(spare)} less foam, air or other volume, leaves {_ABOVE:.0%} "
+            "above."
+        )
+    return ""
+
+
+def _sinks(robot: Robot, density: float, surplus: float) -> str:
+    """Return the sentence on a robot that is too heavy by a mass [kg]."""
+    foam = (robot.hull or Hull(foam=())).density
+    carried = f"{_litres(surplus / (density - foam))} of foam" if foam < density else "lighter foam"
+    return (
+        f"robot {robot.name!r} sinks: it is {_grams(surplus)} heavier than the water that it displaces; at least "
+        f"{carried} more, as design.flotation.float_hull makes, {_litres(surplus / density)} more air, or "
+        f"{_grams(surplus)} less mass would carry it."
+    )
+
+
+def _grams(mass: float) -> str:
+    return f"{mass:.3g} kg" if mass >= 1.0 else f"{1e3 * mass:.3g} g"
+
+
+def _litres(volume: float) -> str:
+    return f"{1e3 * volume:.3g} l" if volume >= 1e-4 else f"{1e6 * volume:.3g} ml"
 
 
 def surfaced(

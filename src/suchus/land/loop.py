@@ -9,11 +9,12 @@ from math import floor
 import numpy as np
 from jaxtyping import Bool, Int
 
-from suchus.control import Command, Controller, Runs, Sensed
+from suchus.control import Amphibious, Command, Control, Controller, Runs, Sensed, Swimming
 from suchus.design.checks import require
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
 from suchus.fault import Fault
+from suchus.land.afloat import check_afloat
 from suchus.land.batch import Beginning, SimulationBatch
 from suchus.land.injector import Disturbances
 from suchus.land.readings import Recorder, Sensors
@@ -87,6 +88,9 @@ class Loop:
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks, self.period) if controller is None else controller
         first = self.controller.rest()
+        for run, posture in zip(runs, first, strict=True):
+            if run.lake is not None and _swims(run.control):
+                check_afloat(run.robot, run.lake, posture)
         self.batch.place(runs, first)
         self._deduplication = Deduplication(runs, first, self.period)
         self.disturbances = Disturbances(runs, self.batch, ticks, self.period)
@@ -161,6 +165,11 @@ class Loop:
         self.disturbances.schedule(sim, faults, pushes)
         self.batch.restart(sim, begin)
         self.clocks[sim] = 0
+
+
+def _swims(control: Control) -> bool:
+    """Return whether a run begins with a swim."""
+    return isinstance(control, Swimming) or (isinstance(control, Amphibious) and control.begins == "swimming")
 
 
 _EARLY = 1e-6
