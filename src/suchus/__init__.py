@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from suchus.motion import Gait as Gait
     from suchus.motion import swimming_gait as swimming_gait
     from suchus.robots import ROBOTS as ROBOTS
+    from suchus.samples import sample as sample
     from suchus.sources import project as project
     from suchus.study import MEASURES as MEASURES
     from suchus.water import swim as swim
@@ -76,6 +77,7 @@ _HOMES = {
     "Gait": "suchus.motion",
     "swimming_gait": "suchus.motion",
     "project": "suchus.sources",
+    "sample": "suchus.samples",
     "swim": "suchus.water",
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),
     "Fault": "suchus.fault",

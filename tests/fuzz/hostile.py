@@ -410,6 +410,7 @@ def commands(self: Range, dice: Random) -> None:
         "export-commands",
         "replay",
         "demo",
+        "lessons",
         "doctor",
         "flow-atlas",
     ):

@@ -68,6 +68,9 @@ COMMANDS = (
         "make a page of a stored run that plays offline",
         "suchus.cli.replay:make_replay",
     ),
+    Subcommand(
+        "lessons", "[--out DIR]", "write five lessons for a class, that play offline", "suchus.cli.lessons:lessons"
+    ),
     Subcommand("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
     Subcommand(
         "optimise",

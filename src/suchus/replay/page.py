@@ -50,27 +50,64 @@ def replay(
     Raises:
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
     """
-    runs = [checked(given, robot) for given in (record, ghost) if given is not None]
-    grounds = [ground_of(given) or Ground() for given in (record, ghost) if given is not None]
+    return rendered("replay.html", record, robot, ghost=ghost, labels=labels, title=title, caption=caption,
+                    overlaid=overlaid)  # fmt: skip
+
+
+def rendered(
+    template: str,
+    record: xr.Dataset,
+    robot: Robot,
+    *,
+    ghost: xr.Dataset | None = None,
+    others: Sequence[xr.Dataset] = (),
+    choice: str = "",
+    labels: Sequence[str],
+    title: str = "",
+    caption: str = "",
+    overlaid: bool = False,
+    **more: Any,
+) -> str:
+    """Return a template that extends ``replay.html``, filled with runs; see ``replay``.
+
+    Args:
+        template: its file name.
+        record: of one run on land.
+        robot: whose it is.
+        ghost: another run of the same robot, half transparent.
+        others: instead of a ghost, further runs of the robot on such ground, of which a slider chooses one.
+        choice: the name of that slider.
+        labels: what the runs are called.
+        title: heading; by default robot and gait.
+        caption: one or two sentences.
+        overlaid: whether run and ghost begin in the same place.
+        **more: what else the template names.
+    """
+    records = [record, *others, *([] if ghost is None else [ghost])]
+    runs = [checked(given, robot) for given in records]
+    grounds = [ground_of(given) or Ground() for given in records]
     first = frames(runs[0], robot)
     moving = [first, *(frames(run, robot, first.rate) for run in runs[1:])]
     overlaid = overlaid or grounds[0].relief is not None
     meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
     still, still_time = _still(robot, runs[0])
-    return environment().get_template("replay.html").render(
+    return environment().get_template(template).render(
         title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
         caption=" ".join(f"{caption} {_on(grounds)}".split()),
         alt=_in_words(robot, moving, labels),
         still=Markup(still),
         still_time=still_time,
         ghost=labels[1] if ghost is not None else "",
+        choice=choice,
+        choices=len(records),
         beside=grounds[0].relief is None,
         overlaid=overlaid,
         keys=KEYS | {"legs": limb_colours(robot)},
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
         version=versions()["suchus"],
-        meta=_script(meta),
+        meta=_script(meta | {"chosen": bool(choice)}),
         data=data,
+        **more,
     )  # fmt: skip
 
 

@@ -68,7 +68,7 @@ def scene(
 
     Args:
         robot: who moves.
-        moving: one run, or two; the second is the ghost.
+        moving: one run, or two of which the second is the ghost, or several of which one is chosen.
         labels: what the runs are called.
         ground: on what.
         overlaid: whether two runs begin in the same place.

@@ -134,8 +134,8 @@
   }
 
   // ---- state ---------------------------------------------------------------------------------------------------
-  Object.assign(state, { time: meta.start, forces: true, support: true, tracks: true, follow: true,
-    compare: meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside" });
+  Object.assign(state, { time: meta.start, forces: true, support: true, tracks: true, follow: true, run: 0,
+    compare: meta.chosen || meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside" });
   const bodyLength = meta.length; // sizes of marks [m] were chosen for a robot as long as the article's, 1 m
   const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06 * meta.length], moved: [0, 0, 0] };
   let shown = null;
@@ -327,7 +327,7 @@
 
   function draw() {
     const back = shared.clear([0.925, 0.925, 0.905], [0.085, 0.098, 0.106]);
-    const seenActors = state.compare === "hidden" ? actors.slice(0, 1) : actors;
+    const seenActors = meta.chosen ? [actors[state.run]] : state.compare === "hidden" ? actors.slice(0, 1) : actors;
     actors.forEach((actor, i) => { actor.side = i && state.compare === "beside" ? meta.aside : 0; });
     const now = seenActors.map((actor) => frame(actor, state.time));
     if (state.follow) {
@@ -371,7 +371,7 @@
     surface(seen);
     if (state.support) { gl.disable(gl.DEPTH_TEST); const mark = []; hoop(mark, now[0].mass, seen); triangles(mark, seen, false); gl.enable(gl.DEPTH_TEST); }
     labels(seen);
-    readout(now);
+    readout(now, seenActors);
     shown = now;
   }
   function hoop(to, at, seen) { // the centre of mass is inside the body: a ring seen through it
@@ -391,7 +391,7 @@
     return { mark, at: [meta.marks[0] + i, meta.mark_side, 0] };
   });
   const names = actors.map((actor, i) => { const mark = document.createElement("span"); mark.className = i ? "name ghost" : "name";
-    mark.textContent = actors.length > 1 ? actor.label : ""; scale.append(mark); return mark; });
+    mark.textContent = actors.length > 1 && !meta.chosen ? actor.label : ""; scale.append(mark); return mark; });
   function put(mark, at, seen, visible = true) {
     const m = seen.matrix, w = m[3] * at[0] + m[7] * at[1] + m[11] * at[2] + m[15];
     const x = (m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w, y = (m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w;
@@ -404,12 +404,12 @@
   }
   const places = meta.length < 0.5 ? 3 : 2;
   const metres = (v) => `${v.toFixed(places).replace("-", "−")} m`;
-  function readout(now) {
+  function readout(now, seenActors) {
     $("clock").textContent = `${state.time.toFixed(2)} s`;
     $("time").value = state.time;
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
-    const way = (i) => now[i].mass[0] - actors[i].mass[0];
-    $("told").textContent = now.map((_, i) => `${actors.length > 1 ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
+    const way = (i) => now[i].mass[0] - seenActors[i].mass[0];
+    $("told").textContent = now.map((_, i) => `${actors.length > 1 && !meta.chosen ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
       `centre of mass ${metres(now[i].mass[2])} high`).join("  ·  ");
   }
 
@@ -426,6 +426,8 @@
     return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), 1.15 / aspect);
   };
   $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
+  const choose = (run) => { state.run = run; $("choice").textContent = actors[run].label; $("chosen").setAttribute("aria-valuetext", actors[run].label); redraw(); };
+  if ($("chosen")) { choose(0); $("chosen").addEventListener("input", (e) => choose(+e.target.value)); }
   if ($("compare")) $("compare").addEventListener("change", (e) => { state.compare = e.target.value; camera.distance = fitted(); redraw(); });
   shared.hold({ camera, lowest: -0.12, move, seen: view, look, seek, step, start: meta.start, end, boxes: ["forces", "support", "tracks", "follow"], play });
   shared.begin(draw, (time) => { state.time = state.time + time > end ? meta.start : state.time + time; });
