@@ -124,6 +124,32 @@ def in_space(moving):
     return make
 
 
+def tell_outline(cells=96, corners=240, steps=12, rounds=6):
+    """Print what a step takes around a moving ellipse and around its outline, in turns, on one thread [ms]."""
+    ellipse = flow.Ellipse(length=1.0, width=0.3)
+    shapes = {"ellipse": ellipse, "outline": flow.from_outline(np.stack(ellipse.outline(corners), axis=1))}
+    grid = flow.Grid(cells=(4 * cells, 8 * cells // 3), cell=1 / cells, origin=(-1.5, -4 / 3))
+    swing, sims = flow.Oscillation(frequency=0.5, heave=(0.0, 0.1), pitch=0.3), {}
+    for name, shape in shapes.items():
+        body = flow.Body(shape=shape, motion=swing)
+        setup = flow.Setup(grid=grid, viscosity=1e-3, stream=(1.0, 0.0), bodies=(body,))
+        sims[name] = flow.Simulation(setup, thread_count=1)
+
+    def spent(sim):
+        start = perf_counter()
+        for _ in range(steps):
+            sim.advance()
+        return 1e3 * (perf_counter() - start) / steps
+
+    every = [{name: spent(sim) for name, sim in sims.items()} for _ in range(rounds)]
+    ellipse, outline = (min(one[name] for one in every[1:]) for name in shapes)
+    print(
+        f"{' x '.join(map(str, grid.cells))}, a moving ellipse {ellipse:.1f} ms a step, an outline of its {corners} "
+        f"corners {outline:.1f} ms: {outline / ellipse:.2f} times (asked: 1.3)"
+    )
+    return {"shape_ellipse": ellipse, "shape_outline": outline}
+
+
 def tell_pieces(make, cells, threads, steps):
     """Print what each piece of a step takes, the faster half of its calls counting, and those of a pressure solve."""
     calls, inside, kept = defaultdict(list), [], []
@@ -222,6 +248,7 @@ def main():
             else:
                 found |= tell_speed(label, make, cells, steps, far)
     if not chosen.pieces:
+        found |= tell_outline()
         for cells in (96, 128):
             found |= tell_swim(cells, far)
     if chosen.keep and many > 1 and not chosen.pieces:

@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from suchus.errors import InvalidDesign, UnreadableFile
-from suchus.flow.shape import Solid, positive
+from suchus.flow.paint import measure_outline, paint_outline
+from suchus.flow.pose import Pose
+from suchus.flow.shape import Field, Solid, positive
 
 _STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
 _MOST, _OFF = 0.9, 0.02  # share of an outline on which a distance has the gradient 1, but for corners, and how nearly
@@ -44,26 +46,27 @@ class Polygon(Solid):
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance and outward normal."""
-        points = np.stack([np.ravel(x), np.ravel(y)], axis=1)
-        starts, ends = self.corners, np.roll(self.corners, -1, axis=0)
-        nearest, foot = np.full(len(points), np.inf), np.zeros_like(points)
-        outward, inside = np.zeros_like(points), np.zeros(len(points), bool)
-        for a, b in zip(starts, ends, strict=True):
-            along, away = b - a, points - a
-            share = np.clip(away @ along / (along @ along), 0.0, 1.0)
-            at = a + share[:, None] * along
-            gap = np.hypot(*(points - at).T)
-            closer = gap < nearest
-            nearest[closer], foot[closer] = gap[closer], at[closer]
-            outward[closer] = np.array([along[1], -along[0]]) / np.hypot(*along)
-            spans = (a[1] <= points[:, 1]) != (b[1] <= points[:, 1])
-            if along[1]:
-                inside ^= spans & (points[:, 0] < a[0] + (points[:, 1] - a[1]) / along[1] * along[0])
-        sign = np.where(inside, -1.0, 1.0)
-        far = nearest > 1e-9 * float(np.ptp(self.corners))
-        outward[far] = (sign[far] / nearest[far])[:, None] * (points - foot)[far]
-        shape = np.shape(x)
-        return (sign * nearest).reshape(shape), outward[:, 0].reshape(shape), outward[:, 1].reshape(shape)
+        px, py = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        out = np.empty((3, px.size))
+        measure_outline(out, px.ravel(), py.ravel(), self._around, self._flat)
+        d, nx, ny = out.reshape(3, *px.shape)
+        return d, nx, ny
+
+    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+        """Return the field on the points of a window, as far as ``reach``."""
+        h = float(x[-1] - x[0]) / (x.size - 1)
+        outline = np.stack(pose.to_world(*self._around))
+        d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
+        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(*np.meshgrid(x, y)))
+        return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
+
+    @property
+    def _around(self) -> np.ndarray:
+        return np.ascontiguousarray(self.corners.T)
+
+    @property
+    def _flat(self) -> float:
+        return 1e-9 * float(np.ptp(self.corners))
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the corners, and points between them about evenly spaced."""
@@ -268,7 +271,7 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
     a, b = corners, np.roll(corners, -1, axis=0)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
-        return np.sign((q[0] - p[0]) * (r[:, 1] - p[1]) - (q[1] - p[1]) * (r[:, 0] - p[0]))
+        return np.sign((q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0])
 
     for k in range(len(corners)):
         others = np.arange(k + 2, len(corners) - (k == 0))
@@ -276,7 +279,7 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
             continue
         p, q = a[others], b[others]
         apart = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
-        far = np.array([side(s, t, np.stack([a[k], b[k]])).prod() > 0 for s, t in zip(p, q, strict=True)])
+        far = side(p, q, a[k]) * side(p, q, b[k]) > 0
         beside = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
             np.minimum(p, q) > np.maximum(a[k], b[k])
         ).any(axis=1)
@@ -287,10 +290,12 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
 
 
 def _widest(shape: Solid) -> float:
-    """Return the diameter of the largest circle inside a shape."""
+    """Return the diameter of the largest circle inside the outline of a shape."""
     x, y = shape.outline(512)
     gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))
-    return max(-2 * float(shape.distance(gx, gy)[0].min()), 0.0)
+    out = np.empty((3, gx.size))
+    measure_outline(out, gx.ravel(), gy.ravel(), np.stack([x, y]), 0.0)
+    return max(-2 * float(out[0].min()), 0.0)
 
 
 def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]) -> np.ndarray:

@@ -1,6 +1,6 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision)
-"""Distance, normal and velocity of a body given by a midline and its half-widths, painted onto a window.
+"""Distance, normal and velocity of a body given by its midline, or by its outline alone, painted onto a window.
 
 Every edge of the outline paints the points near it; winding numbers along the rows tell inside from outside; and
 each point moves with the cross-section of the midline that it lies on, which is continuous across the body's
@@ -114,6 +114,38 @@ def ring(spine):
 
 
 @part
+def _wind(winding, outline, x0, y0, h):
+    """Note all edges of an outline on the rows that they cross."""
+    count = outline.shape[1]
+    for k in range(count):
+        m = (k + 1) % count
+        if outline[1, k] != outline[1, m]:
+            _wind_edge(winding, outline[0, k], outline[1, k], outline[0, m], outline[1, m], x0, y0, h)
+
+
+@part
+def _paint_edges(square, edge, share, rows, outline, x0, y0, h, reach):
+    """Keep at the points of the rows (first, end) the edge of an outline that is nearest."""
+    count = outline.shape[1]
+    for k in range(count):
+        m = (k + 1) % count
+        ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
+        if ax != bx or ay != by:
+            _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach)
+
+
+@part
+def _normal_to_edge(outline, k, share, px, py, distance, sign, flat):
+    """Return the outward normal at a point whose nearest edge is known, its own if that is nearer than ``flat``."""
+    m = (k + 1) % outline.shape[1]
+    ex, ey = outline[0, m] - outline[0, k], outline[1, m] - outline[1, k]
+    if distance > flat:
+        return sign * (px - outline[0, k] - share * ex) / distance, sign * (py - outline[1, k] - share * ey) / distance
+    size = np.sqrt(ex * ex + ey * ey)
+    return ey / size, -ex / size
+
+
+@part
 def _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h):
     """Write what ``paint`` returns for one row of points, whose nearest edges are known."""
     count, n = outline.shape[1], spine.shape[1]
@@ -148,19 +180,12 @@ def _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate,
 @threaded
 def _paint(out, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h, reach):
     """Paint ``out``, row by row; the other arrays of its shape are room."""
-    count, ny = outline.shape[1], square.shape[0]
-    for k in range(count):
-        m = (k + 1) % count
-        if outline[1, k] != outline[1, m]:
-            _wind_edge(winding, outline[0, k], outline[1, k], outline[0, m], outline[1, m], x0, y0, h)
+    ny = square.shape[0]
+    _wind(winding, outline, x0, y0, h)
     for n in prange((ny + ROWS - 1) // ROWS):
         block = signed(n)
         rows = block * ROWS, min((block + 1) * ROWS, ny)
-        for k in range(count):
-            m = (k + 1) % count
-            ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
-            if ax != bx or ay != by:
-                _paint_edge(square, edge, share, rows, k, ax, ay, bx, by, x0, y0, h, reach)
+        _paint_edges(square, edge, share, rows, outline, x0, y0, h, reach)
         for j in range(rows[0], rows[1]):
             _paint_row(out, j, square, edge, share, winding, outline, spine, width_rate, tx, ty, x0, y0, h)
 
@@ -181,6 +206,77 @@ def paint(
     _paint(out, square, edge, share, winding, outline, spine, width_rate, np.cos(headings), np.sin(headings), x0, y0, h,
            reach)  # fmt: skip
     return out
+
+
+@threaded
+def _paint_outline(out, square, edge, share, winding, outline, x0, y0, h, reach, flat):
+    """Paint ``out``, row by row; the other arrays of its shape are room."""
+    ny = square.shape[0]
+    _wind(winding, outline, x0, y0, h)
+    for n in prange((ny + ROWS - 1) // ROWS):
+        block = signed(n)
+        rows = block * ROWS, min((block + 1) * ROWS, ny)
+        _paint_edges(square, edge, share, rows, outline, x0, y0, h, reach)
+        for j in range(rows[0], rows[1]):
+            wound = 0
+            for i in range(square.shape[1]):
+                wound += winding[j, i]
+                sign, d = -1.0 if wound != 0 else 1.0, np.sqrt(square[j, i])
+                out[0, j, i] = sign * d
+                if edge[j, i] >= 0:
+                    px, py = x0 + i * h, y0 + j * h
+                    out[1, j, i], out[2, j, i] = _normal_to_edge(
+                        outline, edge[j, i], share[j, i], px, py, d, sign, flat
+                    )
+
+
+def paint_outline(
+    outline: np.ndarray, x0: float, y0: float, h: float, nx: int, ny: int, reach: float, flat: float
+) -> np.ndarray:
+    """Return distance and normal (x, y) of a polygon on a window, shape (3, ny, nx).
+
+    Args:
+        outline: its corners, counter-clockwise, shape (2, corner) [m].
+        x0: first point of the window [m].
+        y0: first point of the window [m].
+        h: distance of its points [m].
+        nx: points along x [-].
+        ny: points along y [-].
+        reach: distance beyond which points are taken to be just so far off, without a normal [m].
+        flat: distance below which a point has the normal of its edge [m].
+    """
+    out, square, edge = np.zeros((3, ny, nx)), np.full((ny, nx), reach * reach), np.full((ny, nx), -1, np.int32)
+    share, winding = np.zeros((ny, nx)), np.zeros((ny, nx), np.int32)
+    _paint_outline(out, square, edge, share, winding, outline, x0, y0, h, reach, flat)
+    return out
+
+
+@threaded
+def measure_outline(out, px, py, outline, flat):
+    """Write distance and normal of a polygon at any points, however far, to ``out``, shape (3, point).
+
+    Args:
+        out: where to.
+        px: points, shape (point,).
+        py: points, shape (point,).
+        outline: corners, counter-clockwise, shape (2, corner).
+        flat: distance below which a point has the normal of its edge.
+    """
+    count = outline.shape[1]
+    for n in prange(px.size):
+        i = signed(n)
+        nearest, edge, at, inside = np.inf, 0, 0.0, False
+        for k in range(count):
+            m = (k + 1) % count
+            ax, ay, bx, by = outline[0, k], outline[1, k], outline[0, m], outline[1, m]
+            d2, share = distance_to_edge(px[i], py[i], ax, ay, bx, by)
+            if d2 < nearest:
+                nearest, edge, at = d2, k, share
+            if (ay <= py[i]) != (by <= py[i]) and px[i] < ax + (py[i] - ay) / (by - ay) * (bx - ax):
+                inside = not inside
+        sign, d = -1.0 if inside else 1.0, np.sqrt(nearest)
+        out[0, i] = sign * d
+        out[1, i], out[2, i] = _normal_to_edge(outline, edge, at, px[i], py[i], d, sign, flat)
 
 
 @compiled
