@@ -118,6 +118,8 @@ class Simulated:
     """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
     replays: Mapping[str, Replay] = field(default_factory=dict)
     """Runs to look at, to stand beside the figures, by file name ending in .html."""
+    kept: tuple[Path, ...] = ()
+    """Files from which the run would have gone on; who has saved its outcome removes them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,6 +200,7 @@ class Experiment(ABC):
                 tables=simulated.tables,
                 films=simulated.films,
                 replays=simulated.replays,
+                kept=simulated.kept,
                 decides=" ".join(self.explain(numbers).split()),
                 unjudged=unjudged,
                 seconds=seconds(),

@@ -14,7 +14,6 @@ from suchus.paper import ERRATA
 from suchus.water import fit, printed_wave, swim
 
 
-@pytest.mark.slow("a second run of an experiment")
 def _no_conditions(self, ours, printed, free, progress):
     """Stand in for five more swims that are kept as the first is."""
     speed = np.ones((len(ARMS), self.arm_cycles))
@@ -22,6 +21,7 @@ def _no_conditions(self, ours, printed, free, progress):
     return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, self.arm_cycles + 1))
 
 
+@pytest.mark.slow("a second run of an experiment")
 def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
     quick = EXPERIMENTS["swimming"].quick()
     monkeypatch.setattr(PlaneSwims, "_conditions", _no_conditions)
@@ -31,14 +31,18 @@ def test_what_was_finished_is_kept_and_the_rest_goes_on(tmp_path, monkeypatch):
         if stage == "free" and share > 0.4:
             raise KeyboardInterrupt
 
-    (tmp_path / "mine.npz").write_bytes(b"of the user")
+    others = [tmp_path / "mine.npz", tmp_path / "another.kept-swim"]
+    for file in others:
+        file.write_bytes(b"of another")
     with pytest.raises(KeyboardInterrupt):
         experiment.run(interrupted)
     assert {path.stem for path in tmp_path.iterdir()} >= {"held_ours", "held_as_printed", "free_ours"}
     outcome = experiment.run(lambda stage, share: seen.append((stage, share)))
     assert [share for stage, share in seen if stage == "held"] == [], "the held swim began anew"
     assert min(share for stage, share in seen if stage == "free") > 0.3
-    assert [path.name for path in tmp_path.iterdir()] == ["mine.npz"]
+    assert {*outcome.kept} >= {*tmp_path.iterdir()} - {*others}, "what is kept is not known, and stays for ever"
+    assert not {*outcome.kept} & {*others}
+    assert (tmp_path / "free_ours.kept-swim").is_file(), "forgotten before anything is saved"
     assert outcome.films
     assert all(name.endswith(".gif") for name in outcome.films)
 

@@ -4,7 +4,7 @@ import re
 import shlex
 import time
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,6 +74,9 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
             figures = experiment.draw(outcome)
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+    for path in outcome.kept:
+        with suppress(OSError):  # what cannot be removed costs no result
+            path.unlink()
     return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
 
 

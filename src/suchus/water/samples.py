@@ -5,7 +5,7 @@ what came after the last pause, Ctrl-C likewise; and since a run pauses at the s
 one that was stopped ends with the same bytes as one that was not.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from hashlib import sha256
 from io import BytesIO
 from math import prod
@@ -101,11 +101,10 @@ def kept_in(folder: str, name: str) -> Path | None:
     return Path(folder) / f"{name.replace(' ', '_')}{_KEPT}" if folder else None
 
 
-def forget_kept(folder: str) -> None:
-    """Remove the files that ``kept_in`` names in a folder, and their samples; whatever else lies there stays."""
-    for pattern in (f"*{_KEPT}", f"*{_KEPT}{_SAMPLES}") if folder else ():
-        for path in Path(folder).glob(pattern):
-            path.unlink()
+def all_kept(folder: str, names: Iterable[str]) -> tuple[Path, ...]:
+    """Return the files of unfinished swims of these names in a folder, and of their samples; none if that is empty."""
+    files = [path for name in names if (path := kept_in(folder, name)) is not None]
+    return tuple(path.with_name(path.name + end) for path in files for end in ("", _SAMPLES))
 
 
 def run_on(

@@ -31,7 +31,7 @@ from suchus.water import (
     swim,
 )
 from suchus.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
-from suchus.water.samples import forget_kept, kept_in
+from suchus.water.samples import all_kept, kept_in
 from suchus.water.setting import BESIDE
 
 MOST_REYNOLDS = 2e4
@@ -165,8 +165,8 @@ class Swim3d(Experiment):
         swims = {name: swum for (name, *_), swum in zip(runs, found, strict=True)}
         record = self.recorded(swims, with_midlines(beside, bent))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
-        forget_kept(self.keep)
-        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record))
+        kept = all_kept(self.keep, ["slice", *map(_kept_as, items)])
+        return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=kept)
 
     def recorded(self, swims: Mapping[str, xr.Dataset], beside: xr.Dataset) -> xr.Dataset:
         """Return the record of the experiment from the swims by name, and what slice and models say."""
@@ -284,8 +284,12 @@ def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
-    checkpoint = kept_in(keep, fingerprint(item)[:16])
-    return resolved_swim(robot, *item, checkpoint=checkpoint, progress=progress)
+    return resolved_swim(robot, *item, checkpoint=kept_in(keep, _kept_as(item)), progress=progress)
+
+
+def _kept_as(item: Item) -> str:
+    """Return the name of what is kept of an unfinished swim."""
+    return fingerprint(item)[:16]
 
 
 def _replays(record: xr.Dataset) -> dict[str, Replay]:

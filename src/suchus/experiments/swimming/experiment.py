@@ -40,7 +40,7 @@ from suchus.water import (
     wave_form,
 )
 from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
-from suchus.water.samples import forget_kept, kept_in
+from suchus.water.samples import all_kept, kept_in
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions that are compared while swimming freely."""
@@ -120,7 +120,8 @@ class PlaneSwims(Experiment):
     """Whether the midline that the joints take in six degrees of freedom swims too, with trunk and tail and with the
     tail alone: two more swims like those of trunk and tail."""
     keep: str = ""
-    """Folder for what is finished of an interrupted run, from which it goes on; empty keeps nothing."""
+    """Folder for what is finished of an interrupted run, from which it goes on, until its result is saved; empty
+    keeps nothing."""
 
     def __post_init__(self) -> None:
         with Checks("swimming", self) as check:
@@ -175,8 +176,10 @@ class PlaneSwims(Experiment):
         record.attrs["misfit"] = ours.misfit
         progress("films", 1.0)
         films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
-        forget_kept(self.keep)
-        return Simulated(record=record, tables={"readings.md": table}, films=films)
+        names = ("held ours", "held as printed", *(f"free {arm}" for arm in ("ours", *ARMS, *TAKEN)))
+        return Simulated(
+            record=record, tables={"readings.md": table}, films=films, kept=all_kept(self.keep, names)
+        )  # fmt: skip
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return what the tethered and the free body did, and how fast each motion swims."""

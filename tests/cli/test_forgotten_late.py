@@ -1,0 +1,34 @@
+"""What a run could go on from is there until its result is."""
+
+import sys
+from dataclasses import replace
+
+import pytest
+
+from suchus.cli.run import perform
+from suchus.errors import Unwritable
+from suchus.experiment import silent
+from suchus.experiments import EXPERIMENTS
+
+run = sys.modules["suchus.cli.run"]
+
+
+@pytest.mark.usefixtures("fakes")
+def test_nothing_is_forgotten_before_its_successor_is_on_disk(tmp_path, monkeypatch):
+    wave, kept, others = EXPERIMENTS["wave"], tmp_path / "mine.kept-swim", tmp_path / "other.kept-swim"
+    simulate = type(wave).simulate
+    monkeypatch.setattr(type(wave), "simulate", lambda *a: replace(simulate(*a), kept=(kept, tmp_path / "never_made")))
+    kept.touch()
+    others.touch()
+
+    def full(*_, **__):
+        raise Unwritable("no space left on device")
+
+    with monkeypatch.context() as disk:
+        disk.setattr(run, "save_outcome", full)
+        with pytest.raises(Unwritable):
+            perform(wave, "wave", tmp_path / "out", silent, "again")
+    assert kept.is_file()
+    perform(wave, "wave", tmp_path / "out", silent, "again")
+    assert not kept.exists()
+    assert others.is_file()
