@@ -104,6 +104,32 @@ def test_the_command_prints_the_numbers_and_names_the_page(two, tmp_path, capsys
     assert page.is_file()
 
 
+def test_in_eighty_columns_names_are_whole_and_the_largest_relative_difference_comes_first(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setenv("COLUMNS", "80")
+    names = [f"tail_contact_spine_only_lifted_{end}" for end in ("change", "share")]
+    sizes = {names[0]: 1.1, names[1]: -2.0, "roll_pp_limbs_only": 1.5}
+    axis = [{"hinges": [{"range": [-0.39269908169872414, 0.1]}], "mass": 0.1}]
+    for folder, change in (("a", 0.0), ("b", 1.0)):
+        robot = {"axis": [{**axis[0], "mass": 0.1 + change}, {**axis[0], "mass": 0.2 + change}], "name": folder}
+        settings = {"robot": robot, "pitch": 0.39269908169872414 + change, "band": [-0.39269908169872414, change]}
+        measures = {name: (1.0 + change * (size - 1.0), "rad") for name, size in sizes.items()}
+        write(tmp_path / folder, measures, settings=settings)
+    assert main(["compare", str(tmp_path / "a"), str(tmp_path / "b"), "--out", str(tmp_path / "page.html")]) == 0
+    lines = [line.rstrip() for line in capsys.readouterr().out.partition("figures and replays")[0].splitlines()]
+    assert max(map(len, lines[2:])) <= 80
+    shown = [line.split() for line in lines if line.split() and line.split()[0] in sizes]
+    assert [(row[0], row[-2], row[-1]) for row in shown] == [
+        (names[1], "−300", "%"),
+        ("roll_pp_limbs_only", "50", "%"),
+        (names[0], "10", "%"),
+    ]
+    assert any(line.split() == ["pitch", "0.3927", "1.393"] for line in lines)
+    assert any("[-0.3927, 1.0]" in line for line in lines)
+    assert any("robot.axis[]" in line and "2 of its settings differ" in line for line in lines)
+
+
 def test_an_outcome_is_equal_to_itself(two, tmp_path, capsys):
     assert main(["compare", str(two[0]), str(two[0]), "--out", str(tmp_path / "page.html")]) == 0
     assert "None: both were made with the same settings" in (tmp_path / "page.html").read_text()

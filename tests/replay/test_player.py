@@ -39,7 +39,9 @@ def browser():
 @pytest.fixture(scope="module")
 def address(robot, crawled, limped, tmp_path_factory):
     sloped = crawled.assign(stands_on=((), ground_text(SLOPE)))
-    page = replay(sloped, robot, ghost=limped, labels=("intact", "one limp leg"), title="A limp leg")
+    page = replay(
+        sloped, robot, ghost=limped, labels=("intact", "one limp leg"), title="A limp leg", caption="What is seen."
+    )
     return save(page, tmp_path_factory.mktemp("replay") / "run.html").as_uri()
 
 
@@ -58,14 +60,15 @@ def page(browser, address):
 
 
 def fits_a_phone(browser, address):
-    """The page asks for no more than a phone's width, and its controls are all in sight."""
+    """The page asks for no more than a phone's width; its controls and what it explains are all in sight."""
     shown = browser.new_page(viewport={"width": 390, "height": 760})
     shown.goto(address + "#t=0")
     until(shown, "window.suchus")
     wide = shown.evaluate("document.documentElement.scrollWidth")
     ends = shown.evaluate("[...document.querySelectorAll('footer *')].map((one) => one.getBoundingClientRect().right)")
+    explained = shown.get_by_text("What is seen.").is_visible()
     shown.close()
-    return wide <= 390 and max(ends) <= 390
+    return wide <= 390 and max(ends) <= 390 and explained
 
 
 def until(shown, condition):
@@ -136,6 +139,19 @@ def test_the_second_run_can_be_hidden_and_the_view_changed(page):
 
 def test_it_fits_a_phone(browser, address):
     assert fits_a_phone(browser, address)
+
+
+def test_in_water_the_depth_is_said_and_the_camera_looks_at_the_swimmer(browser, robot, crawled, tmp_path):
+    below = np.where(crawled.time < 1.5, 0.6, -0.2)
+    wet = crawled.assign(water_level=("time", crawled.centre_of_mass.sel(xyz="z").values + below))
+    shown = browser.new_page()
+    shown.goto(save(replay(wet, robot), tmp_path / "wet.html").as_uri() + "#t=1")
+    until(shown, "window.suchus && window.suchus.mass()")
+    assert "centre of mass 0.60 m deep" in shown.locator("#told").inner_text()
+    shown.evaluate("window.suchus.seek(2)")
+    until(shown, 'document.getElementById("told").textContent.includes("centre of mass 0.20 m above the water")')
+    assert shown.evaluate("window.suchus.camera.target[2] - window.suchus.mass()[0][2]") == pytest.approx(0.0)
+    shown.close()
 
 
 def test_without_webgl_there_is_a_picture(browser, address):

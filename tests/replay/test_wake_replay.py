@@ -66,7 +66,7 @@ needs_browser = pytest.mark.skipif(BROWSER is None, reason="no chromium is insta
 
 @pytest.fixture(scope="module")
 def address(tmp_path_factory):
-    return save(wake_replay(ringed()), tmp_path_factory.mktemp("wake") / "swim.html").as_uri()
+    return save(wake_replay(ringed(), caption="What is seen."), tmp_path_factory.mktemp("wake") / "swim.html").as_uri()
 
 
 @needs_browser

@@ -1,5 +1,6 @@
 """``suchus compare A B``: two outcomes side by side, in the terminal and as a page."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,29 +69,46 @@ def _show(comparison: Comparison) -> None:
     console = Console(highlight=False)
     for letter, name in zip("AB", comparison.names, strict=True):
         console.print(escape(f"{letter}: {name}"), soft_wrap=True)
-    _print(console, ("setting", "A", "B"), [(row.name, row.first, row.second) for row in comparison.settings[:_MOST]])
+    _print(console, ("setting", "A", "B"), _settings(comparison)[:_MOST])
     _print(
         console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in comparison.changed]
     )
     rows = [
         (
             row.name,
-            quantity(row.first, row.unit),
-            quantity(row.second, row.unit),
-            quantity(row.difference, row.unit, 3),
-            "" if row.share is None else f"{number(100 * row.share, 3)} %",
+            quantity(row.first, "-"),
+            quantity(row.second, "-"),
+            "" if row.unit == "-" else row.unit,
+            "" if row.share is None else f"{number(float(f'{100 * row.share:.3g}'), 6)} %",
         )
         for row in comparison.measures[:_MOST]
     ]
-    _print(console, ("measure", "A", "B", "B minus A", "relative to A"), rows)
+    _print(console, ("measure", "A", "B", "unit", "relative to A"), rows)
+
+
+def _settings(comparison: Comparison) -> list[tuple[str, str, str]]:
+    """Return a row for each setting that differs, and one for all within one list, such as a robot's axis."""
+    groups: dict[str, list[tuple[str, str, str]]] = {}
+    for one in comparison.settings:
+        row = one.name, _rounded(one.first), _rounded(one.second)
+        groups.setdefault(one.name.partition("[")[0], []).append(row)
+    return [
+        rows[0] if len(rows) == 1 else (f"{name}[]", "", f"{len(rows)} of its settings differ")
+        for name, rows in groups.items()
+    ]
+
+
+def _rounded(text: str) -> str:
+    """Return a setting with its numbers in four digits."""
+    return re.sub(r"\d+\.\d{4,}(e[+-]?\d+)?", lambda found: f"{float(found[0]):.4g}", text)
 
 
 def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     if not rows:
         return
-    table = Table(box=None, padding=(0, 2, 0, 0))
+    table = Table(box=None, padding=(0, 1, 0, 0))
     for i, heading in enumerate(head):
-        table.add_column(heading, justify="left" if i == 0 else "right")
+        table.add_column(heading, justify="left" if i == 0 else "right", overflow="fold", no_wrap=i == 0)
     for row in rows:
         table.add_row(*map(escape, row))
     console.print(table)

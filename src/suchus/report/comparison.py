@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +68,7 @@ class Comparison:
     results: tuple[Result, Result]
     """The two outcomes."""
     measures: tuple[Compared, ...]
-    """Every measure of either, those that differ most first."""
+    """Every measure of either, the largest relative difference first."""
     verdicts: tuple[Judged, ...]
     """Every claim that either judges, those with another verdict first."""
     settings: tuple[Setting, ...]
@@ -175,11 +176,10 @@ def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) ->
 
 
 def _size(one: Compared) -> float:
-    """How much a measure differs: over its size, so that metres and newtons can be sorted together."""
-    if one.difference is None or one.first is None or one.second is None:
-        return 0.0
-    whole = max(abs(one.first), abs(one.second))
-    return abs(one.difference) / whole if whole else 0.0
+    """How much a measure differs, relative to the first as it is shown: metres and newtons are sorted together."""
+    if one.share is None:
+        return inf if one.difference else 0.0
+    return abs(one.share)
 
 
 def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:

@@ -270,10 +270,13 @@
     gl.uniform1f(plain.uniforms.uNight, +state.dark);
   }
   const levels = meta.water ? take(meta.water.levels) : null;
+  function levelNow() { // of the water above the origin, against gravity
+    const f = Math.min(Math.max((state.time - meta.start) * meta.rate, 0), levels.length - 1), i = Math.floor(f);
+    return levels[i] + (f - i) * (levels[Math.min(i + 1, levels.length - 1)] - levels[i]);
+  }
   function surface(seen) { // the water's, drawn last and half transparent; only where it stands above the ground
     if (!levels) return;
-    const f = Math.min(Math.max((state.time - meta.start) * meta.rate, 0), levels.length - 1), i = Math.floor(f);
-    const level = levels[i] + (f - i) * (levels[Math.min(i + 1, levels.length - 1)] - levels[i]), up = meta.water.up;
+    const level = levelNow(), up = meta.water.up;
     const reach = 9 * meta.length, c = camera.target; // it fades into the distance: no edge is seen
     const at = (x, y) => [x, y, (level - up[0] * x - up[1] * y) / up[2]];
     const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => at(c[0] + a * reach, c[1] + b * reach));
@@ -332,7 +335,7 @@
     const now = seenActors.map((actor) => frame(actor, state.time));
     if (state.follow) {
       const sum = now.reduce((at, one) => add(at, one.mass, 1 / now.length), [0, 0, 0]);
-      camera.target = [sum[0], sum[1], Math.max(0.06 * meta.length, 0.8 * sum[2])];
+      camera.target = [sum[0], sum[1], levels ? sum[2] : Math.max(0.06 * meta.length, 0.8 * sum[2])];
     }
     const seen = view();
     gl.useProgram(floor.made);
@@ -409,8 +412,10 @@
     $("time").value = state.time;
     $("time").setAttribute("aria-valuetext", `${state.time.toFixed(1)} seconds`);
     const way = (i) => now[i].mass[0] - seenActors[i].mass[0];
+    const below = (mass) => levelNow() - mass.reduce((sum, one, k) => sum + one * meta.water.up[k], 0);
+    const where = (mass) => !levels ? `${metres(mass[2])} high` : below(mass) < 0 ? `${metres(-below(mass))} above the water` : `${metres(below(mass))} deep`;
     $("told").textContent = now.map((_, i) => `${actors.length > 1 && !meta.chosen ? actors[i].label + ": " : ""}${metres(way(i))} forward, ` +
-      `centre of mass ${metres(now[i].mass[2])} high`).join("  ·  ");
+      `centre of mass ${where(now[i].mass)}`).join("  ·  ");
   }
 
   // ---- controls ------------------------------------------------------------------------------------------------
@@ -423,7 +428,7 @@
   const move = (by) => { camera.moved = add(camera.moved, by); };
   const fitted = () => { // farther on narrow pictures, nearer on wide ones
     const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
-    return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), 1.15 / aspect);
+    return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.35 : 1.15) / aspect);
   };
   $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
   const choose = (run) => { state.run = run; $("choice").textContent = actors[run].label; $("chosen").setAttribute("aria-valuetext", actors[run].label); redraw(); };
