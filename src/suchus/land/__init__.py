@@ -10,6 +10,7 @@ from suchus.land.loop import CONTROL_PERIOD
 from suchus.land.push_search import smallest_pushes
 from suchus.land.run import VACUUM, WATER, Afloat, Push, Run
 from suchus.land.simulation import crawl, simulate
+from suchus.land.tolerances import Tolerances
 
 __all__ = [
     "ARENAS",
@@ -33,6 +34,7 @@ __all__ = [
     "Push",
     "Run",
     "Slow",
+    "Tolerances",
     "Wave",
     "Weak",
     "angle_at",

@@ -1,4 +1,4 @@
-"""What goes wrong in the runs of a batch: faults, which the injector begins, keeps up and mends, pushes and noise."""
+"""What goes wrong in the runs of a batch: faults, which the injector begins and mends, pushes, errors of servos."""
 
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
 from math import floor
@@ -171,7 +171,7 @@ _EARLY = 1e-6
 
 
 class Disturbances:
-    """The faults, the pushes and the noise of all runs of a batch, each run by a clock of its own.
+    """The faults, the pushes and the servos' errors of all runs of a batch, each run by a clock of its own.
 
     Args:
         runs: of the batch.
@@ -186,14 +186,19 @@ class Disturbances:
         self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
         self._pushes: list[list[Push]] = [[] for _ in runs]
         self._next, self._ahead = np.full(len(runs), _NEVER), False
-        for sim, run in enumerate(runs):
-            self.schedule(sim, run.faults, run.pushes)
         servos = len(layout(runs[0].robot).servos)
         self._noise = {
             sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, servos))
             for sim, run in enumerate(runs)
             if run.noise > 0
         }
+        self._built = [sim for sim, run in enumerate(runs) if any(run.zero_error) or any(run.play)]
+        none = (0.0,) * servos
+        self._zero_error = np.array([runs[sim].zero_error or none for sim in self._built])
+        self._half_play = np.array([runs[sim].play or none for sim in self._built]) / 2
+        self._answered = np.full((len(runs), servos), np.nan)  # the angle that each servo turned to last
+        for sim, run in enumerate(runs):
+            self.schedule(sim, run.faults, run.pushes)
 
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
         """Let other faults and pushes than before be ahead of a run, whose clock is at 0; all that is broken is mended.
@@ -204,6 +209,7 @@ class Disturbances:
             pushes: forces from outside, each at its time.
         """
         self.injector.mend(sim)
+        self._answered[sim] = np.nan
         self._faults[sim], self._pushes[sim] = {}, list(pushes)
         for fault in faults:
             self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
@@ -237,6 +243,12 @@ class Disturbances:
             targets = targets.copy()
             for sim, noise in self._noise.items():
                 targets[sim] += noise[clocks[sim]]
+        if self._built:
+            targets = targets.copy()
+            wanted, before = targets[self._built] + self._zero_error, self._answered[self._built]
+            before = np.where(np.isnan(before), wanted, before)
+            answer = np.clip(before, wanted - self._half_play, wanted + self._half_play)
+            targets[self._built] = self._answered[self._built] = answer
         return self.injector.command(tick, targets)
 
     def _happen(self, sim: int, tick: int) -> None:

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from suchus.control import Control, OpenLoop
-from suchus.design import WATER_DENSITY, WATER_VISCOSITY, Robot
+from suchus.design import WATER_DENSITY, WATER_VISCOSITY, Robot, servo_names
 from suchus.design.checks import Checks, require
 from suchus.design.ground import Ground
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.fault import Fault
 from suchus.gaits import gait_of
+from suchus.kinds import show
 from suchus.land.lake import Lake
 from suchus.model import compile_model
 from suchus.motion import Gait
@@ -91,6 +92,12 @@ class Run:
     """Forces from outside; their sum acts where they overlap."""
     control: Control = field(default_factory=OpenLoop)
     """Controller that turns the gait and what the robot senses into servo angles."""
+    zero_error: tuple[float, ...] = ()
+    """Error of each servo's zero: what is added to its commanded angle, in the order of ``design.servo_names``; none
+    where it is empty [rad]. ``land.Tolerances`` draws such errors."""
+    play: tuple[float, ...] = ()
+    """Play of each servo, gear and dead band together, whole width: so far its command must turn back before the servo
+    does; none where it is empty [rad]."""
     noise: float = 0.0
     """Standard deviation of noise on every servo angle commanded [rad]."""
     seed: int = 0
@@ -103,6 +110,17 @@ class Run:
         object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
         with Checks("run", self) as check:
             check.number("noise", 0.0, 1.0, "rad")
+            servos = len(servo_names(self.robot))
+            for name, least in (("zero_error", -1.0), ("play", 0.0)):
+                values = getattr(self, name)
+                check.that(
+                    len(values) in (0, servos),
+                    f"{name} has {len(values)} values, and {self.robot.name} {servos} servos; give one for each, or none",
+                )
+                check.that(
+                    all(least <= value <= 1.0 for value in values),
+                    f"{name} is {show(values)}; each of its values must be from {least:g} to 1 rad",
+                )
             check.whole("seed", 0, 2**32 - 1)
             check.that(
                 self.lake is None or self.afloat is None,
