@@ -358,7 +358,8 @@ def templates(folder: Path) -> Environment:
 
     ``{{ m.speed:.3f }}`` is written as Python's format does, or in another unit where the format begins with it, as
     ``mm.1f`` (``suchus.verdict.Reading``); where the format is a variable, ``{{ m.speed | write(form) }}``. Beside
-    ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence, the filter
+    ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence,
+    ``either_sign(m, name)`` and ``spanned(m, name, form)`` for measures whose interval may hold both signs, the filter
     ``sentence`` for parts any of which may be missing, and the test ``is finite``. A name that is not there is an
     error.
     """
@@ -373,6 +374,7 @@ def templates(folder: Path) -> Environment:
     environment.filters |= {"write": write, "sentence": sentence}
     environment.tests["finite"] = isfinite
     environment.globals |= {"compared": compared, "listed": listed, "separator": separator}
+    environment.globals |= {"either_sign": either_sign, "spanned": spanned}
     return environment
 
 
@@ -380,6 +382,19 @@ def write(value: float, form: str) -> str:
     """Return a number as written, zero without a minus."""
     text = format(Reading(value), form)
     return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
+
+
+def either_sign(measures: Mapping[str, float], name: str) -> bool:
+    """Return whether the interval of a measure holds both signs, so that no sentence can say which it has."""
+    return measures.get(f"{name}_low", 0.0) < 0.0 < measures.get(f"{name}_high", 0.0)
+
+
+def spanned(measures: Mapping[str, float], name: str, form: str) -> str:
+    """Return a measure as written, or between which numbers it lies where its interval holds both signs."""
+    if not either_sign(measures, name):
+        return write(measures[name], form)
+    low, high = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
+    return f"between {low} and {high}"
 
 
 def separator(loop: Any) -> str:

@@ -76,9 +76,9 @@ def test_errors_that_no_servo_has_are_refused(run):
     with pytest.raises(InvalidDesign, match=r"zero_error has 2 values, and caiman \d+ servos"):
         replace(run, zero_error=(0.1, 0.1))
     servos = len(servo_names(run.robot))
-    with pytest.raises(InvalidDesign, match="play is .*each of its values must be from 0 to 1 rad"):
+    with pytest.raises(InvalidDesign, match=r"play is .*each of its values must be from 0 to 1 rad"):
         replace(run, play=(-0.1,) * servos)
-    with pytest.raises(InvalidDesign, match="zero_error is .*from -1 to 1 rad"):
+    with pytest.raises(InvalidDesign, match=r"zero_error is .*from -1 to 1 rad"):
         replace(run, zero_error=(pi,) * servos)
     with pytest.raises(InvalidDesign, match=r"tolerances\.mass is 1"):
         Tolerances(mass=1.0)

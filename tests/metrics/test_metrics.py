@@ -32,6 +32,7 @@ from suchus.metrics import (
     tail_swing_least,
     tail_swings,
     tilt,
+    two_feet_alone_share,
     two_feet_share,
     work,
 )
@@ -52,6 +53,7 @@ def hand_made(**changes) -> xr.Dataset:
         "foot_force": (("time", "leg", "xyz"), np.tile([0.0, 0.0, 5.0], (n, 4, 1))),
         "joint_angle": (("time", "joint"), np.zeros((n, 3))),
         "tail_force": (("time", "xyz"), np.zeros((n, 3))),
+        "belly_force": (("time", "segment", "xyz"), np.zeros((n, 2, 3))),
         "tail_tip": (("time", "xyz"), np.tile([-0.5, 0.0, 0.01], (n, 1))),
         "servo_torque": (("time", "servo"), np.zeros((n, 2))),
         "servo_velocity": (("time", "servo"), np.zeros((n, 2))),
@@ -182,6 +184,15 @@ def test_line_of_the_standing_pair():
     for feet in ((0, 1, 2), (1,), ()):
         assert np.isnan(line_distance(hand_made(foot_force=standing(*feet)))).all()
         assert np.isnan(line_distance_max(hand_made(foot_force=standing(*feet))))
+    assert float(two_feet_alone_share(pair)) == 1.0
+    half, share = np.zeros((len(TIME), 3)), float(np.mean(TIME[TIME >= 1.0] >= 5.0))
+    half[TIME >= 5.0, 2] = 1.0
+    beside = {"tail_force": half, "belly_force": np.stack([half, 0 * half], axis=1)}
+    for name, force in beside.items():  # a tail or a belly that lies on the ground is a third support
+        third = swept.assign({name: swept[name].copy(data=force)})
+        assert float(two_feet_alone_share(third)) == pytest.approx(1.0 - share)
+        assert np.isnan(line_distance_max(third, 5.0))
+        assert float(line_distance_max(third)) > 0.0
 
 
 def test_two_feet_stand_for_a_share_of_the_time():

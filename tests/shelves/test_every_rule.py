@@ -86,7 +86,9 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
     if numeric and rule.kind != "animals":
         yield f"{rule.claim}: rounding doubled", rule, 2.0
         yield f"{rule.claim}: rounding removed", rule, 0.0
-    for name in rule.spread:
+    decisive = {rule.measure} if numeric else set()
+    decisive |= {clause.measure for clause in rule.holds} | {str(clause.bound) for clause in rule.holds}
+    for name in decisive & set(rule.spread):
         rest = tuple(other for other in rule.spread if other != name)
         yield f"{rule.claim}: without the interval of {name}", replace(rule, spread=rest), 1.0
 

@@ -19,6 +19,7 @@ from suchus.sources import current
 from suchus.verdict import judge
 
 GOLDEN = Path(__file__).parent.parent / "golden"
+STATED = Path(__file__).parent.parent / "docs" / "stated"
 
 
 def golden(name):
@@ -50,6 +51,43 @@ def test_its_measures_are_numbers_with_units(quick):
         assert name.isidentifier(), name
         assert isinstance(measure.value, (int, float)), name
         assert measure.unit, name
+
+
+def test_a_published_number_lies_in_its_own_interval(quick):
+    _, outcome = quick
+    assert outside({name: measure.value for name, measure in outcome.measures.items()}) == []
+
+
+@pytest.mark.parametrize("file", [*sorted(GOLDEN.glob("*.json")), *sorted(STATED.glob("*.json"))], ids=lambda f: f.stem)
+def test_a_number_that_is_kept_lies_in_its_own_interval(file):
+    kept = json.loads(file.read_text(encoding="utf-8"))
+    if isinstance(kept, dict):
+        assert outside({name: value for name, value in kept.items() if isinstance(value, float)}) == []
+
+
+def outside(measures):
+    """Return the numbers that lie outside of the interval that is published with them."""
+    found = []
+    for name, value in measures.items():
+        low, high = measures.get(f"{name}_low"), measures.get(f"{name}_high")
+        if low is not None and high is not None and isfinite(value) and not low - 1e-12 <= value <= high + 1e-12:
+            found.append(f"{name}: {value} is not from {low} to {high}")
+    return found
+
+
+def test_a_number_outside_its_interval_is_found():
+    assert outside({"x": 2.0, "x_low": 1.0, "x_high": 3.0, "y_low": 4.0}) == []
+    assert len(outside({"x": 0.9, "x_low": 1.0, "x_high": 3.0})) == 1
+
+
+def test_a_rule_decides_by_the_intervals_that_there_are(quick):
+    experiment, outcome = quick
+    for rule in experiment.rules():
+        read = {rule.measure, *(clause.measure for clause in rule.holds), *(str(one.bound) for one in rule.holds)}
+        ranged = {name for name in read if {f"{name}_low", f"{name}_high"} <= outcome.measures.keys()}
+        assert ranged <= set(rule.spread), rule.claim
+        bases = {name.removesuffix("_low").removesuffix("_high") for name in read} - read
+        assert not [base for base in bases if {f"{base}_low", f"{base}_high"} <= outcome.measures.keys()], rule.claim
 
 
 def test_every_claim_can_be_judged_by_its_measures_and_a_run_cut_short_is_not(quick):

@@ -1,27 +1,30 @@
 """What the experiments share that compare a crawl with spine and tail with one without."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import ClassVar
 
-import numpy as np
+import xarray as xr
 
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment
+from suchus.design.scale import coarse_step
+from suchus.experiment import Experiment, Measure, Progress, estimated
 from suchus.gaits import GAITS, control_group
-from suchus.land import Ground, Run
+from suchus.land import Run, Tolerances, simulate
 from suchus.motion import Gait
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 
+Numbers = Callable[[xr.Dataset], Mapping[str, xr.DataArray]]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwoGroups(Experiment):
-    """The article's two groups and the repeats that tell how much a result depends on servos and friction."""
+    """The article's two groups in each condition as designed, and as several robots built of the design."""
 
-    judged_with = ("robot", "gait", "control_group", "cycles")
-    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 8}
+    judged_with = ("robot", "gait", "control_group", "cycles", "tolerances")
+    judged_from: ClassVar[Mapping[str, float]] = {"repeats": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -31,21 +34,17 @@ class TwoGroups(Experiment):
     """The gait of the control group, which has the same legs; None for the gait with its axis still."""
     cycles: int = int(CYCLES)
     """Number of cycles that are measured [-]."""
-    repeats: int = 8
-    """Runs per condition with noise on the servos and another friction, for the spread [-]."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle in the repeats [rad]; a hobby servo's dead band."""
-    friction_spread: float = 0.1
-    """Half-width of the uniform spread of the friction in the repeats, as a fraction of it [-]."""
+    repeats: int = 12
+    """Robots that are built of the design and walk in each condition: the numbers are the middle of theirs [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much they and their grounds differ from it."""
     seed: int = 0
-    """Seed of noise and friction [-]."""
+    """Seed of their errors [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.whole("cycles", 1, 1000)
             check.whole("repeats", 1, 1000)
-            check.number("noise", 0.0, 1.0, "rad")
-            check.number("friction_spread", 0.0, 0.9, "")
             check.whole("seed", 0, 2**31)
             self.check(check)
         control_group(self.gait, self.control)
@@ -58,12 +57,42 @@ class TwoGroups(Experiment):
         """The gait of the control group."""
         return control_group(self.gait, self.control)
 
-    def repeated(self, runs: Iterable[Run]) -> list[Run]:
-        """Return the repeats of all conditions, run by run; the i-th has the same noise and friction in each."""
-        rng = np.random.default_rng(self.seed)
-        scales = rng.uniform(1 - self.friction_spread, 1 + self.friction_spread, self.repeats)
-        return [
-            replace(run, ground=Ground(friction_scale=float(scale)), noise=self.noise, seed=self.seed + 1 + i)
-            for run in runs
-            for i, scale in enumerate(scales)
-        ]
+    def repeated(
+        self, runs: Sequence[Run], numbers: Numbers, units: Mapping[str, str], duration: float, progress: Progress
+    ) -> xr.Dataset:
+        """Return numbers of every condition and robot, as ``repeated_NAME`` over ``condition`` and ``repeat``.
+
+        Args:
+            runs: the conditions, each with its label; the i-th robot of each has the same errors.
+            numbers: returns each number by name, over the runs of a record.
+            units: of the numbers, by name.
+            duration: of each run [s].
+            progress: told the share that is done.
+        """
+        built = self.tolerances.repeats(runs, self.repeats, self.seed)
+        record = simulate(built, duration=duration, timestep=coarse_step(self.robot), every=2, progress=progress)
+        shape = (len(runs), self.repeats)
+        data = {
+            f"repeated_{name}": (
+                ("condition", "repeat"),
+                values.values.reshape(shape),
+                {"units": units[name].replace("-", "1")},
+            )
+            for name, values in numbers(record).items()
+        }
+        return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
+
+
+def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> dict[str, Measure]:
+    """Return the middle and the interval of repeated numbers in every condition, as ``NAME_CONDITION``.
+
+    Args:
+        record: with ``repeated_NAME`` over ``condition`` and ``repeat``.
+        units: of the numbers, by name.
+    """
+    measures: dict[str, Measure] = {}
+    for condition in record.condition.values:
+        for name, unit in units.items():
+            values = record[f"repeated_{name}"].sel(condition=condition)
+            measures |= estimated(f"{name}_{condition}", values, unit)
+    return measures

@@ -115,7 +115,7 @@ class Run:
                 values = getattr(self, name)
                 check.that(
                     len(values) in (0, servos),
-                    f"{name} has {len(values)} values, and {self.robot.name} {servos} servos; give one for each, or none",
+                    f"{name} has {len(values)} values, and {self.robot.name} {servos} servos; give each one or none",
                 )
                 check.that(
                     all(least <= value <= 1.0 for value in values),

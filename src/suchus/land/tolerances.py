@@ -25,16 +25,16 @@ class Tolerances:
     """Greatest error of a servo's zero, to either side [rad]. A spline of 25 teeth sets the horn to 14.4 degrees; what
     is left is trimmed away by eye against a mark, to about a degree."""
     dead_band: float = radians(270.0 * 3.0 / 2000.0)
-    """Greatest dead band of a servo, whole width [rad]: 3 us of 2000 us for 270 degrees, as data sheets of digital hobby
-    servos say; a servo does not answer smaller changes of its command."""
+    """Greatest dead band of a servo, whole width [rad]: 3 us of 2000 us for 270 degrees, as data sheets of digital
+    hobby servos say; a servo does not answer smaller changes of its command."""
     backlash: float = radians(20.0 / 60.0)
     """Greatest play of a servo's gear, whole width [rad]: 20 minutes of arc, data sheet of the Dynamixel MX-28."""
     friction: float = 0.1
-    """Greatest error of the friction of ground and robot, as a part of it [-]. No data sheet: one material on the floors
-    of one building."""
+    """Greatest error of the friction of ground and robot, as a part of it [-]. No data sheet: one material on the
+    floors of one building."""
     mass: float = 0.05
-    """Greatest error of the mass of each segment and each limb, as a part of it [-]. No data sheet: screws, glue, cables
-    and fillings of printed parts, which a drawing leaves out."""
+    """Greatest error of the mass of each segment and each limb, as a part of it [-]. No data sheet: screws, glue,
+    cables and fillings of printed parts, which a drawing leaves out."""
 
     def __post_init__(self) -> None:
         with Checks("tolerances", self) as check:
@@ -71,7 +71,7 @@ class Tolerances:
 
 
 def _weighted(robot: Robot, factors: list[float]) -> Robot:
-    """Return a robot with other masses: a factor for each segment of the axis, then one for the limbs of each girdle."""
+    """Return a robot with other masses: a factor for each segment of the axis, then one for each girdle's limbs."""
     axis = tuple(_segment(one, factor) for one, factor in zip(robot.axis, factors, strict=False))
     limbs = factors[len(robot.axis) :]
     girdles = tuple(_girdle(one, factor) for one, factor in zip(robot.girdles, limbs, strict=True))

@@ -39,6 +39,7 @@ from suchus.metrics.stability import (
     support_distance,
     support_polygon,
     tilt,
+    two_feet_alone_share,
 )
 from suchus.metrics.window import between, each_cycle, first_harmonic, mean_cycle, whole
 
@@ -91,6 +92,7 @@ __all__ = [
     "tail_swing_least",
     "tail_swings",
     "tilt",
+    "two_feet_alone_share",
     "two_feet_share",
     "vertical_bend",
     "whole",

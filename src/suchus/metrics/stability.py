@@ -101,8 +101,23 @@ def line_distance(record: xr.Dataset) -> xr.DataArray:
 
 
 def line_distance_max(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
-    """Return the greatest distance of the projected centre of mass from the line of the two standing feet [m]."""
-    return line_distance(between(record, start, end)).max("time")
+    """Return the greatest distance of the projected centre of mass from the line of two feet that alone carry [m].
+
+    Not a number where two feet never carry alone: a tail or a belly on the ground is a third support.
+    """
+    part = between(record, start, end)
+    return line_distance(part).where(_on_two_feet(part)).max("time").assign_attrs(units="m")
+
+
+def two_feet_alone_share(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the share of the time in which two feet carry, and neither another one nor tail or belly [-]."""
+    return _on_two_feet(between(record, start, end)).mean("time").assign_attrs(units="1")
+
+
+def _on_two_feet(record: xr.Dataset) -> xr.DataArray:
+    """Tell when two feet and nothing else carry."""
+    others = record.tail_force.sel(xyz="z") + record.belly_force.sel(xyz="z").sum("segment")
+    return (loaded(record).sum("leg") == 2) & (others <= threshold_of(record))
 
 
 def _to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
@@ -119,4 +134,4 @@ def _inside(point: np.ndarray, corners: np.ndarray) -> bool:
     return bool((cross >= 0).all() or (cross <= 0).all())
 
 
-measures = (height_peak_to_peak, height_std, line_distance_max, roll_peak_to_peak)
+measures = (height_peak_to_peak, height_std, line_distance_max, roll_peak_to_peak, two_feet_alone_share)

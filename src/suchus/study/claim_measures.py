@@ -22,11 +22,11 @@ _IN_EACH = {
     "roll_pp": "roll_peak_to_peak",
     "two_feet_share": "two_feet_share",
     "line_distance_max": "line_distance_max",
+    "tail_load_share": "tail_load_share",
 }
 """Measures of every condition, ``NAME_CONDITION``, and the column of the study that holds them."""
 _OF_CRAWL = {
     "spine_sine_r2": "spine_sine_share",
-    "tail_load_share": "tail_load_share",
     "diagonal_phase_error": "diagonal_phase_error",
     "spine_changes_per_cycle": "spine_swings",
     "tail_changes_per_cycle": "tail_swings",

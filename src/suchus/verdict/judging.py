@@ -156,7 +156,8 @@ def judge(
         why = f"{why} {ladder.sentence(said, rule.form)}"
     else:
         value = float(measures[rule.measure])
-        low, high = interval(rule.measure, measures, rule.spread) if rule.measure in rule.spread else (None, None)
+        if rule.measure in rule.spread and isfinite(value):
+            low, high = interval(rule.measure, measures, rule.spread)
     return Verdict(
         claim=claim,
         rule=rule,

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from suchus.design.scale import coarse_step
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
-from suchus.experiments._two_groups import TwoGroups
+from suchus.experiments._two_groups import TwoGroups, of_repeats
 from suchus.experiments.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
 from suchus.gaits import conditions_of
 from suchus.land import Run, simulate
@@ -26,6 +26,7 @@ from suchus.metrics import (
     support_distance,
     tail_load_share,
     tilt,
+    two_feet_alone_share,
 )
 from suchus.motion import START, FootPath, longest_strokes
 from suchus.paper import SNAPSHOT_TIMES
@@ -34,14 +35,17 @@ _EQUAL = "limbs_only_equal_displacement"
 _SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
 """Conditions whose snapshots are looked at."""
 _CHANGES = (
-    ("com_height_pp_change", "coordinated", "limbs_only"),
-    ("com_height_pp_change_tail_lifted", "coordinated", "limbs_tail_lifted"),
-    ("wagging_pp_change", "coordinated", "tail_still"),
-    ("tail_contact_pp_change", "tail_still", "spine_only"),
-    ("tail_contact_pp_change_limbs_only", "limbs_only", "limbs_tail_lifted"),
-    ("spine_swing_pp_change", "coordinated", "tail_drag"),
+    ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
+    ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
+    ("com_height_pp_change_equal_displacement", "com_height_pp", "coordinated", _EQUAL),
+    ("wagging_pp_change", "com_height_pp", "coordinated", "tail_still"),
+    ("tail_contact_pp_change", "com_height_pp", "tail_still", "spine_only"),
+    ("tail_contact_pp_change_limbs_only", "com_height_pp", "limbs_only", "limbs_tail_lifted"),
+    ("spine_swing_pp_change", "com_height_pp", "coordinated", "tail_drag"),
+    ("com_height_std_change", "com_height_std", "coordinated", "limbs_only"),
+    ("roll_pp_change", "roll_pp", "coordinated", "limbs_only"),
 )
-"""Relative changes of the height's fluctuation: name, condition, what it is compared with."""
+"""Relative changes: name, of which number, condition, what it is compared with."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,15 +74,16 @@ class CrawlStability(TwoGroups):
         return replace(self, cycles=1, repeats=2)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, as far with the legs alone, and again with noise."""
+        """Crawl in every condition, and as far with the legs alone, as designed and with robots as built."""
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
         first = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
         share = self._equal_stroke(first, end, staged(progress, "equal displacement", 0.1, 0.4))
-        equal = Run(robot=self.robot, gait=self.control_group.strode(share), label=_EQUAL)
-        record = simulate([*runs, equal], duration=end, progress=staged(progress, "all conditions", 0.4, 0.6))
-        record = record.merge(self._repeated(runs, end, staged(progress, "repeats", 0.6, 1.0)))
+        runs.append(Run(robot=self.robot, gait=self.control_group.strode(share), label=_EQUAL))
+        record = simulate(runs, duration=end, progress=staged(progress, "as designed", 0.4, 0.5))
+        built = staged(progress, "robots as built", 0.5, 1.0)
+        record = record.merge(self.repeated(runs, _numbers, _UNITS | _looked_at(), end, built))
         record.attrs["equal_stroke"] = share * self._stroke()
         return Simulated(record=record, replays=self._replays(record))
 
@@ -110,48 +115,24 @@ class CrawlStability(TwoGroups):
         girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
-    def _repeated(self, runs: list[Run], end: float, progress: Any) -> xr.Dataset:
-        """Return the fluctuation of every condition in repeats with noise and another friction."""
-        record = simulate(
-            self.repeated(runs), duration=end, timestep=coarse_step(self.robot), every=2, progress=progress
-        )
-        shape = (len(runs), self.repeats)
-        fluctuations = {"repeated_pp": height_peak_to_peak(record), "repeated_std": height_std(record)}
-        data = {
-            name: (("condition", "repeat"), values.values.reshape(shape), {"units": "m"})
-            for name, values in fluctuations.items()
-        }
-        return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
-
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return the fluctuation in every condition, its changes with their spread, and the snapshots."""
-        measures: dict[str, Measure] = {}
-        arms = [str(arm) for arm in record.condition.values]
-        std, pp, roll = height_std(record), height_peak_to_peak(record), roll_peak_to_peak(record)
-        for i, name in enumerate((*arms, _EQUAL)):
-            measures |= {
-                f"com_height_std_{name}": Measure(float(std[i]), "m"),
-                f"com_height_pp_{name}": Measure(float(pp[i]), "m"),
-                f"roll_pp_{name}": Measure(float(roll[i]), "rad"),
-                f"forward_{name}": Measure(float(displacement(record).sel(xyz="x")[i]), "m"),
-            }
-        for name, arm, without in _CHANGES:
-            if not {arm, without} <= set(arms):
-                continue
-            repeats_of_arm, repeats_without = (record.repeated_pp.sel(condition=c, drop=True) for c in (arm, without))
-            change, repeats = pp[arms.index(arm)] / pp[arms.index(without)] - 1, repeats_of_arm / repeats_without - 1
-            measures |= ranged(name, change, repeats, "-")
-        equal = float(pp[0] / pp[len(arms)] - 1)
+        """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
+        measures = of_repeats(record, _UNITS)
+        for name, quantity, arm, without in _CHANGES:
+            values = record[f"repeated_{quantity}"]
+            if {arm, without} <= set(values.condition.values):
+                change = values.sel(condition=arm, drop=True) / values.sel(condition=without, drop=True) - 1
+                measures |= estimated(name, change, "-")
         measures |= {
-            "com_height_pp_change_equal_displacement": Measure(equal, "-"),
-            "com_height_std_change": Measure(float(std[0] / std[1] - 1), "-"),
-            "roll_pp_change": Measure(float(roll[0] / roll[1] - 1), "-"),
             "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
             "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
-            "tail_load_share": Measure(float(tail_load_share(record.isel(run=0))), "-"),
         }
-        for name, i in self._shown(arms).items():
-            measures |= _looked_at(name, record.isel(run=i))
+        for name in self._shown(list(record.condition.values)):
+            looked = {number: record[f"repeated_{number}"].sel(condition=name) for number in _looked_at()}
+            for number, unit in _looked_at().items():
+                moment = number.removesuffix("_ms").rpartition("_")
+                called = f"{moment[0]}_{name}_{moment[2]}_ms" if number.endswith("_ms") else f"{number}_{name}"
+                measures |= _of_most(called, looked[number], unit)
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -160,7 +141,7 @@ class CrawlStability(TwoGroups):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw height over time, the snapshots, the spread."""
-        arms = [str(arm) for arm in outcome.record.condition.values]
+        arms = [str(arm) for arm in outcome.record.condition.values][:-1]
         return {
             "height_of_mass": draw_heights(outcome.record, arms),
             "fluctuation": draw_spreads(outcome.record, arms),
@@ -173,27 +154,52 @@ class CrawlStability(TwoGroups):
         return {name: arms.index(name) for name in _SHOWN if name in arms}
 
 
-def _looked_at(name: str, record: xr.Dataset) -> dict[str, Measure]:
-    """Return what the article's three snapshots show of one condition, and the line of two standing feet."""
-    apart, stands = line_distance(record), loaded(record).sum("leg")
-    measures = {f"line_distance_max_{name}": Measure(float(line_distance_max(record)), "m")}
+_UNITS = {"com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-"}
+"""Numbers of every condition, and their units."""
+_AT = {"support_distance": "m", "line_distance": "m", "standing_feet": "-", "lean": "rad", "lean_on_two_feet": "rad"}
+"""Numbers of each of the article's three snapshots, and their units."""
+
+
+def _looked_at() -> dict[str, str]:
+    """Return the numbers of what the article's snapshots show, and their units: of the whole crawl, then of moments."""
+    whole = {"line_distance_max": "m", "two_feet_alone_share": "-"}
+    return whole | {f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _AT.items()}
+
+
+def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the numbers of each run by the names of ``_UNITS`` and of what the snapshots show."""
+    numbers = {
+        "com_height_pp": height_peak_to_peak(record),
+        "com_height_std": height_std(record),
+        "roll_pp": roll_peak_to_peak(record),
+        "forward": displacement(record).sel(xyz="x"),
+        "tail_load_share": tail_load_share(record),
+        "line_distance_max": line_distance_max(record),
+        "two_feet_alone_share": two_feet_alone_share(record),
+    }
+    moments = xr.Dataset(
+        {"line_distance": line_distance(record), "standing_feet": loaded(record).sum("leg"), "lean": _lean(record)}
+    )
+    moments["lean_on_two_feet"] = moments.lean.where(moments.standing_feet == 2)
     for time in SNAPSHOT_TIMES:
-        moment, lean = f"{name}_{1000 * time:.0f}_ms", _lean(record, time)
-        feet = int(stands.sel(time=time, method="nearest"))
-        measures |= {
-            f"support_distance_{moment}": Measure(support_distance(record, time), "m"),
-            f"line_distance_{moment}": Measure(float(apart.sel(time=time, method="nearest")), "m"),
-            f"standing_feet_{moment}": Measure(feet, "-"),
-            f"lean_{moment}": Measure(lean, "rad"),
-            f"lean_on_two_feet_{moment}": Measure(lean if feet == 2 else float("nan"), "rad"),
-        }
-    return measures
+        now = moments.sel(time=time, method="nearest")
+        each = [support_distance(record.isel(run=i), time) for i in range(record.sizes["run"])]
+        now["support_distance"] = ("run", each)
+        numbers |= {f"{name}_{1000 * time:.0f}_ms": now[name] for name in _AT}
+    return numbers
 
 
-def _lean(record: xr.Dataset, time: float) -> float:
-    """Return the angle between the pelvis's vertical and the world's at one time [rad]."""
-    lean = tilt(record.sel(time=[time], method="nearest"))
-    return float(np.arccos(np.cos(lean["roll"][0]) * np.cos(lean["pitch"][0])))
+def _lean(record: xr.Dataset) -> xr.DataArray:
+    """Return over time the angle between the pelvis's vertical and the world's [rad]."""
+    tilted = tilt(record)
+    upright = np.cos(tilted["roll"].values) * np.cos(tilted["pitch"].values)
+    return tilted["roll"].copy(data=np.arccos(upright))
+
+
+def _of_most(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
+    """Return the middle of the robots of which there is a number, where that are most of them."""
+    there = values.values[np.isfinite(values.values)]
+    return estimated(name, there if 2 * there.size > values.size else values, unit)
 
 
 experiment = CrawlStability()

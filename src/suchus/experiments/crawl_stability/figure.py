@@ -45,10 +45,10 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
 
 
 def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
-    """Draw the fluctuation of the height in every condition, with the range of its repeats.
+    """Draw the fluctuation of the height in every condition, of the robots as built and as designed.
 
     Args:
-        record: of one run per condition, with the repeats' fluctuation.
+        record: of one run per condition, with the fluctuation of the robots as built.
         names: of the conditions, roles of ``style.LINES``.
     """
     fluctuation = 1000 * height_peak_to_peak(record)
@@ -56,12 +56,11 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
         figure, axes = panels(1, 1, height=4.0)
         ax = axes[0, 0]
         for i, name in enumerate(names):
-            repeats, here = 1000 * record.repeated_pp.sel(condition=name), len(names) - i
-            ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[name], linewidth=7,
-                    alpha=0.35, solid_capstyle="butt")  # fmt: skip
-            ax.plot(float(fluctuation[i]), here, "o", color=COLOURS[name], markersize=9)
-        ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
-        ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
+            built, here = 1000 * record.repeated_com_height_pp.sel(condition=name), len(names) - i
+            labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
+            ax.plot(built, [here] * built.size, "|", color=COLOURS[name], markersize=13, alpha=0.6, label=labels[0])
+            ax.plot(float(built.median()), here, "o", color=COLOURS[name], markersize=9, label=labels[1])
+            ax.plot(float(fluctuation[i]), here, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
         ax.legend(loc="lower left")
         ax.set_yticks(range(len(names), 0, -1), [str(LINES[name]["label"]) for name in names])
         ax.set_ylim(0.4, len(names) + 0.6)
@@ -69,8 +68,9 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
         ax.set_xlabel("height of the centre of mass, highest − lowest [mm]")
     return captioned(
         figure,
-        "Fluctuation of the height of the centre of mass in every condition. Points: one run without noise; bars: the "
-        f"range of {record.sizes['repeat']} repeats with noise on the servos and another friction.",
+        "Fluctuation of the height of the centre of mass in every condition: of "
+        f"{record.sizes['repeat']} robots built of the design, whose servos' zeros, play, masses and friction differ "
+        "from it within their tolerances, and of the design itself.",
     )
 
 

@@ -11,9 +11,9 @@ from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
 from suchus.errors import InvalidDesign
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ends, ranged, silent, staged
+from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
 from suchus.experiments._replayed import replayed
-from suchus.experiments._two_groups import TwoGroups
+from suchus.experiments._two_groups import TwoGroups, of_repeats
 from suchus.experiments.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
 from suchus.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.land import Run, simulate
@@ -76,12 +76,13 @@ class Displacement(TwoGroups):
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, repeat with noise, and map what decides."""
+        """Crawl in every condition, as designed and with robots as built, and map what decides."""
         duration = START + self.cycles * self.gait.period
         gaits = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        record = record.merge(self._repeats(runs, duration, staged(progress, "repeats", 0.1, 0.5)))
+        built = staged(progress, "robots as built", 0.1, 0.5)
+        record = record.merge(self.repeated(runs, _numbers, _UNITS, duration, built))
         record = record.merge(self._mapped(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _LEAST * self.robot.length
         return Simulated(record=record, replays=self._replays(record))
@@ -96,24 +97,6 @@ class Displacement(TwoGroups):
             title="Crawling with spine and tail, and without",
             caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
         )
-
-    def _repeats(self, runs: Sequence[Run], duration: float, progress: Any) -> xr.Dataset:
-        """Return the displacement over time and at the end of repeats with noise and another friction [m]."""
-        record = simulate(
-            self.repeated(runs), duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress
-        )
-        x = record.centre_of_mass.sel(xyz="x", drop=True).transpose("run", "time")
-        x = x - x.sel(time=START, method="nearest", drop=True)
-        dims, shape = ("condition", "repeat"), (len(runs), self.repeats)
-        data = xr.Dataset(
-            {
-                "spread_over_time": ((*dims, "spread_time"), x.values.reshape(*shape, -1), {"units": "m"}),
-                "spread_forward": (dims, _forward(record).values.reshape(shape), {"units": "m"}),
-            },
-            coords={"condition": [run.label for run in runs], "spread_time": record.time.values},
-        )
-        data.spread_time.attrs["units"] = "s"
-        return data
 
     def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
         """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
@@ -172,33 +155,15 @@ class Displacement(TwoGroups):
         return tuple(number for number in numbers if follows(number))
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return displacements with their spread, what the feet did, and what each part adds."""
-        forward, turned = _forward(record), heading_change(record)
-        cost, slid, aside = cost_of_transport(record), slip(record), displacement_of(record).sel(xyz="y")
-        duty, clear, two = duty_factor(record), foot_clearance(record), two_feet_share(record)
-        measures: dict[str, Measure] = {}
-        arms = [str(arm) for arm in record.condition.values]
-        hind = {"leg": record.leg.values[-2:]}
-        repeats = {arm: record.spread_forward.sel(condition=arm, drop=True) for arm in arms}
-        for i, arm in enumerate(arms):
-            measures |= {
-                **ranged(f"forward_{arm}", forward[i], repeats[arm], "m"),
-                f"sideways_{arm}": Measure(float(aside[i]), "m"),
-                f"heading_drift_{arm}": Measure(float(turned[i]), "rad"),
-                f"slip_{arm}": Measure(float(slid[i]), "-"),
-                f"cost_of_transport_{arm}": Measure(float(cost[i]), "-"),
-                f"hind_duty_{arm}": Measure(float(duty.isel(run=i).sel(hind).max()), "-"),
-                f"hind_clearance_{arm}": Measure(float(clear.isel(run=i).sel(hind).min()), "m"),
-                f"two_feet_share_{arm}": Measure(float(two[i]), "-"),
-            }
+        """Return what each condition does and what each part adds, of the robots as built, and the map."""
+        measures = of_repeats(record, _UNITS)
+        forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
         for name, arm, without in _GAINS:
-            if {arm, without} <= set(arms):
-                gain = forward[arms.index(arm)] - forward[arms.index(without)]
-                measures |= ranged(f"gain_{name}", gain, repeats[arm] - repeats[without], "m")
+            if {arm, without} <= set(forward):
+                measures |= estimated(f"gain_{name}", forward[arm] - forward[without], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
-            if control in arms:
-                ratio = forward[0] / forward[arms.index(control)]
-                measures |= ranged(name, ratio, repeats["coordinated"] / repeats[control], "-")
+            if control in forward:
+                measures |= estimated(name, forward["coordinated"] / forward[control], "-")
         measures |= ends("ratio_on_map", _ratio(record), "-")
         measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
         if record.sizes["pitch"]:
@@ -212,8 +177,8 @@ class Displacement(TwoGroups):
         full = self.cycles == CYCLES and not self.unjudged()
         return {
             "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
-            "parts": draw_parts(record, _forward(record), printed if article else {}, self.friction_spread),
-            "displacement_over_time": draw_course(record, _GROUPS, printed if full else {}, self.friction_spread),
+            "parts": draw_parts(record, _forward(record), printed if article else {}),
+            "displacement_over_time": draw_course(record, _GROUPS, printed if full else {}),
             "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=article),
         }
 
@@ -230,6 +195,34 @@ class Displacement(TwoGroups):
 
 def _forward(record: xr.Dataset) -> xr.DataArray:
     return displacement_of(record).sel(xyz="x")
+
+
+_UNITS = {
+    "forward": "m",
+    "sideways": "m",
+    "heading_drift": "rad",
+    "slip": "-",
+    "cost_of_transport": "-",
+    "hind_duty": "-",
+    "hind_clearance": "m",
+    "two_feet_share": "-",
+}
+"""Numbers of every condition, and their units."""
+
+
+def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the numbers of each run by the names of ``_UNITS``; of the hind feet those of the worse one."""
+    hind = {"leg": record.leg.values[-2:]}
+    return {
+        "forward": _forward(record),
+        "sideways": displacement_of(record).sel(xyz="y"),
+        "heading_drift": heading_change(record),
+        "slip": slip(record),
+        "cost_of_transport": cost_of_transport(record),
+        "hind_duty": duty_factor(record).sel(hind).max("leg"),
+        "hind_clearance": foot_clearance(record).sel(hind).min("leg"),
+        "two_feet_share": two_feet_share(record),
+    }
 
 
 _GAINS = (

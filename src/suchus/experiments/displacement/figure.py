@@ -13,7 +13,7 @@ from suchus.design import Robot
 from suchus.figures.data import carry
 from suchus.figures.posture import draw_strip
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
-from suchus.figures.timeseries import draw_band, draw_lines, mark_cycles, mark_printed
+from suchus.figures.timeseries import draw_lines, mark_cycles, mark_printed
 from suchus.motion import START, Gait
 from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
@@ -64,65 +64,61 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     )
 
 
-def draw_parts(record: xr.Dataset, forward: xr.DataArray, printed: Mapping[str, float], spread: float) -> Figure:
-    """Draw how far each condition gets, without noise and in repeats.
+def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed: Mapping[str, float]) -> Figure:
+    """Draw how far each condition gets, of the robots as built and as designed.
 
     Args:
         record: of the experiment.
-        forward: displacement of each condition without noise [m].
+        designed: displacement of each condition of the robot as designed [m].
         printed: the article's displacements by condition [m]; empty for another robot or gait.
-        spread: of the friction in the repeats, as a fraction of it [-].
     """
     arms = [str(arm) for arm in record.condition.values]
     with styled():
         figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
         ax = axes[0, 0]
         for i, arm in enumerate(arms):
-            repeats, here = record.spread_forward.sel(condition=arm), len(arms) - i
-            ax.plot([float(repeats.min()), float(repeats.max())], [here, here], color=COLOURS[arm], linewidth=7,
-                    alpha=0.35, solid_capstyle="butt")  # fmt: skip
-            ax.plot(float(forward[i]), here, "o", color=COLOURS[arm], markersize=9)
-            if i == 0:
-                ax.plot([], [], "o", color=COLOURS["neutral"], markersize=9, label="without noise")
-                ax.plot([], [], color=COLOURS["neutral"], linewidth=7, alpha=0.35, label="range of repeats")
-            ax.annotate(f"{float(forward[i]):.3g} m", (float(forward[i]), here), (0, 10), ha="center", fontsize=11,
+            built, here = record.repeated_forward.sel(condition=arm), len(arms) - i
+            middle = float(built.median())
+            labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
+            ax.plot(built, [here] * built.size, "|", color=COLOURS[arm], markersize=13, alpha=0.6, label=labels[0])
+            ax.plot(middle, here, "o", color=COLOURS[arm], markersize=9, label=labels[1])
+            ax.plot(float(designed[i]), here, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
+            ax.annotate(f"{middle:.3g} m", (middle, here), (0, 10), ha="center", fontsize=11,
                         textcoords="offset points")  # fmt: skip
         for i, (arm, metres) in enumerate(printed.items()):
             ax.plot(metres, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
                     markeredgecolor="black", label=None if i else "article")  # fmt: skip
         ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
         ax.set_ylim(0.4, len(arms) + 0.8)
-        ax.set_xlim(left=min(0.0, float(record.spread_forward.min())))
+        ax.set_xlim(left=min(0.0, float(record.repeated_forward.min())))
         ax.set_xlabel("displacement forward [m]")
         ax.legend(loc="lower right")
     return captioned(
         figure,
-        "What each part of spine and tail adds. Points: one run without noise; bars: the range of "
-        f"{record.sizes['repeat']} repeats with noise on the servos and {spread:.0%} of spread in "
-        "the friction. All conditions command the same legs.",
+        f"What each part of spine and tail adds: {record.sizes['repeat']} robots built of the design, whose servos' "
+        "zeros, play, masses and friction differ from it within their tolerances, and the design itself. All "
+        "conditions command the same legs.",
     )
 
 
-def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, float], spread: float) -> Figure:
-    """Draw the displacement over time with all of the axis and without, and the range of the repeats.
+def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, float]) -> Figure:
+    """Draw the displacement over time with all of the axis and without, and where the robots as built end.
 
     Args:
         record: of the experiment, the two conditions first.
         arms: names of the two conditions.
         printed: the article's displacements by condition [m]; empty where they are not for this run.
-        spread: of the friction in the repeats, as a fraction of it [-].
     """
     with styled():
         figure, axes = panels(1, 1, height=4.2)
         ax = axes[0, 0]
         x = record.centre_of_mass.isel(run=[0, 1]).sel(xyz="x")
         x = x - x.sel(time=START, method="nearest")
-        for arm in arms:
-            repeats = record.spread_over_time.sel(condition=arm)
-            band = repeats.rename(repeat="run", spread_time="time")
-            draw_band(ax, band, arm, label=f"repeats, {LINES[arm]['label']}")
         draw_lines(ax, x, arms)
         end = float(record.time[-1])
+        for arm in arms:
+            built = record.repeated_forward.sel(condition=arm)
+            ax.plot([end] * built.size, built, "_", color=COLOURS[arm], markersize=11, clip_on=False)
         cycles = (end - START) / float(record.period[0])
         mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
         if printed:
@@ -132,8 +128,8 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, f
     diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if printed else ""
     return captioned(
         figure,
-        f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands.{diamonds} "
-        f"Bands: repeats with noise on the servos and {spread:.0%} of spread in the friction.",
+        f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands, as designed."
+        f"{diamonds} Marks at the end: {record.sizes['repeat']} robots built of the design.",
     )
 
 
