@@ -97,6 +97,6 @@ def plays(opened, address):
     right = page.evaluate("document.querySelector('#answer strong').textContent").removesuffix(".")
     page.get_by_role("radio", name=right, exact=True).check()
     assert page.locator("#answer").get_attribute("open") is not None
-    assert page.get_by_role("status").inner_text() == "That is what was measured."
+    assert page.locator("#said").inner_text() == "That is what was measured."
     assert (asked, said) == ([address], [])
     page.close()

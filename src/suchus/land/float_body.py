@@ -159,6 +159,22 @@ class FloatTank:
         lifted = self._body.mass * float(data.xipos[1, 2]) + self._lake.water.density * self.statics()[4]
         return float(0.5 * data.qvel @ moved + pull * lifted)
 
+    def mass_matrix(self) -> Float[np.ndarray, "6 6"]:
+        """Return the inertia of body and added mass for motions along and turns about its forward, left and up axes.
+
+        It refers to the middle of the shape; the first three rows are in kg and kg m, the others in kg m and kg m2.
+        """
+        data = self.data
+        mujoco.mj_forward(self.model, data)
+        turn = data.xmat[1].reshape(3, 3)
+        moving = np.zeros((6, 6))  # of the frame that stands beside, for each unit motion of the middle
+        moving[:3, :3], moving[3:, 3:] = turn, np.eye(3)
+        moving[:3, 3:] = np.array([-turn @ np.cross(axis, _ASIDE) for axis in np.eye(3)]).T
+        answers = np.zeros((6, 6))
+        for motion, answer in zip(np.ascontiguousarray(moving.T), answers, strict=True):
+            mujoco.mj_mulM(self.model, data, answer, motion)
+        return moving.T @ answers.T
+
     def momenta(self) -> Float[np.ndarray, "6"]:
         """Return momentum of body and added mass, and its moment about the world's origin [kg m/s], [kg m2/s]."""
         data, moved = self.data, np.zeros(self.model.nv)
