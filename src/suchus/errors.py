@@ -100,10 +100,16 @@ class Doubtful(UserWarning):
 
 @contextmanager
 def plain_warnings(*about: str) -> Iterator[None]:
-    """Write warnings as sentences on standard error, after ``about`` and without the place in the code."""
-    before = ": ".join(("suchus", *about))
+    """Write warnings as sentences on standard error, each once, after ``about`` and without the place in the code."""
+    before, said = ": ".join(("suchus", *about)), set[str]()
+
+    def show(message: Warning | str, *_: object, **__: object) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            print(f"{before}: {message}", file=sys.stderr)
+
     with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_, **__: print(f"{before}: {message}", file=sys.stderr)
+        warnings.showwarning = show
         yield
 
 

@@ -14,7 +14,6 @@ from suchus.control import Amphibious, HeadingHold, HeadingRule, Swimming  # noq
 from suchus.design import with_speed_lines  # noqa: E402
 from suchus.envs.pack import Pack  # noqa: E402
 from suchus.envs.senses import felt  # noqa: E402
-from suchus.envs.task import swim_of  # noqa: E402
 from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
 from suchus.land import Ground, Lake, Wave  # noqa: E402
 from suchus.land.lake import up  # noqa: E402
@@ -139,7 +138,7 @@ def test_the_shelf_s_swim_fits_into_the_actions_and_the_steering_turns_both_ways
     envs.part(seen, "goal_direction", SWIM.robot)[:] = [1.0, 0.0, 0.0]
     straight = swim(seen)
     assert np.abs(straight).max() < 1.0
-    expected = cycle_targets(SWIM.robot, swim_of(SWIM.robot, None), clock + SWIM.decision)
+    expected = cycle_targets(SWIM.robot, SWIM.swum, clock + SWIM.decision)
     np.testing.assert_allclose(np.array(centre) + SWIM.span * straight, expected, atol=1e-12)
     envs.part(seen, "goal_direction", SWIM.robot)[:] = [0.0, 1.0, 0.0]
     left = swim(seen)
@@ -165,7 +164,7 @@ def test_a_controller_feels_through_the_observation_what_the_robot_feels(name):
 def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_held():
     near = replace(SWIM, goal=replace(NEAR, bearing=0.0), jitter=0.0)
     centre = tuple(Pack(near, 1).centre)
-    control, gait = Swimming(heading=HeadingHold()), swim_of(SWIM.robot, None)
+    control, gait = Swimming(heading=HeadingHold()), SWIM.swum
     policy = envs.Controlled(near, centre, control, steps=100, gait=gait)
     played = envs.play(near, policy, episodes=1, steps=100)
     assert played.goal.all()
@@ -176,7 +175,7 @@ def test_a_controller_of_the_shelf_swims_through_the_actions_with_its_heading_he
 
 
 def test_the_clock_goes_with_the_swimming_motion():
-    slow = replace(swim_of(SWIM.robot, None), period=2.0)
+    slow = replace(SWIM.swum, period=2.0)
     assert (SWIM.period, replace(SWIM, swim=slow).period) == (pytest.approx(1.0), pytest.approx(2.0))
     assert envs.TASKS["Crawl"].period == envs.TASKS["Crawl"].gait.period
 
@@ -186,7 +185,7 @@ def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_mor
     near = replace(SHORE, ground=Ground(uphill=steep), lake=Lake(level=1.1 * sin(steep)), goal=envs.Landing(beyond=0.1))
     centre = tuple(Pack(near, 1).centre)
     holds = Swimming(heading=HeadingHold())
-    control, steps = Amphibious(swim=swim_of(near.robot, None), swimming=holds, heading=HeadingRule()), 400
+    control, steps = Amphibious(swim=near.swum, swimming=holds, heading=HeadingRule()), 400
     comes = envs.play(near, envs.Controlled(near, centre, control, steps=steps), episodes=1, steps=steps)
     rests = envs.play(near, envs.Still(near), episodes=1, steps=40)
     assert comes.goal.all()
@@ -276,6 +275,6 @@ def test_a_goal_and_a_swim_that_cannot_be_are_refused():
         envs.Goal(distance=0.1, within=0.1)
     with pytest.raises(InvalidDesign, match="0 to 1000 m is allowed"):
         envs.Landing(beyond=-1.0)
-    wide = swim_of(SWIM.robot, None).with_numbers(tail_bend=3.0)
+    wide = SWIM.swum.with_numbers(tail_bend=3.0)
     with pytest.raises(OutsideLimits, match="tail"):
         envs.CrocodileEnv("Swim", swim=wide)

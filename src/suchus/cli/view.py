@@ -11,7 +11,7 @@ import tyro
 from suchus.capture import ReadingOptions, read_tracks
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
-from suchus.design import Robot, check_needs, with_values
+from suchus.design import Robot, check_needs
 from suchus.design.checks import require
 from suchus.gaits import own_gait
 from suchus.motion import Gait
@@ -20,10 +20,8 @@ from suchus.robots import ROBOTS
 from suchus.viewer import Session
 from suchus.viewer.replay import FilmedAnimal, Take, beside, takes
 from suchus.viewer.swim import films, vortex_film
-from suchus.water import fit, printed_wave
+from suchus.water import swim_of
 
-_SWIM = 1.0
-"""Frequency of a live swim [Hz]."""
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
@@ -123,7 +121,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
         SuchusError: the walk cannot be walked, the viewer is not installed, or the port is taken.
     """
     robot, gait = options.robot, options.gait or own_gait(options.robot)
-    swim = _wave_of(robot) if options.lake else None
+    swim = swim_of(check_needs(robot, ["axis"], "suchus view --lake")) if options.lake else None
 
     def session() -> Session:
         return Session(robot, gait, timestep=options.timestep, swim=swim)
@@ -135,16 +133,6 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
         lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {how}", opened,
         camera=pages.camera(robot),
     )  # fmt: skip
-
-
-def _wave_of(robot: Robot) -> Gait:
-    """Return the article's wave on the joints of a robot.
-
-    Raises:
-        UnsuitedRobot: its axis does not bend sideways.
-    """
-    bare = with_values(check_needs(robot, ["axis"], "suchus view --lake"), {"hull": None})
-    return fit(bare, printed_wave(bare, "I", frequency=_SWIM, sign=-1)).gait
 
 
 def _replay(words: Sequence[str]) -> int:

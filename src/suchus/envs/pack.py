@@ -19,7 +19,7 @@ from suchus.control.standing import BALANCE
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import control_period, scaled
 from suchus.envs.senses import Observer, turning
-from suchus.envs.task import AnyGoal, Task, Terms, remaining, swim_of
+from suchus.envs.task import AnyGoal, Task, Terms, remaining
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
 from suchus.gaits import GAITS, own_gait, suits
@@ -81,7 +81,7 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 def _afloat(task: Task, model: Any) -> Beginning:
     """Put a robot on the water in the mean posture of its swimming motion."""
     assert task.lake is not None  # see ``Task``
-    swim = swim_of(task.robot, task.swim)
+    swim = task.swum
     check_limits(task.robot, swim)
     check_speeds(task.robot, swim)
     servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight

@@ -11,7 +11,7 @@ from suchus.design import layout
 from suchus.design.scale import control_period
 from suchus.envs.senses import felt, part, turning
 from suchus.envs.shelf import STEPS
-from suchus.envs.task import Task, swim_of
+from suchus.envs.task import Task
 from suchus.envs.vector import CrocodileVectorEnv
 from suchus.motion import Gait, Steer, cycle_targets, movement
 
@@ -86,7 +86,7 @@ class SwimToGoal:
     def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task, robot = self.task, self.task.robot
-        swim = movement(robot, swim_of(robot, task.swim))
+        swim = movement(robot, task.swum)
         sine, cosine = part(seen, "clock", robot).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
         direction = part(seen, "goal_direction", robot).astype(float)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from functools import lru_cache
 from math import pi
 from types import MappingProxyType
 from typing import Any, Literal, get_args
@@ -10,7 +9,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.design import STANDING, Robot, check_needs, front_segment, layout, with_speed_lines, with_values
+from suchus.design import STANDING, Robot, check_needs, front_segment, layout, with_speed_lines
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
@@ -22,7 +21,7 @@ from suchus.land.afloat import check_floats
 from suchus.land.lake import check_lake
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
-from suchus.water import fit, printed_wave
+from suchus.water import swim_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -219,7 +218,6 @@ NEEDED: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 """What a beginning needs of a robot: names of ``design.NEEDS``."""
-_FREQUENCY = 1.0  # [Hz]; as in the experiments swim_free and shore
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -375,7 +373,7 @@ class Task:
     lake: Lake | None = None
     """Water in which the robot swims or wades, its level and air fraction numbers; None on dry land."""
     swim: Gait | None = None
-    """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20) at 1 Hz, fitted."""
+    """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20), see ``water.swim_of``."""
     goal: AnyGoal | None = None
     """The goal, at which the episode ends; None: no goal."""
 
@@ -388,8 +386,18 @@ class Task:
     def period(self) -> float:
         """Period of the clock, that of the swimming motion or of the gait [s]."""
         if self.start == "swimming":
-            return swim_of(self.robot, self.swim).period
+            return self.swum.period
         return self.gait.period
+
+    @property
+    def swum(self) -> Gait:
+        """Gait of a ``swimming`` start: ``swim``, or the wave of (20) on the robot's joints.
+
+        Raises:
+            UnsuitedRobot: no servo bends the robot sideways.
+            OutsideLimits: its joints cannot make the wave of (20).
+        """
+        return self.swim or swim_of(self.robot)
 
     def on(self, robot: Robot, gait: Gait | None = None) -> "Task":
         """Return the same task for another robot.
@@ -460,24 +468,6 @@ class Task:
                 check_floats(self.robot, self.lake)
         if self.goal is not None:
             self.goal.check(self.ground, self.lake)
-
-
-@lru_cache(maxsize=16)
-def swim_of(robot: Robot, swim: Gait | None) -> Gait:
-    """Return the gait in which a robot swims.
-
-    Args:
-        robot: any robot whose axis bends sideways.
-        swim: the gait; None for the wave of (20) at 1 Hz, fitted to the robot's joints.
-
-    Raises:
-        UnsuitedRobot: no servo bends the robot sideways.
-        OutsideLimits: its joints cannot make the wave of (20).
-    """
-    if swim is not None:
-        return swim
-    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
-    return fit(bare, printed_wave(bare, "I", frequency=_FREQUENCY, sign=-1)).gait
 
 
 def check_water(robot: Robot, lake: Lake) -> None:

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from suchus.design import Robot
 from suchus.design.hull import Hull
-from suchus.design.pieces import pieces
+from suchus.design.pieces import chambers, pieces, volumes
 from suchus.errors import Doubtful, InvalidDesign
 from suchus.hydro import column, unpacked
 from suchus.hydro.forces import hydrostatic
@@ -41,6 +41,12 @@ def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
     table = pieces(robot)
     lost = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
     return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
+
+
+def hovers(robot: Robot, lake: Lake) -> bool:
+    """Return whether a robot has so much air that it hovers when it lets a part of it out."""
+    spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
+    return 0.0 < spare <= sum(chambers(robot))
 
 
 def check_floats(robot: Robot, lake: Lake) -> None:

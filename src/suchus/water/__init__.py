@@ -4,7 +4,7 @@ Swims by CFD stand in ``suchus.water.resolved``, which loads the flow solver.
 """
 
 from suchus.design.water import Water
-from suchus.water.fit import Attempt, Fit, attempts, fit, readings_table
+from suchus.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
 from suchus.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
 from suchus.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
 from suchus.water.passive import sprung
@@ -50,6 +50,7 @@ __all__ = [
     "sprung",
     "survey",
     "swim",
+    "swim_of",
     "swing",
     "taken",
     "undulation",

@@ -6,11 +6,13 @@ So the wave's tangent angles are fitted by least squares, and what remains is re
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from suchus.design import Robot
+from suchus.design import Robot, check_needs, with_values
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.kinematics.wave import READINGS
 from suchus.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
@@ -132,6 +134,35 @@ def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> N
                 f"either side, {amplitude - limits[servo]:.2f} rad more than the {limits[servo]:.2f} rad it has: take "
                 "a longer or a flatter wave."
             )
+
+
+_FREQUENCY, _PERIOD = 1.0, 0.01  # [Hz]; of the wave of a robot whose control period is the second [s]
+
+
+@lru_cache(maxsize=16)
+def swim_of(
+    robot: Robot,
+    *,
+    frequency: float | None = None,
+    reading: str = "I",
+    limbs: tuple[float, float] = LIMBS_BACK,
+) -> Gait:
+    """Return the gait in which a robot swims unless another one is asked for: the wave of (20) on its joints.
+
+    Args:
+        robot: any robot whose axis bends sideways; its hull makes no difference.
+        frequency: of the wave [Hz]; by default 1 Hz for bodies of 0.4 to 1.6 m, and as many control periods a cycle for
+            others.
+        reading: letter of the reading of (20), see ``kinematics.wave.READINGS``.
+        limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
+
+    Raises:
+        UnsuitedRobot: no servo bends the robot sideways.
+        OutsideLimits: its joints cannot make the wave.
+    """
+    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
+    cycles = frequency or _FREQUENCY * _PERIOD / control_period(robot)
+    return fit(bare, printed_wave(bare, reading, frequency=cycles, sign=-1), limbs=limbs).gait
 
 
 class Attempt(NamedTuple):

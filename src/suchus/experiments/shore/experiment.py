@@ -11,20 +11,20 @@ from jaxtyping import Bool, Float
 
 from suchus import rotation
 from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
-from suchus.design import GRAVITY, Robot, with_values
+from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
-from suchus.gaits import GAITS
+from suchus.gaits import DRAFTED, GAITS, own_gait, suits
 from suchus.gaits.belly_crawl import LIMBS
 from suchus.land import Ground, Lake, Run, simulate
-from suchus.land.afloat import check_floats
+from suchus.land.afloat import check_floats, hovers
 from suchus.land.lake import up
 from suchus.metrics.energy import METRES
-from suchus.motion import Gait, GaitInMetres
+from suchus.motion import Gait, GaitInMetres, draft_gait
 from suchus.robots import ROBOTS
-from suchus.water import fit, printed_wave
+from suchus.water import swim_of
 
 _DRY, _DEEP = -10.0, 3.0
 """Levels of the water far below dry land, and far above the ground [m]."""
@@ -74,10 +74,10 @@ class Shore(Experiment):
     shows = "Section I, whose robot is amphibious; beyond the article"
     answers = ("ashore_share", "time_ashore", "falls", "into_water_share", "speed_swimming", "speed_ashore")
     reproduces: ClassVar[bool] = False
-    needs = ("legs", "axis")
+    needs = ("limbs", "axis")
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
-    """The robot; it must float, and have air to let out."""
+    """The robot; it must float."""
     gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
     """Gait in which it walks ashore."""
     wade: Gait = field(default_factory=lambda: _WADE)
@@ -144,6 +144,20 @@ class Shore(Experiment):
         )
         return replace(smaller, duration=2.0, cycles=1)
 
+    def on(self, robot: Robot) -> "Shore":
+        """Return the same question for another robot; one without air lets none out."""
+        asked = super(Shore, self).on(robot)  # a class with slots has no short form
+        aired = robot.hull is not None and robot.hull.air > 0.0
+        return asked if aired else replace(asked, air_released=0.0, other_air_released=())
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the gaits in which another robot walks ashore and lands: its own, or the first that can be steered."""
+        own = own_gait(robot)
+        if not own.has("steering"):
+            able = (gait for gait in GAITS.values() if gait.has("steering") and gait.has("strokes"))
+            own = next((gait for gait in able if suits(robot, gait)), None) or draft_gait(robot, DRAFTED)
+        return {"gait": own, "wade": own, "others": ()}
+
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Simulate all runs as one batch: to the shore, with other gaits, with less air let out, and into the water."""
         check_floats(self.robot, Lake(level=_DEEP))
@@ -199,8 +213,7 @@ class Shore(Experiment):
         return cases
 
     def _swim(self) -> Gait:
-        robot = with_values(self.robot, {"hull": None})
-        return fit(robot, printed_wave(robot, "I", frequency=self.frequency, sign=-1)).gait
+        return swim_of(self.robot, frequency=self.frequency)
 
     def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
         """Return a run: up a shore from the water, or down into it where the slope falls."""
@@ -227,12 +240,14 @@ class Shore(Experiment):
 
     def _metres(self, progress: Progress) -> xr.Dataset:
         """Return speed and power of the servos on level dry land, at the surface and at depth."""
-        level, deep = Swimming(heading=HeadingHold()), DepthHold(depth=self.depth)
-        controls: Mapping[str, Control] = {"land": OpenLoop(), "surface": level, "deep": replace(level, depth=deep)}
+        level, deep = Swimming(heading=HeadingHold()), Lake(level=max(_DEEP, 2.0 * self.robot.length))
+        controls: dict[str, Control] = {"land": OpenLoop(), "surface": level}
+        if hovers(self.robot, deep):
+            controls["deep"] = replace(level, depth=DepthHold(depth=self.depth))
         runs = [
             Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY), control=control)
             if name == "land"
-            else Run(robot=self.robot, gait=self._swim(), lake=Lake(level=_DEEP), control=control)
+            else Run(robot=self.robot, gait=self._swim(), lake=deep, control=control)
             for name, control in controls.items()
         ]
         last = self.cycles * self.gait.period
@@ -294,7 +309,8 @@ class Shore(Experiment):
         """Say how many runs came ashore, what this depends on, and the work per metre."""
         other = ("steepest", "least_grip", "most_grip", "air_released")
         names = [name.removeprefix("ashore_share_") for name in measures if name.startswith("ashore_share_")]
-        return self.told(measures, metres=METRES, gaits=[name for name in names if not name.startswith(other)])
+        metres = {ending: where for ending, where in METRES.items() if f"work_per_metre_{ending}" in measures}
+        return self.told(measures, metres=metres, gaits=[name for name in names if not name.startswith(other)])
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
@@ -429,6 +445,8 @@ def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
         found[f"speed_{where}"] = Measure(speed, "m/s")
         found[f"work_per_metre_{where}"] = Measure(work, "J/m")
         found[f"cost_of_transport_{where}"] = Measure(work / float(one.metre_weight), "-")
+    if "deep" not in record["where"].values:
+        return found
     error = abs(float(record.metre_depth.sel(where="deep")) - record.attrs["depth"])
     return found | {"depth_error": Measure(error, "m")}
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.control import Swimming
-from suchus.design import GRAVITY, Robot, cable_joints, with_spring, with_values
+from suchus.design import GRAVITY, Robot, with_spring, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
@@ -19,14 +19,14 @@ from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
-from suchus.motion import LIMBS_BACK, Gait
+from suchus.motion import LIMBS_BACK, Gait, suits
 from suchus.robots import ROBOTS
-from suchus.water import Outline, fit, printed_wave, swim
+from suchus.water import Outline, swim, swim_of
 from suchus.water.sections import likely
 from suchus.water.slender import cruise, cycle, reactive
 
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
-"""Motions that are compared, in open loop."""
+"""Motions that are compared, in open loop; those of a tail or a trunk alone where both bend."""
 _MODELS = ("resistive", "reactive")
 _SPREAD = {"cross_drag": (0.7, 1.5), "thickening": (0.5, 2.0), "added_mass": (0.7, 1.4), "shedding": (0.5, 1.5)}
 """Plausible factors on the coefficients of the water [-]: round sections that oscillate, swimming fish, how the tail
@@ -37,13 +37,14 @@ sheds. Drag and added mass may be farther off, as ``water.sections.likely`` says
 class SwimFree(Experiment):
     """The wave of (20) on the joints of a floating robot, in open loop: whole, tail only, trunk only and reversed.
 
-    The robot floats, heaves, rolls, pitches and steers as the water lets it. Its cable fixes the sum of its joints'
-    angles only; how they share it is up to rubber and water. So the same swims are repeated with stiffer joints, and
-    set beside two models whose midline is commanded and cannot see this. One run steers by a mean bend; further runs
-    vary each coefficient of the water over its plausible range, wide enough for the table of oscillating sections at
-    the aspects and Keulegan numbers of this body, and halve the time step. Last, it dives and swims below the surface,
-    neutrally buoyant: with the air in the chambers of the design, with its pitch held or used to dive by air that moves
-    between them, and with the air in the foam, where it lies without chambers.
+    The robot floats, heaves, rolls, pitches and steers as the water lets it. A cable fixes the sum of its joints'
+    angles only; how they share it is up to rubber and water. So the swims of a robot with cables are repeated with
+    stiffer joints. All are set beside two models whose midline is commanded and cannot see this. One run steers by a
+    mean bend; further runs vary each coefficient of the water over its plausible range, wide enough for the table of
+    oscillating sections at the aspects and Keulegan numbers of this body, and halve the time step. Last, a robot with
+    the air for it dives and swims below the surface, neutrally buoyant: with the air in the chambers of the design,
+    with its pitch held or used to dive by air that moves between them, and with the air in the foam, where it lies
+    without chambers.
     """
 
     title = "How does it swim in six degrees of freedom, at the surface?"
@@ -56,7 +57,7 @@ class SwimFree(Experiment):
         "turn_radius",
         "servo_power",
     )
-    needs = ("axis", "cable_tail")
+    needs = ("axis",)
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""
@@ -88,18 +89,19 @@ class SwimFree(Experiment):
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.05, 10.0, "Hz")
-            check.number("stiffness", 0.01, 100.0, "N m/rad")
+            check.number("stiffness", 1e-9, 1e6, "N m/rad")
             check.number("limb_pitch", -pi, pi, "rad")
             check.number("turn", -pi, pi, "rad")
             check.number("trunk_turn", -pi, pi, "rad")
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
-            check.number("level", 0.3, 1000.0, "m")
-            check.number("depth", 0.05, 1000.0, "m")
+            check.number("level", 0.3 * self.robot.length, 1000.0, "m")
+            check.number("depth", 0.05 * self.robot.length, 1000.0, "m")
             check.whole("dive", 0, 1000)
             check.that(
-                self.depth <= self.level - 0.2,
-                f"swim_free.depth is {self.depth:g} m in water {self.level:g} m deep; at least 0.2 m must be below it",
+                self.depth <= self.level - 0.2 * self.robot.length,
+                f"swim_free.depth is {self.depth:g} m in water {self.level:g} m deep; at least a fifth of the robot's "
+                f"length, {0.2 * self.robot.length:.2g} m, must be below it",
             )
             unknown = [name for name in self.spread if name not in _SPREAD]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
@@ -115,17 +117,10 @@ class SwimFree(Experiment):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
         check_floats(self.robot, Lake(level=self.level))
-        motion = fit(
-            with_values(self.robot, {"hull": None}),
-            printed_wave(self.robot, self.reading, frequency=self.frequency, sign=-1),
-            limbs=(LIMBS_BACK[0], self.limb_pitch),
-        ).gait
-        motions = {
-            "whole": motion,
-            "tail_only": motion.straightened("trunk"),
-            "trunk_only": motion.straightened("tail"),
-            "reversed": motion.reversed(),
-        }
+        motion = swim_of(
+            self.robot, frequency=self.frequency, reading=self.reading, limbs=(LIMBS_BACK[0], self.limb_pitch)
+        )
+        motions = _motions(motion)
         by_table = self._by_table(motion)
         runs = self._runs(motions, _ends(self.spread, by_table))
         record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.7))
@@ -144,11 +139,16 @@ class SwimFree(Experiment):
             deep_from=self.dive / self.frequency,
             depth=self.depth,
             frequency=self.frequency,
-            cable=list(cable_joints(self.robot)),
-            meant=motion.number("tail_bend") / len(cable_joints(self.robot)),
+            cable=list(self._cable),
+            meant=motion.number("tail_bend") / max(len(self._cable), 1),
             **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
         return Simulated(record=record, replays=self._replays(record))
+
+    @property
+    def _cable(self) -> tuple[str, ...]:
+        """Joints that cables bend, from the front to the rear."""
+        return tuple(name for cable in self.robot.cables for name in cable.hinges)
 
     def _deep(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
         """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
@@ -166,45 +166,51 @@ class SwimFree(Experiment):
     def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, whole = Lake(level=self.level), motions["whole"]
-        stiff = with_spring(self.robot, cable_joints(self.robot), self.stiffness)
+        control = Swimming(ramp=1.0 / self.frequency)
+        joints = {"": self.robot}
+        if self._cable:
+            joints["_stiff"] = with_spring(self.robot, self._cable, self.stiffness)
         runs = [
-            Run(robot=robot, gait=gait, lake=lake, control=Swimming(), label=name + ending)
-            for robot, ending in ((self.robot, ""), (stiff, "_stiff"))
+            Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
+            for ending, robot in joints.items()
             for name, gait in motions.items()
         ]
-        steered = whole.with_numbers(tail_offset=self.turn, trunk_offset=self.trunk_turn)
-        runs.append(Run(robot=self.robot, gait=steered, lake=lake, control=Swimming(), label="steered"))
+        steered = _steered(self.robot, whole, tail=self.turn, trunk=self.trunk_turn)
+        runs.append(Run(robot=self.robot, gait=steered, lake=lake, control=control, label="steered"))
         for name, ends in factors.items():
             for factor in ends:
                 other = _other(lake, name, factor)
                 label = f"{name} x {factor:g}"
-                runs.append(Run(robot=self.robot, gait=whole, lake=other, control=Swimming(), label=label))
+                runs.append(Run(robot=self.robot, gait=whole, lake=other, control=control, label=label))
         return runs
 
     def _models(self, motions: Mapping[str, Gait]) -> xr.Dataset:
         """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
         bare = with_values(self.robot, {"hull": None})
         found = {name: swim(bare, one) for name, one in motions.items()}
-        speeds = [[float(found[name].speed.sel(model=model)) for model in _MODELS] for name in MOTIONS]
+        speeds = [[float(found[name].speed.sel(model=model)) for model in _MODELS] for name in motions]
         whole = found["whole"].sel(model="reactive")
         return xr.Dataset(
             {
                 "model_speed": (("motion", "model"), speeds, {"units": "m/s"}),
                 "wave_speed": ((), float(whole.speed / whole.slip), {"units": "m/s"}),
             },
-            coords={"motion": list(MOTIONS), "model": list(_MODELS)},
+            coords={"motion": list(motions), "model": list(_MODELS)},
         )
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        labels = [str(label) for label in record.label.values]
+        ghost = next(label for label in ("whole_stiff", "tail_only", "reversed") if label in labels)
+        called = {"whole_stiff": "stiffer joints", "tail_only": "tail only", "reversed": "reversed wave"}[ghost]
         return replayed(
             "swim_replay.html",
             record.isel(run=0),
             self.robot,
-            ghost=record.isel(run=len(MOTIONS)),
-            labels=("joints as designed", "stiffer joints"),
+            ghost=record.isel(run=labels.index(ghost)),
+            labels=("joints as designed" if self._cable else "whole wave", called),
             title="Swimming in six degrees of freedom",
-            caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with stiffer "
-            "joints.",
+            caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with "
+            f"{'stiffer joints' if self._cable else f'the {called}'}.",
         )
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
@@ -213,9 +219,10 @@ class SwimFree(Experiment):
         speed = {label: _speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
         part = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
         whole, found = part.isel(run=0), {}
-        for name in MOTIONS:
+        for name in [name for name in MOTIONS if name in labels]:
             found[f"speed_{name}"] = Measure(speed[name], "m/s")
-            found[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
+            if f"{name}_stiff" in speed:
+                found[f"speed_{name}_stiff"] = Measure(speed[f"{name}_stiff"], "m/s")
             for model in _MODELS:
                 value = float(record.model_speed.sel(motion=name, model=model))
                 found[f"speed_{name}_{model}"] = Measure(value, "m/s")
@@ -244,16 +251,40 @@ class SwimFree(Experiment):
                 "cost_of_transport": Measure(float(whole.servo_power.mean()) / (weight * ahead), "-"),
                 "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
                 "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
-                "tail_spread": Measure(_uneven(whole, record), "-"),
-                "tail_spread_stiff": Measure(_uneven(part.isel(run=labels.index("whole_stiff")), record), "-"),
             }
+            | _shares(part, labels)
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""
         speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
-        found = {"swim_speeds": draw_speeds(speeds, MOTIONS, _MODELS), "tail_shares": draw_tail(outcome.record)}
+        motions = [name for name in MOTIONS if f"speed_{name}" in speeds]
+        found = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
         return found | ({"below": draw_below(outcome.record, submerged.DEEP)} if "dive" in outcome.record else {})
+
+
+def _motions(motion: Gait) -> dict[str, Gait]:
+    """Return those of ``MOTIONS`` that a wave along an axis has."""
+    found = {"whole": motion}
+    bends = {"tail" if bend.part == "tail" else "trunk" for bend in motion.axis if any(bend.amplitude)}
+    if len(bends) == 2:
+        found |= {"tail_only": motion.straightened("neck", "trunk"), "trunk_only": motion.straightened("tail")}
+    return found | {"reversed": motion.reversed()}
+
+
+def _steered(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
+    """Return a wave about mean bends, less by halves until the joints can follow it [rad]."""
+    steered = motion.with_numbers(tail_offset=tail, trunk_offset=trunk)
+    return steered if suits(robot, steered) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
+
+
+def _shares(part: xr.Dataset, labels: Sequence[str]) -> dict[str, Measure]:
+    """Return how unevenly the joints of a cable share its bend; nothing of a robot without cables."""
+    ends = {"": "whole", "_stiff": "whole_stiff"} if part.attrs["cable"] else {}
+    return {
+        f"tail_spread{end}": Measure(_uneven(part.isel(run=labels.index(name)), part), "-")
+        for end, name in ends.items()
+    }
 
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:

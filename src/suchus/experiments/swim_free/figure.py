@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -26,6 +27,7 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
         ("_stiff", "the same, stiffer joints", COLOURS["tail_still"], "//"),
         *((f"_{model}", f"{model} model", shade, "") for model, shade in zip(models, _GREYS, strict=True)),
     )
+    bars = tuple(bar for bar in bars if f"speed_whole{bar[0]}" in speeds)
     with styled():
         figure, axes = panels(1, 1, width=9.0, height=4.2)
         ax, width = axes[0, 0], 0.8 / len(bars)
@@ -34,7 +36,9 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
             values = [speeds[f"speed_{name}{ending}"] for name in motions]
             ax.bar(at, values, width, color=colour, hatch=hatch, edgecolor="white", label=label)
         middle, low, high = (speeds[name] for name in ("speed_whole", "speed_low", "speed_high"))
-        ax.errorbar(-1.5 * width, middle, yerr=[[middle - low], [high - middle]], color="#333333", capsize=4)
+        ax.errorbar(
+            -(len(bars) - 1) / 2 * width, middle, yerr=[[middle - low], [high - middle]], color="#333333", capsize=4
+        )
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set_xticks(range(len(motions)), [_CALLED.get(name, name) for name in motions])
         ax.set_ylabel("speed [m/s]")
@@ -50,43 +54,49 @@ def draw_tail(record: xr.Dataset) -> Figure:
     """Draw the amplitude of each joint of the cable, commanded and taken, and the tracks of the swims.
 
     Args:
-        record: of runs labelled ``whole``, ``whole_stiff``, ``tail_only``, ``tail_only_stiff`` and ``steered``.
+        record: of runs labelled ``whole``, ``whole_stiff``, ``tail_only``, ``tail_only_stiff`` and ``steered``; the
+            tracks alone of a robot without cables.
     """
-    labels, names = [str(label) for label in record.label.values], record.attrs["cable"]
-    part = record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+    labels, cabled = [str(label) for label in record.label.values], len(record.attrs["cable"]) > 0
     with styled():
-        figure, axes = panels(1, 2, width=12.0, height=4.2)
-        ax, number = axes[0, 0], np.arange(len(names)) + 1
-        for label, colour, dashes, called in (
-            ("whole", "coordinated", "-", "whole wave"),
-            ("whole_stiff", "tail_still", (0, (5, 2)), "whole wave, stiffer"),
-            ("tail_only", "limbs_only", (0, (1, 1.2)), "tail only"),
-            ("tail_only_stiff", "limbs_tail_lifted", (0, (5, 1.5, 1, 1.5)), "tail only, stiffer"),
-        ):
-            angles = part.joint_angle.isel(run=labels.index(label)).sel(joint=names).transpose("time", "joint").values
-            half = np.degrees(np.ptp(angles, axis=0) / 2)
-            ax.plot(number, half, marker="o", color=COLOURS[colour], linestyle=dashes, label=called)
-        ax.axhline(np.degrees(record.attrs["meant"]), color=COLOURS["neutral"], linewidth=0.9, label="even share")
-        ax.set(xlabel="joint of the cable, from the root", ylabel="amplitude [deg]", xticks=number)
-        ax.set_ylim(bottom=0.0)
-        ax.legend(loc="best")
-        ax = axes[0, 1]
+        figure, axes = panels(1, 1 + cabled, width=12.0 if cabled else 7.0, height=4.2)
+        if cabled:
+            _draw_shares(axes[0, 0], record, labels)
+        ax = axes[0, -1]
         for label, colour, dashes, called in (
             ("whole", "coordinated", "-", "whole wave"),
             ("trunk_only", "spine_only", (0, (1, 1.2)), "trunk only"),
             ("reversed", "limbs_only", (0, (5, 2)), "reversed"),
             ("steered", "tail_drag", (0, (5, 1.5, 1, 1.5)), "steered"),
         ):
-            track = record.centre_of_mass.isel(run=labels.index(label))
-            ax.plot(track.sel(xyz="x"), track.sel(xyz="y"), color=COLOURS[colour], linestyle=dashes, label=called)
+            if label in labels:
+                track = record.centre_of_mass.isel(run=labels.index(label))
+                ax.plot(track.sel(xyz="x"), track.sel(xyz="y"), color=COLOURS[colour], linestyle=dashes, label=called)
         ax.set_aspect("equal", adjustable="datalim")
         ax.set(xlabel="forward [m]", ylabel="to the left [m]")
         ax.legend(loc="best")
-    return captioned(
-        figure,
-        "Amplitude of each joint of the cable while swimming, beside the even share that is meant; and tracks of the "
-        "centre of mass seen from above.",
-    )
+    shares = "Amplitude of each joint of the cable while swimming, beside the even share that is meant; and tracks"
+    return captioned(figure, f"{shares if cabled else 'Tracks'} of the centre of mass seen from above.")
+
+
+def _draw_shares(ax: Axes, record: xr.Dataset, labels: Sequence[str]) -> None:
+    names, part = record.attrs["cable"], record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
+    number = np.arange(len(names)) + 1
+    for label, colour, dashes, called in (
+        ("whole", "coordinated", "-", "whole wave"),
+        ("whole_stiff", "tail_still", (0, (5, 2)), "whole wave, stiffer"),
+        ("tail_only", "limbs_only", (0, (1, 1.2)), "tail only"),
+        ("tail_only_stiff", "limbs_tail_lifted", (0, (5, 1.5, 1, 1.5)), "tail only, stiffer"),
+    ):
+        if label not in labels:
+            continue
+        angles = part.joint_angle.isel(run=labels.index(label)).sel(joint=names).transpose("time", "joint").values
+        half = np.degrees(np.ptp(angles, axis=0) / 2)
+        ax.plot(number, half, marker="o", color=COLOURS[colour], linestyle=dashes, label=called)
+    ax.axhline(np.degrees(record.attrs["meant"]), color=COLOURS["neutral"], linewidth=0.9, label="even share")
+    ax.set(xlabel="joint of the cable, from the root", ylabel="amplitude [deg]", xticks=number)
+    ax.set_ylim(bottom=0.0)
+    ax.legend(loc="best")
 
 
 def draw_below(record: xr.Dataset, called: Mapping[str, str]) -> Figure:

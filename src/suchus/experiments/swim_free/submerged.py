@@ -10,9 +10,10 @@ from suchus import rotation
 from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.control.holding import neutral_air_fraction
 from suchus.design import Robot, with_values
-from suchus.design.pieces import chambers, volumes
+from suchus.design.pieces import chambers
 from suchus.experiment import Measure
 from suchus.land import Lake, Run
+from suchus.land.afloat import hovers
 from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import Gait, cycle_targets
 
@@ -25,12 +26,6 @@ NEAR = 0.05
 """Distance from the depth within which a dive has arrived [m]."""
 _DIVE = 1.0
 """How steeply the swim that dives by pitch pitches for each metre that it is too high [rad/m]."""
-
-
-def hovers(robot: Robot, lake: Lake) -> bool:
-    """Return whether a robot has so much air that it hovers when it lets a part of it out."""
-    spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
-    return 0.0 < spare <= sum(chambers(robot))
 
 
 def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
