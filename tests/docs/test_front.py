@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 import tomllib
 from pathlib import Path
 
@@ -9,6 +10,9 @@ import pytest
 from PIL import Image
 
 from pages import gallery, links, reference
+from pages.blocks import blocks
+from suchus.cli.entry import COMMANDS
+from suchus.experiments import EXPERIMENTS
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -96,3 +100,14 @@ def test_the_readme_begins_with_what_one_gets_a_picture_that_moves_and_how_to_in
         assert film.n_frames > 20
         assert film.info["loop"] == 0
     assert rest.index("pip install .") < rest.index("package index")
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/getting_started.md", "docs/command_line.md", "docs/lessons.md"])
+def test_commands_are_ones_that_there_are(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    lines = [line for block in blocks(text) if block.language == "sh" for line in block.text.splitlines()]
+    lines += re.findall(r"`(suchus [^`]+)`", text)
+    asked = [words for line in lines if (words := shlex.split(line, comments=True))[:1] == ["suchus"] and words[1:]]
+    assert asked
+    assert {words[1] for words in asked if not words[1].startswith("-")} <= {one.name for one in COMMANDS} | {"COMMAND"}
+    assert {words[2] for words in asked if words[1] == "run"} <= {*EXPERIMENTS, "NAME", "EXPERIMENT"}

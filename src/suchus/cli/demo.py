@@ -82,7 +82,7 @@ def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
         opener.open(path.as_uri())
     print(f"the walk, in any browser: {path}")
     if not live:
-        print("live, with sliders: pip install 'suchus[viewer]', or uvx --from 'suchus[viewer]' suchus demo")
+        print("live, with sliders: pip install 'suchus[viewer]'")
     return 0
 
 
