@@ -69,7 +69,10 @@ GAITS_OF_OTHERS = {
         ["--robot", "salamander", "--gait", "tripod"],
         "has phases for 6 limbs; robot 'salamander' has 4",
     ),
-    "paths for cranks": (["--robot", "salamandra", "--gait", "salamander_walk"], "limbs are cranks: choose a gait"),
+    "paths for cranks": (
+        ["--robot", "salamandra", "--gait", "salamander_walk"],
+        "limbs LF and RF of robot 'salamandra' are cranks: choose a gait",
+    ),
     "legs for none": (["--robot", "swimmer", "--gait", "belly_crawl"], "swimmer"),
 }
 

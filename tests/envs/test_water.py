@@ -254,6 +254,12 @@ def test_any_body_that_floats_and_bends_swims_to_the_goal(name):
             "a task that begins swimming needs an axis that bends sideways",
         ),
         ("Swim", {"robot": "strider"}, InvalidDesign, r"robot 'strider' sinks"),
+        (
+            "Shore",
+            {"robot": "swimmer"},
+            SuchusError,
+            "a task that ends on land needs limbs to walk on; robot",
+        ),
         ("Swim", {"lake": None}, InvalidDesign, r"needs water: give it a land\.Lake"),
         ("Swim", {"lake": 1.0}, InvalidDesign, "a Lake or None is needed"),
         ("Swim", {"lake": Lake(level=((0.0, 0.4), (5.0, 0.5)))}, InvalidDesign, "give each as one number"),

@@ -215,10 +215,11 @@ def test_in_the_middle_of_stance_the_axis_is_straight_and_all_feet_stand_level()
 @pytest.mark.parametrize(
     ("gait", "robot", "says"),
     [
-        ("tripod", "caiman", "phases for 6 limbs; robot 'caiman' has 4"),
-        ("salamandra_walk", "caiman", "to follow a Sweep, but its limbs are not cranks"),
-        ("belly_crawl", "salamandra", "to follow a FootPath, but its limbs are cranks"),
-        ("undulation", "strider", "phases for 0 limbs"),
+        ("tripod", "caiman", r"phases for 6 limbs; robot 'caiman' has 4 \(LF, RF, LH, RH\): choose a gait made for it"),
+        ("salamandra_walk", "caiman", "turns limbs as cranks; limbs LF and RF of robot 'caiman' are not cranks"),
+        ("belly_crawl", "salamandra", "leads feet along a path; limbs LF and RF of robot 'salamandra' are cranks"),
+        ("undulation", "strider", r"phases for 0 limbs; robot 'strider' has 6 \(LF, RF, LM, RM, LH, RH\)"),
+        ("belly_crawl", "swimmer", "phases for 4 limbs; robot 'swimmer' has 0: choose"),
     ],
 )
 def test_a_gait_for_other_limbs_is_refused(gait, robot, says):

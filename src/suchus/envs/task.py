@@ -425,11 +425,15 @@ class Task:
             for name in ("rewards", "breaks", "pushes", "goal"):
                 if getattr(self, name) is not None:
                     changes[name] = scaled(getattr(self, name), length_factor=longer, mass_factor=heavier)
+            if self.lake is not None:
+                changes["lake"] = replace(self.lake, level=longer * self.lake.at(0.0)[0])  # its water stays water
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 
     def __post_init__(self) -> None:
         if self.start in NEEDED:
             check_needs(self.robot, NEEDED[self.start], f"a task that begins {self.start}")
+        if isinstance(self.goal, Landing):
+            check_needs(self.robot, ["limbs"], "a task that ends on land")
         period = control_period(self.robot)
         with Checks("task", self) as check:
             check.that(

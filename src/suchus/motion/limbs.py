@@ -190,9 +190,10 @@ def check_limbs(robot: Robot, gait: Gait) -> None:
     """
     place = layout(robot)
     if len(gait.limb_phases) != len(place.limbs):
+        told = f" ({', '.join(place.limb_names)})" if place.limbs else ""
         raise OutsideLimits(
             f"gait {gait.name!r} has phases for {len(gait.limb_phases)} limbs; robot {robot.name!r} has "
-            f"{len(place.limbs)}: choose a gait made for it."
+            f"{len(place.limbs)}{told}: choose a gait made for it, or leave the gait out for the robot's own."
         )
     for curve in gait.curves:
         if curve.servo not in place.servos:
@@ -201,14 +202,18 @@ def check_limbs(robot: Robot, gait: Gait) -> None:
         _check_girdle(place, gait, girdle, limb)
 
 
+_MOVES: dict[type, str] = {FootPath: "leads feet along a path", Sweep: "turns limbs as cranks"}
+
+
 def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> None:
     robot = place.robot
     drives = [hinge.drive for hinge in girdle.limb.hinges]
     cranks = len(drives) == 1 and isinstance(drives[0], Crank)
     if cranks != isinstance(limb, Sweep) and not isinstance(limb, Held):
         raise OutsideLimits(
-            f"gait {gait.name!r} wants girdle {girdle.name} of robot {robot.name!r} to follow a "
-            f"{type(limb).__name__}, but its limbs {'are' if cranks else 'are not'} cranks: choose a gait for it."
+            f"gait {gait.name!r} {_MOVES[type(limb)]}; limbs L{girdle.name} and R{girdle.name} of robot {robot.name!r} "
+            f"{'are' if cranks else 'are not'} cranks: choose a gait made for it, or leave the gait out for the "
+            "robot's own."
         )
     driven = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
     if isinstance(limb, Held) and len(limb.angles) > driven:
