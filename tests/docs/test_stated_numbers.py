@@ -4,7 +4,6 @@ import copy
 import math
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import islice
 from typing import Any
 
@@ -99,21 +98,11 @@ def test_a_new_run_measures_what_is_kept(name):
     assert found == pytest.approx(kept(name), rel=0.02, abs=0.01, nan_ok=True)
 
 
-@pytest.mark.validate
-def test_the_midline_that_the_joints_take_swims_again_as_it_is_kept():
-    found = replace(EXPERIMENTS["swimming"], taken=True).run()
-    numbers = {key: measure.value for key, measure in sorted(found.measures.items())}
-    if os.environ.get("SUCHUS_GOLDEN") == "write":
-        keep("swimming_taken", numbers)
-    assert numbers == pytest.approx(kept("swimming_taken"), rel=0.02, abs=0.01, nan_ok=True)
-
-
-@pytest.mark.parametrize(
-    ("name", "source"), [("speed_free", "swimming"), ("speed_tail_only_as_taken", "swimming_taken")]
-)
-def test_swims_with_the_midline_that_the_joints_take_are_kept_by_themselves(name, source):
-    outcome = {"experiment": "swimming", "measures": {name: {"value": 0.1}}}
-    assert measured(outcome) == (source, {name: 0.1})
+def test_a_measure_that_is_no_number_is_kept_as_none():
+    outcome = {"experiment": "swimming", "measures": {"speed_free": {"value": 0.1}, "slip": {"value": None}}}
+    name, found = measured(outcome)
+    assert (name, found["speed_free"]) == ("swimming", 0.1)
+    assert math.isnan(found["slip"])
 
 
 @pytest.mark.validate

@@ -86,6 +86,15 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
     if numeric and rule.kind != "animals":
         yield f"{rule.claim}: rounding doubled", rule, 2.0
         yield f"{rule.claim}: rounding removed", rule, 0.0
+    for rung in rule.rungs:
+        rest = tuple(other for other in rule.rungs if other != rung)
+        if rung.carries:
+            yield f"{rule.claim}: without {rung.model}", replace(rule, rungs=rest), 1.0
+        else:
+            heard = tuple(replace(other, carries=True) if other == rung else other for other in rule.rungs)
+            yield f"{rule.claim}: {rung.model} heard", replace(rule, rungs=heard), 1.0
+    for factor in (1.0 - _OFF, 1.0 + _OFF) if rule.rungs else ():
+        yield f"{rule.claim}: settled x {factor}", replace(rule, settled=factor * rule.settled), 1.0
     decisive = {rule.measure} if numeric else set()
     decisive |= {clause.measure for clause in rule.holds} | {str(clause.bound) for clause in rule.holds}
     for name in decisive & set(rule.spread):

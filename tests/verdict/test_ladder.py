@@ -48,9 +48,7 @@ def test_the_word_is_the_one_on_which_the_rungs_agree(theory, plane, word):
     assert judge(RULE, said(theory=theory, slice=plane)).verdict == word
 
 
-@pytest.mark.parametrize(
-    ("apart", "word"), [(0.099, "models disagree"), (0.101, "contradicted"), (nan, "contradicted")]
-)
+@pytest.mark.parametrize(("apart", "word"), [(0.099, "models disagree"), (0.101, "undecided"), (nan, "contradicted")])
 def test_a_rung_that_is_not_settled_has_no_word(apart, word):
     measures = said(theory=-0.1, slice=0.2) | {"gain_slice_apart": apart}
     verdict = judge(RULE, measures)
@@ -58,6 +56,19 @@ def test_a_rung_that_is_not_settled_has_no_word(apart, word):
     silent = verdict.voices[1].why
     assert ("Not settled" in silent) == (apart == 0.101)
     assert verdict.voices[1].value == 0.2  # the table shows it nevertheless
+
+
+@pytest.mark.parametrize(
+    ("unsettled", "word"), [(0.2, "undecided"), (-0.2, "contradicted"), ((-0.2, 0.2), "contradicted")]
+)
+def test_one_rung_alone_does_not_decide_against_another_that_is_not_settled(unsettled, word):
+    measures = said(theory=-0.1, slice=unsettled) | {"gain_slice_apart": 0.5}
+    verdict = judge(RULE, measures)
+    assert verdict.verdict == word
+    assert ("one model alone" in verdict.why) == (word == "undecided")
+    second = Rung(name="space", model="space", why="It has no symmetry.")
+    two = judge(replace(RULE, rungs=(*RUNGS, second)), measures | said(space=-0.3))
+    assert two.verdict == "contradicted"  # who is not settled has no word against two who agree
 
 
 def test_a_rung_that_cannot_carry_the_claim_has_no_word_whatever_it_measured():

@@ -45,30 +45,13 @@ def check_swim(robot, motion):
     check_speeds(robot, motion)
 
 
-def test_a_mirrored_stroke_is_what_the_article_says():
+def test_the_quarters_of_every_cycle_are_read_the_last_one_last():
     held = _held(lambda p: 3 - np.cos(2 * p), lambda p: 4 * np.sin(p), lambda p: 100 * np.sin(p) + 10)
     first, last = Quarters.each(held)
     assert last.difference == pytest.approx([110, 10, -90, 10])
-    assert last.fall == pytest.approx(20.0)
-    assert first.fall == pytest.approx(40.0)
+    assert first.difference == pytest.approx([220, 20, -180, 20])
     assert last.moves == pytest.approx(0.3)
-    assert last.angle == pytest.approx(np.pi / 4)
-    assert last.asymmetry == pytest.approx(0.0, abs=1e-12)
     assert convex_higher(held) == pytest.approx(0.5, abs=0.04)
-
-
-def test_a_lopsided_stroke_is_not():
-    held = _held(np.sin, lambda p: 5 * np.sin(p), lambda p: -90 * np.sin(p) - 10)
-    said = Quarters.each(held)[-1]
-    assert said.difference[0] < 0.0
-    assert said.fall == pytest.approx(20.0)  # sizes of 100 and 80, whatever their sign
-    assert said.asymmetry == pytest.approx(0.4)
-
-
-def test_a_force_backward_is_more_than_a_right_angle_from_ahead():
-    back = Quarters.each(_held(lambda p: -np.ones_like(p), np.ones_like, np.ones_like))[-1]
-    assert back.angle == pytest.approx(0.75 * np.pi)
-    assert back.fall == 0.0
 
 
 def test_a_sway_is_what_comes_once_a_cycle_and_its_noise_the_rest():
@@ -77,9 +60,7 @@ def test_a_sway_is_what_comes_once_a_cycle_and_its_noise_the_rest():
     sway = Sway.of(0.02 * once + 0.005 * twice + 0.1 * t, 4)
     assert sway.amplitude == pytest.approx(0.02)
     assert sway.noise == pytest.approx(2 * 0.005 / np.sqrt(2), rel=1e-3)
-    assert (sway.low, sway.high) == pytest.approx((0.02, 0.02), rel=1e-3)
     growing = Sway.of(0.01 * (1 + (t >= 2.0)) * once, 4)
-    assert (growing.low, growing.high) == pytest.approx((0.01, 0.02), rel=0.02)
     assert growing.noise > 0.005
     straight = Sway.of(0.3 * t, 4)
     assert straight.amplitude == pytest.approx(0.0, abs=1e-12)

@@ -15,7 +15,7 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cache
-from math import floor, log10
+from math import floor, log10, nan
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -29,7 +29,7 @@ from pages import passages
 from suchus import experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import AUTHORS, CLAIMS, TITLE
-from suchus.verdict import SHARES
+from suchus.verdict import SHARES, judge, ladder
 from suchus.verdict.judging import ROBUST
 
 ROOT = Path(__file__).parents[2]
@@ -51,6 +51,18 @@ def explained(experiment: str, measures: Mapping[str, float]) -> str:
     return EXPERIMENTS[experiment].explain(measures)
 
 
+def asked(experiment: str, measures: Mapping[str, float]) -> list[dict[str, Any]]:
+    """Return the claims that several models are asked: key, quantity, word, a row of each model."""
+    found = []
+    for rule in EXPERIMENTS[experiment].rules():
+        verdict = judge(rule, measures, {})
+        rows = ladder.rows(verdict.voices, rule.form)
+        named = [row | {"name": voice.rung.name} for row, voice in zip(rows, verdict.voices, strict=True)]
+        told = {"claim": rule.claim, "quantity": verdict.claim.quantity, "word": verdict.verdict, "rows": named}
+        found.append(told | {"contested": ladder.contested(verdict.voices)})
+    return found
+
+
 def numbers(measures: Mapping[str, float], start: str, end: str = "") -> list[float]:
     """Return the numbers that names of measures hold between start and end, ``0_03`` for 0.03, in order."""
     between = (name.removeprefix(start).removesuffix(end) for name in measures if name[: len(start)] == start)
@@ -67,7 +79,8 @@ def templates() -> Environment:
     """Return where the words of the passages come from."""
     environment = experiment.templates(WORDS)
     environment.filters["three_digits"] = three_digits
-    environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "numbers": numbers,
+    environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
+                            "numbers": numbers,
                             "greatest": greatest}  # fmt: skip
     return environment
 
@@ -147,9 +160,8 @@ def measured(outcome: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
         return f"optimise_{outcome['optimisation']}", outcome
     if outcome["experiment"] not in EXPERIMENTS:
         raise KeyError(outcome["experiment"])
-    found = {name: one["value"] for name, one in outcome["measures"].items()}
-    taken = outcome["experiment"] == "swimming" and any(name.endswith("_as_taken") for name in found)
-    return outcome["experiment"] + "_taken" * taken, found
+    values = {name: one["value"] for name, one in outcome["measures"].items()}
+    return outcome["experiment"], {name: nan if value is None else value for name, value in values.items()}
 
 
 def main(files: Sequence[str]) -> None:

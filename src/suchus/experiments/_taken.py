@@ -1,12 +1,16 @@
 """The midlines that a robot's joints take of a commanded swim in six degrees of freedom, for the swims by CFD."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
+
+import xarray as xr
 
 from suchus.control import Swimming
 from suchus.design import Robot, with_values
 from suchus.design.flotation import float_hull
 from suchus.land import Lake, Run, simulate
 from suchus.motion import LIMBS_UP, Gait, with_limbs
+from suchus.progress import Progress, silent
 from suchus.water import Outline, Undulation, taken, undulation, unevenness
 
 AS_TAKEN = " as taken"
@@ -27,6 +31,28 @@ class TakenMidline(NamedTuple):
     """Rms angle off what was commanded, over that [-]."""
 
 
+def bare(robot: Robot) -> Robot:
+    """Return a robot without a hull, of which the midline is."""
+    return with_values(robot, {"hull": None})
+
+
+def swum_in_sections(robot: Robot, motions: Sequence[Gait], cycles: int, progress: Progress = silent) -> xr.Dataset:
+    """Return the record of swims at the surface in six degrees of freedom, one run for each motion.
+
+    Args:
+        robot: who swims; without a hull it gets one with which it floats.
+        motions: that are commanded; the limbs are held up.
+        cycles: that are swum [-].
+        progress: told the share that is done.
+    """
+    floating = robot if robot.hull is not None else with_values(robot, {"hull": float_hull(robot)})
+    runs = [
+        Run(robot=floating, gait=with_limbs(robot, gait, LIMBS_UP), lake=Lake(level=2.0), control=Swimming())
+        for gait in motions
+    ]
+    return simulate(runs, duration=cycles / motions[0].frequency, progress=progress)
+
+
 def midlines(robot: Robot, motion: Gait, stations: int) -> list[TakenMidline]:
     """Return the midlines of trunk and tail, and of the tail alone, as the joints take them at the surface.
 
@@ -35,15 +61,9 @@ def midlines(robot: Robot, motion: Gait, stations: int) -> list[TakenMidline]:
         motion: that is commanded.
         stations: of the midline [-].
     """
-    bare = with_values(robot, {"hull": None})
-    floating = robot if robot.hull is not None else with_values(bare, {"hull": float_hull(bare)})
     meant = (motion, motion.straightened("trunk"))
-    runs = [
-        Run(robot=floating, gait=with_limbs(robot, gait, LIMBS_UP), lake=Lake(level=2.0), control=Swimming())
-        for gait in meant
-    ]
-    record = simulate(runs, duration=(_SETTLE + _AVERAGED) / motion.frequency)
-    outline, found = Outline(bare, stations), []
+    record = swum_in_sections(robot, meant, _SETTLE + _AVERAGED)
+    outline, found = Outline(bare(robot), stations), []
     for i, (name, one) in enumerate(zip(TAKEN, meant, strict=True)):
         bends = taken(outline, record.isel(run=i), frequency=motion.frequency, cycles=_AVERAGED, name=name)
         found.append(TakenMidline(name, bends, unevenness(bends, undulation(outline, one))))

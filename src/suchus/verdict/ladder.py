@@ -2,7 +2,8 @@
 
 A rung has a word if it can carry the claim, could be run, and is settled: the means over two halves of its cycles,
 started to either side, lie within a bound of each other. All of them and, where a study of grids was kept, those on its
-grids must then answer alike. Rungs that answer differently make the word ``models disagree``.
+grids must then answer alike. Rungs that answer differently make the word ``models disagree``. One rung alone does not
+decide against another that says otherwise in all of its spread, though it is not settled: that is ``undecided``.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,6 +34,8 @@ class Voice:
     """Greatest of them."""
     says: Says
     """Whether the statement holds there; ``undecided`` where it does in a part of its spread only."""
+    leans: bool | None
+    """What all of its spread says, settled or not; None where it says both, or nothing."""
     why: str
     """Why it can carry the claim, or why it has no word."""
 
@@ -57,24 +60,24 @@ def voices(rule: Rule, measures: Mapping[str, float], unable: Mapping[str, str] 
 
 def _voice(rule: Rule, rung: Rung, measures: Mapping[str, float], unable: str) -> Voice:
     value, low, high = (measures.get(f"{rule.measure}_{rung.name}{end}", nan) for end in ("", "_low", "_high"))
-    if not rung.carries:
-        says, why = "no word", rung.why
-    else:
-        says, why = ("no word", unable) if unable else _answer(rule, rung, measures)
-    return Voice(rung=rung, value=value, low=low, high=high, says=says, why=why)
+    silent = unable if rung.carries else rung.why
+    told: tuple[Says, bool | None, str] = ("no word", None, silent) if silent else _answer(rule, rung, measures)
+    return Voice(rung=rung, value=value, low=low, high=high, says=told[0], leans=told[1], why=told[2])
 
 
-def _answer(rule: Rule, rung: Rung, measures: Mapping[str, float]) -> tuple[Says, str]:
+def _answer(rule: Rule, rung: Rung, measures: Mapping[str, float]) -> tuple[Says, bool | None, str]:
     asked = [f"{name}_{rung.name}" for name in dict.fromkeys((rule.measure, *(one.measure for one in rule.holds)))]
     if not all(isfinite(measures[name + end]) for name in asked for end in ("", "_low", "_high", "_apart")):
-        return "no word", "It has not swum enough cycles, or not at all, to show that it is settled."
+        return "no word", None, "It has not swum enough cycles, or not at all, to show that it is settled."
     apart = max(measures[f"{name}_apart"] for name in asked)
+    clauses = tuple(_of(clause, rung) for clause in rule.holds)
+    held = replace(rule, holds=clauses, spread=tuple(asked)).held(measures)
     if apart > rule.settled:
-        return "no word", f"Not settled: halves and starting sides are {apart:.2g} apart; {rule.settled:g} is allowed."
-    held = replace(rule, holds=[_of(clause, rung) for clause in rule.holds], spread=asked).held(measures)
+        why = f"Not settled: halves and starting sides are {apart:.2g} apart; {rule.settled:g} is allowed."
+        return "no word", held, why
     if held is None:
-        return "undecided", "It holds in a part of its halves, starting sides and grids only."
-    return ("holds" if held else "does not hold"), rung.why
+        return "undecided", held, "It holds in a part of its halves, starting sides and grids only."
+    return ("holds" if held else "does not hold"), held, rung.why
 
 
 def _of(clause: Clause, rung: Rung) -> Clause:
@@ -92,9 +95,21 @@ def disagree(said: Sequence[Voice]) -> bool:
     return len(_answers(said)) > 1
 
 
+def contested(said: Sequence[Voice]) -> bool:
+    """Return whether one rung alone has an answer, and one that is not settled says otherwise in all of its spread.
+
+    No word rests on one model where another stands beside it.
+    """
+    heard = [voice for voice in said if voice.says in ("holds", "does not hold")]
+    others = {voice.leans for voice in said if voice.says == "no word"}
+    return len(heard) == 1 and (not heard[0].leans) in others
+
+
 def agreed(said: Sequence[Voice]) -> bool | None:
-    """Return on what the rungs agree that have an answer; None if none has one, or they disagree."""
+    """Return on what the rungs agree that have an answer; None if none has one, they disagree, or one is contested."""
     answers = _answers(said)
+    if contested(said):
+        return None
     return answers == {"holds"} if len(answers) == 1 else None
 
 
@@ -120,6 +135,8 @@ def sentence(said: Sequence[Voice], form: str) -> str:
         number = {voice.rung.name: f" ({voice.written(form)})" * (says != "no word") for voice in said}
         named = [voice.rung.model + number[voice.rung.name] for voice in said if voice.says == says]
         parts += [f"{words} {listed(named)}."] if named else []
+    if contested(said):
+        parts.append("That is one model alone, and one that is not settled says otherwise in all of its spread.")
     return " ".join(parts)
 
 

@@ -17,6 +17,8 @@ TURNS = 10.0
 LEVEL = 1000
 """Number that stands for ``VORTEX`` in ``vortices`` [-]; what is below a quarter of it is 0."""
 
+COURSE, TICKS = 33, 40
+"""Places along the midline whose way to the side is kept of a whole free swim, and instants in a cycle [-]."""
 SPINE = (("x", "m"), ("y", "m"), ("heading", "rad"), ("half_width", "m"))
 """Quantities of a midline that are stored, with units."""
 
@@ -79,6 +81,34 @@ def midline(sim: flow.Simulation) -> flow.MidlineState:
         x_rate=placed.x_rate,
         y_rate=placed.y_rate,
         heading_rate=placed.heading_rate,
+    )
+
+
+def sample_course(sim: flow.Simulation, samples: Samples) -> None:
+    """Add where the midline is to the side, at ``COURSE`` places along the body, after a step."""
+    spine, (position, _) = midline(sim), sim.frame
+    at = np.linspace(0.0, spine.y.size - 1.0, COURSE)
+    across = np.interp(at, np.arange(spine.y.size), spine.y) + position[1]
+    samples.add("course", sim.time, across=across.astype(np.float32))
+
+
+def course(sim: flow.Simulation, samples: Samples, period: float, cycles: int) -> xr.Dataset:
+    """Return the course of a free body from its start: midline and centre of mass to the side, at even instants.
+
+    Args:
+        sim: at its end.
+        samples: of the swim, those of ``sample_course`` among them.
+        period: of one cycle [s].
+        cycles: that were swum [-].
+    """
+    even, seen = period * np.arange(TICKS * cycles + 1) / TICKS, samples.series("course")
+    across = np.column_stack([np.interp(even, seen["time"], column) for column in seen["across"].T])
+    centre = np.interp(even, sim.record.time, sim.record.column("y"))
+    return xr.Dataset(
+        {
+            "course": (("tick", "place"), across, {"units": "m", "long_name": "midline to the right"}),
+            "course_centre": ("tick", centre, {"units": "m", "long_name": "centre of mass to the right"}),
+        }
     )
 
 

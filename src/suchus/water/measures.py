@@ -27,26 +27,9 @@ class Quarters(NamedTuple):
         return [cls(*(one[f"quarter_{name}"].values.tolist() for name in cls._fields)) for one in cycles]
 
     @property
-    def angle(self) -> float:
-        """Between the force at T/4 and the direction forward, 0 to pi [rad]."""
-        return float(np.arctan2(abs(self.aside[0]), self.thrust[0]))
-
-    @property
-    def fall(self) -> float:
-        """By how much the size of the difference is smaller at 3T/4 than at T/4, whatever its sign [Pa]."""
-        return abs(self.difference[0]) - abs(self.difference[2])
-
-    @property
     def moves(self) -> float:
         """How far the difference has moved towards the tip from T/4 to 3T/4, in tail lengths [-]."""
         return self.place[2] - self.place[0]
-
-    @property
-    def asymmetry(self) -> float:
-        """Greatest change of the mirrored force from T/4 to 3T/4, over the greatest part of the force at T/4 [-]."""
-        size = max(abs(self.thrust[0]), abs(self.aside[0]))
-        apart = max(abs(self.thrust[0] - self.thrust[2]), abs(self.aside[0] + self.aside[2]))
-        return apart / size if size > 0 else 0.0
 
 
 def convex_higher(held: xr.Dataset) -> float:
@@ -96,10 +79,6 @@ class Sway(NamedTuple):
     """Amplitude of the sine of one cycle [m]."""
     noise: float
     """Twice the standard deviation of what is left of the track about its mean line without that sine [m]."""
-    low: float
-    """Least amplitude of a single cycle [m]."""
-    high: float
-    """Greatest amplitude of a single cycle [m]."""
 
     @classmethod
     def of(cls, track: Float[np.ndarray, " sample"], cycles: int) -> "Sway":
@@ -110,11 +89,9 @@ class Sway(NamedTuple):
         """
         if (track.size - 1) % cycles:
             raise ValueError(f"{track.size} samples are no whole number for each of {cycles} cycles.")
-        each = (track.size - 1) // cycles
         amplitude, _, share = (float(values[0]) for values in swing(track[:, None], cycles))
         left = np.sqrt(max(np.var(level(track)[:-1]) * (1.0 - share), 0.0))
-        single = [swing(track[i * each : (i + 1) * each + 1, None], 1).amplitude[0] for i in range(cycles)]
-        return cls(amplitude, 2.0 * float(left), float(min(single)), float(max(single)))
+        return cls(amplitude, 2.0 * float(left))
 
 
 def wave_form(

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.design import GRAVITY
-from suchus.water.field_samples import FieldWindow, midline, midline_values
+from suchus.water.field_samples import FieldWindow, course, midline, midline_values, sample_course
 from suchus.water.measures import swing
 from suchus.water.outline import Outline
 from suchus.water.samples import Samples
@@ -23,8 +23,6 @@ QUARTERS = (0.25, 0.5, 0.75, 1.0)
 """Instants of the measured cycle at which the article shows the pressure [cycle]."""
 PLACES = 33
 """Places along the tail at which the pressures of its two sides are kept [-]."""
-TRACK = 40
-"""Samples of the track in a cycle [-]."""
 
 
 class TetheredSlice:
@@ -139,6 +137,7 @@ class FreeSlice:
 
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
         """Sample what is due after a step."""
+        sample_course(sim, samples)
         left = (self._end - sim.time) / self._period
         if left > 2.0 + SLACK:
             return
@@ -162,9 +161,6 @@ class FreeSlice:
             np.column_stack([np.interp(even, track["time"], column) for column in track[name].T])
             for name in ("snout", "across")
         )
-        swung, tip = swing(across), across[:, -1:]
-        moment = self._period * np.arange(TRACK * self._swim.setting.cycles + 1) / TRACK
-        centre = [np.interp(moment, sim.record.time, sim.record.column(name)) for name in ("x", "y")]
         data = xr.Dataset(
             {
                 "speed": ("cycle", -speed, {"units": "m/s"}),
@@ -173,32 +169,19 @@ class FreeSlice:
                 "snout_y": ("sample", across[:, 0], {"units": "m"}),
                 "heading": ("sample", snout[:, 1], {"units": "rad"}),
                 "tail_y": ("sample", across[:, -1], {"units": "m"}),
-                "swing": ("station", swung.amplitude, {"units": "m"}),
-                "swing_late": (
-                    "station",
-                    swung.phase_lag,
-                    {"units": "1", "long_name": "its phase lag [cycle]"},
-                ),
-                "sine_share": ("station", swung.share, {"units": "1"}),
-                "tip_share": ("single", [_share(tip[:-PHASES]), _share(tip[PHASES:])], {"units": "1"}),
-                "centre_x": ("moment", centre[0], {"units": "m", "long_name": "centre of mass, to the tail"}),
-                "centre_y": ("moment", centre[1], {"units": "m", "long_name": "centre of mass, to the right"}),
+                "swing": ("station", swing(across).amplitude, {"units": "m"}),
                 "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
                 "thin": ((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
             }
         )
+        data = data.merge(course(sim, samples, period, self._swim.setting.cycles))
         if self._frames == 0:
             return data
         frames = samples.series("frames")
         shown = self._view.dataset(frames, "frame")
         phase = (frames["time"] - self._end) / period + 1.0
         return data.merge(shown.assign_coords(frame=("frame", phase, {"units": "1"})))
-
-
-def _share(track: np.ndarray) -> float:
-    """Return which share of a track's swing over one cycle is a sine, shape of the track (sample, 1) [-]."""
-    return float(swing(track, 1).share[0])
 
 
 def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:

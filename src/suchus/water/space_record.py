@@ -1,11 +1,14 @@
 """What is sampled and recorded of the robot's own body in space: free, or its motion given."""
 
+from itertools import pairwise
+
 import numpy as np
 import xarray as xr
 
 from suchus import flow
 from suchus.design import GRAVITY
-from suchus.water.field_samples import VortexSampler, midline, wake
+from suchus.water.field_samples import VortexSampler, course, midline, sample_course, wake
+from suchus.water.plane_record import QUARTERS, bend
 from suchus.water.samples import Samples
 from suchus.water.setting import DENSITY
 from suchus.water.slender import cycle
@@ -25,6 +28,7 @@ class FreeInSpace:
     def sample(self, sim: flow.Simulation, samples: Samples) -> None:
         """Sample what is due after a step."""
         self._film.sample(sim, samples)
+        sample_course(sim, samples)
         if self._end - sim.time > self._period * (1.0 + SLACK):
             return
         spine, (position, _) = midline(sim), sim.frame
@@ -60,7 +64,7 @@ class FreeInSpace:
             joint_place=("joint", outline.places, {"units": "m"}),
         )
         data = data.assign_coords(servo=servos, cycle=np.arange(1, cycles + 1)).merge(wake(sim))
-        return data.merge(self._film.record(samples))
+        return data.merge(self._film.record(samples)).merge(course(sim, samples, period, cycles))
 
 
 class TetheredInSpace:
@@ -93,4 +97,51 @@ class TetheredInSpace:
             "sway": ("part", [sway.real, -sway.imag], {"units": "m"}),
             "turn": ("part", [turn.real, -turn.imag], {"units": "rad"}),
         }
-        return xr.Dataset(data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)})
+        found = xr.Dataset(data, coords={"part": ["cosine", "sine"], "phase": phase, "cycle": np.arange(1, cycles + 1)})
+        return found.merge(self._turns(sim))
+
+    def _turns(self, sim: flow.Simulation) -> xr.Dataset:
+        """Return what was at the four quarters of every cycle but the first, as of a slice; see ``_push``."""
+        swim, series = self._swim, sim.record
+        settled = min(1, swim.setting.cycles - 1)
+        count = swim.setting.cycles - settled
+        turns = swim.period * (settled + (np.arange(4 * count) + 1.0) / 4.0)
+        when, force = series.time - 0.5 * series.step, series.force()
+        at = {
+            "thrust": (np.interp(turns, when, -force[:, 0]), "N"),
+            "aside": (np.interp(turns, when, force[:, 1]), "N"),
+        }
+        if swim.outline.places.size:  # else it is not divided
+            parts = np.stack([series.along("force_x"), series.along("force_y")])
+            there = np.array([[np.interp(turns, when, part) for part in axis.T] for axis in parts])
+            pushed = [self._push(sim, float(time), there[:, :, i]) for i, time in enumerate(turns)]
+            at["difference"] = np.array(pushed), "Pa"
+        data = {
+            f"quarter_{name}": (("settled", "instant"), values.reshape(count, 4), {"units": unit})
+            for name, (values, unit) in at.items()
+        }
+        coords = {"instant": list(QUARTERS), "settled": np.arange(settled, swim.setting.cycles) + 1}
+        return xr.Dataset(data, coords=coords)
+
+    def _push(self, sim: flow.Simulation, time: float, force: np.ndarray) -> float:
+        """Return the push on the tail from its convex side less that from its concave one, over the tail's side [Pa].
+
+        It stands for the difference of the pressures, which no grid here resolves along a round tail's skin.
+
+        Args:
+            sim: at its end.
+            time: at which [s].
+            force: on each part, shape (axis, part) [N].
+        """
+        outline = self._swim.outline
+        spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[union-attr]
+        across = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
+        edges = np.array([0.0, *np.sort(outline.places), outline.robot.length])
+        push = 0.0
+        for part, (front, rear) in enumerate(pairwise(edges)):
+            if 0.5 * (front + rear) > outline.tail_root:
+                there = (outline.s >= front) & (outline.s <= rear)
+                push += float(force[:, part] @ across[:, there].mean(axis=1))
+        tail = outline.s >= outline.tail_root
+        side = float(np.trapezoid(2.0 * outline.silhouette.half_height[tail], outline.s[tail]))
+        return push / side * float(np.sign(bend(outline, spine)))

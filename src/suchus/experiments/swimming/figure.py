@@ -1,9 +1,14 @@
 """Swimming: the fields around the tethered body, forces over a cycle, the free swim, and its films."""
 
+from collections.abc import Sequence
+from math import isfinite
+from textwrap import fill as fill_text
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from suchus.figures.fields import (
@@ -19,6 +24,9 @@ from suchus.figures.fields import (
 from suchus.figures.film import film
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.flow import ALONG_THE_SKIN
+from suchus.paper import CLAIMS
+from suchus.verdict import Reading, Rule
+from suchus.verdict.ladder import Voice
 
 _QUARTERS = ("T/4", "T/2", "3T/4", "T")
 _FILM_DPI = 68
@@ -26,6 +34,46 @@ _FILM_SECONDS = 2.4
 
 _MOST_SERVOS = 6
 """Servos whose loads are drawn at most [-]."""
+
+
+def draw_ladder(said: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
+    """Draw what each model says of each claim: green where the statement holds, red where not, grey without a word.
+
+    Args:
+        said: rules with what their rungs say.
+    """
+    models = [voice.rung.model for voice in said[0][1]]
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=10.5, height=6.6)
+        ax = axes[0, 0]
+        for row, (rule, voices) in enumerate(said):
+            for column, voice in enumerate(voices):
+                fill, mark = _SAID[voice.says]
+                ax.add_patch(Rectangle((column - 0.48, row - 0.46), 0.96, 0.92, facecolor=fill, edgecolor="none"))
+                number = format(Reading(voice.value), rule.form) if isfinite(voice.value) else "–"
+                ends = f"{format(Reading(voice.low), rule.form)} to {format(Reading(voice.high), rule.form)}"
+                ax.text(column, row - 0.16, f"{mark} {number}".strip(), ha="center", va="center", fontsize=11)
+                if isfinite(voice.value) and voice.low != voice.high:
+                    ax.text(column, row + 0.24, ends, ha="center", va="center", fontsize=8)
+        ax.set_xlim(-0.5, len(models) - 0.5)
+        ax.set_ylim(len(said) - 0.5, -0.5)
+        ax.set_xticks(range(len(models)), [fill_text(model, 16) for model in models], fontsize=10)
+        ax.xaxis.tick_top()
+        labels = [fill_text(CLAIMS[rule.claim].quantity, 24) for rule, _ in said]
+        ax.set_yticks(range(len(said)), labels, fontsize=10)
+        ax.tick_params(length=0)
+        for side in ax.spines.values():
+            side.set_visible(False)
+    return captioned(
+        figure,
+        "What six models of the water say of each claim. \N{CHECK MARK} on green: the statement holds; "
+        "\N{MULTIPLICATION SIGN} on red: it does not; ? on yellow: in a part of the spread; grey: the model cannot "
+        "carry the claim, did not settle or could not run. Below each number its spread over halves, sides and grids.",
+    )
+
+
+_SAID = {"holds": ("#cfe8d5", "\N{CHECK MARK}"), "does not hold": ("#f3d0c9", "\N{MULTIPLICATION SIGN}"),
+         "undecided": ("#f6e8b8", "?"), "no word": ("#ececec", "")}  # fmt: skip
 
 
 def draw_quarters(record: xr.Dataset) -> Figure:
@@ -171,8 +219,6 @@ def draw_free(record: xr.Dataset) -> Figure:
             ax.plot(
                 record.cycle, record.arm_speed.sel(arm=arm), color=colour, marker=marker, linestyle=dashes, label=label
             )
-        cycles = range(1, record.sizes["free_cycle"] + 1)
-        ax.plot(cycles, record.free_speed, color="#333333", linewidth=2.4, label="trunk and tail, finer grid")
         for model, dots in zip(record.model.values, ((0, (1, 1.5)), (0, (3, 1, 1, 1))), strict=True):
             speed = float(record.model_speed.sel(model=model))
             ax.axhline(speed, color=COLOURS["neutral"], linestyle=dots, label=f"{model} model, round body")

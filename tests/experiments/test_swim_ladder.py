@@ -1,0 +1,203 @@
+"""The ladder of models: when a rung is settled, what its numbers are, and that a mirrored swim has the same."""
+
+import json
+from dataclasses import replace
+from math import isnan
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments import EXPERIMENTS
+from suchus.experiments.swimming import ladder
+from suchus.experiments.swimming.ladder import FEWEST, MOTIONS, Settled, climbed, kept_grids, measures, motions, settle
+from suchus.experiments.swimming.rules import LADDER, RULES, SETTLED
+from suchus.robots import ROBOTS
+from suchus.verdict import judge
+from suchus.water.field_samples import COURSE, TICKS
+
+CYCLES = 10
+PHASE = np.arange(TICKS * CYCLES + 1) / TICKS
+SWIMMING = EXPERIMENTS["swimming"]
+
+
+def quarters(drift=0.0):
+    """Return what is read at the quarters of every cycle, thrust, aside and difference, which drift apart or not."""
+    cycle = np.arange(CYCLES)[:, None] * drift
+    return {
+        "ladder_thrust": np.array([3.0, -1.0, 3.0, -1.0]) + cycle * (1, 0, -1, 0),
+        "ladder_aside": np.array([4.0, 1.0, -4.0, -1.0]) + cycle * (1, 0, 1, 0),
+        "ladder_difference": np.array([100.0, -200.0, 100.0, -200.0]) + 40.0 * cycle * (1, 0, -1, 0),
+    }
+
+
+def rung(*, speeds=(0.2, 0.25, 0.03), sway=0.02, drift=0.0, side=1.0, grids=None):
+    """Return the record of one rung of a body 1 m long; with ``side`` -1 that of its mirror image."""
+    s = np.linspace(0.0, 1.0, COURSE)
+    course = (0.02 * s + 0.08 * s**2) * np.cos(2 * np.pi * (PHASE[:, None] - 1.1 * s))
+    given = {name: np.array(one) for name, one in quarters(drift).items()}
+    if side < 0.0:  # what it did at T/4 the other does at 3T/4, to the other side
+        given = {name: np.roll(one, 2, axis=1) for name, one in given.items()}
+        given["ladder_aside"] = -given["ladder_aside"]
+    data = {
+        "ladder_speed": np.tile(np.array(speeds)[:, None], CYCLES) * (1.0 + 0.001 * np.arange(CYCLES)),
+        "ladder_centre": side * (sway * np.sin(2 * np.pi * PHASE) + 0.05 * PHASE),
+        "ladder_course": side * course,
+        **given,
+    }
+    record = xr.Dataset({name: (("rung", *ladder._SHAPES[name][0]), one[None]) for name, one in data.items()})
+    record["taken_away"] = "ladder_motion", [0.5, 0.7, 0.1]
+    record.attrs |= {"unable": "{}", "grids": json.dumps(grids or {})}
+    return record.assign_coords(rung=["space"], ladder_motion=list(MOTIONS))
+
+
+def numbers(record):
+    return {name: one.value for name, one in measures(record, 1.0)}
+
+
+def test_a_rung_is_settled_over_the_most_cycles_whose_halves_agree():
+    values = np.array([9.0, 9.0, 9.0, *[1.0] * 7])
+
+    def half(first, last):
+        return [float(values[first:last].mean())]
+
+    assert settle(half, 10) == Settled(1.0, 1.0, 1.0, 0.0)  # the last six; the last eight hold a 9
+    values[-1] = 1.0 + 3.5 * SETTLED
+    assert settle(half, 10).apart > SETTLED
+    assert settle(half, 10, scale=2.0).apart < SETTLED  # of what is twice as large
+    assert isnan(settle(half, FEWEST).apart)  # the first cycle does not count
+
+
+def test_both_starting_sides_count():
+    found = settle(lambda a, b: [1.0, 1.0 + 1.1 * SETTLED], CYCLES)
+    assert (found.low, found.high) == (1.0, 1.0 + 1.1 * SETTLED)
+    assert found.apart > SETTLED
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.03])
+def test_a_mirrored_swim_has_the_same_table_to_the_last_bit(drift):
+    ours, mirrored = numbers(rung(drift=drift)), numbers(rung(drift=drift, side=-1.0))
+    assert ours == mirrored
+    assert not any(map(isnan, ours.values()))
+
+
+def test_what_tail_and_spine_give_is_what_is_missing_without_them():
+    found = numbers(rung())
+    assert found["gain_tail_share_space"] == pytest.approx(1.0 - 0.03 / 0.2)
+    assert found["gain_spine_share_space"] == pytest.approx(-0.25)
+    backward = numbers(rung(speeds=(-0.2, -0.1, 0.0)))  # the spine makes it swim backward faster
+    assert backward["gain_spine_share_space"] == pytest.approx(-0.5)
+    assert isnan(numbers(rung(speeds=(0.0, 0.1, 0.1)))["gain_spine_share_space"])
+
+
+def test_a_track_and_a_wave_are_read_from_the_course():
+    found = numbers(rung())
+    assert found["track_sway_space"] == pytest.approx(0.02, rel=1e-3)
+    assert found["track_noise_space"] < 1e-6
+    assert found["wave_waves_per_body_space"] == pytest.approx(1.1, rel=1e-3)
+    assert found["wave_share_space"] == pytest.approx(1.0, abs=1e-3)
+    assert found["wave_envelope_tip_space"] == pytest.approx(0.1, rel=1e-3)
+    assert found["wave_envelope_middle_space"] == pytest.approx(0.03, rel=1e-2)
+    assert found["tail_sine_share_space"] == pytest.approx(1.0)
+
+
+def test_pressures_and_forces_are_read_at_the_quarters():
+    found = numbers(rung())
+    assert found["pressure_convex_share_space"] == pytest.approx(100.0 / 150.0)
+    assert found["pressure_fall_share_space"] == 0.0
+    assert found["force_angle_1_quarter_space"] == pytest.approx(np.arctan2(4.0, 3.0))
+    assert found["thrust_asymmetry_space"] == 0.0
+    assert found["thrust_3_quarter_share_space"] == pytest.approx(3.0 / (0.5 * (5.0 + 2.0**0.5)))
+
+
+def test_a_start_that_is_not_forgotten_is_no_fall_and_not_settled():
+    found = numbers(rung(drift=0.5))
+    assert found["pressure_fall_share_space"] == pytest.approx(0.0, abs=1e-12)
+    assert found["pressure_fall_share_space_high"] > 0.1
+    assert found["pressure_fall_share_space_apart"] > SETTLED
+
+
+def test_the_grids_of_a_kept_study_widen_three_dimensions():
+    study = {"cells": [68, 80], "measures": {"gain_tail_share": [0.4, 0.86]}}
+    found = numbers(rung(grids=study))
+    assert (found["gain_tail_share_space_low"], found["gain_tail_share_space_high"]) == (0.4, 0.86)
+    assert found["space_grids"] == 2.0
+    assert numbers(rung())["space_grids"] == 1.0
+
+
+def test_the_study_of_grids_that_ships_is_of_todays_rules_body_and_water():
+    study = kept_grids(SWIMMING.climb())
+    assert study["cells"] == [68, 80, 96]
+    assert {rule.measure for rule in RULES} <= set(study["measures"])
+    assert kept_grids(replace(SWIMMING, reynolds=6000.0).climb()) == {}
+    assert kept_grids(replace(SWIMMING, space_cells=80).climb()) == study
+
+
+def test_a_study_older_than_the_rules_is_refused_with_what_renews_it(monkeypatch):
+    monkeypatch.setattr(ladder, "RULES", (replace(RULES[0], settled=0.2), *RULES[1:]))
+    with pytest.raises(IncompatibleRecord, match=r"older than the rules.*python tools/ladder_grids.py FOLDER"):
+        kept_grids(SWIMMING.climb())
+
+
+@pytest.fixture
+def no_flow(monkeypatch):
+    """Let no flow be computed: every rung that needs one says so."""
+
+    def refused(*given, **named):
+        raise InvalidDesign("the grid is too coarse.")
+
+    monkeypatch.setattr(ladder, "resolved_swim", refused)
+
+
+def slices(cycles):
+    """Return free swims and a held one as a slice gives them."""
+    ticks, quarter = TICKS * cycles + 1, ("settled", "instant")
+    free = xr.Dataset(
+        {
+            "speed": ("cycle", np.full(cycles, 0.2)),
+            "course_centre": ("tick", np.zeros(ticks)),
+            "course": (("tick", "place"), np.zeros((ticks, COURSE))),
+        }
+    )
+    held = xr.Dataset({f"quarter_{name}": (quarter, np.ones((cycles - 1, 4))) for name in ladder._QUARTERS})
+    return dict.fromkeys(MOTIONS, free) | {"held": held}
+
+
+def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
+    record = climbed(replace(SWIMMING.quick(), cycles=4).climb(), slices(4), lambda stage, share: None)
+    unable = json.loads(record.attrs["unable"])
+    assert set(unable) == {"slice_taken", "space"}
+    assert unable["space"] == "Not run: the grid is too coarse."
+    found = numbers(record)
+    assert set(record.rung.values) == set(LADDER)
+    assert isnan(found["gain_tail_share_space"])
+    # by drag alone the tail alone stands still
+    assert found["gain_spine_share_resistive"] == pytest.approx(1.0, abs=0.01)
+    assert found["gain_spine_share_reactive"] == pytest.approx(-0.36, abs=0.02)
+    assert found["speed_tail_only_sections"] != 0.0
+    assert 0.0 < found["wave_envelope_tip_sections"] < 0.3
+    verdict = judge(RULES[-1], found, unable=unable)
+    assert [voice.why for voice in verdict.voices if voice.rung.name == "space"] == [unable["space"]]
+
+
+def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monkeypatch):
+    def sinks(*given):
+        raise InvalidDesign("nothing lets it float.")
+
+    monkeypatch.setattr(ladder, "swum_in_sections", sinks)
+    climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).climb()
+    record = climbed(climb, slices(2), lambda stage, share: None)
+    unable = json.loads(record.attrs["unable"])
+    assert set(unable) == {"sections", "slice_taken", "space"}
+    assert unable["slice_taken"] == unable["sections"]
+    assert np.isfinite(numbers(record)["gain_tail_share_reactive"])
+    text = ladder.table(numbers(record), unable)
+    assert "Not run: nothing lets it float." in text
+    assert all(rule.claim in text for rule in RULES)
+
+
+def test_every_rung_is_asked_the_same_motions():
+    gait = SWIMMING.climb().fitted.gait
+    whole, tail, trunk = motions(gait).values()
+    assert (whole, tail, trunk) == (gait, gait.straightened("trunk"), gait.straightened("tail"))
