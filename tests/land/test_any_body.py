@@ -100,7 +100,7 @@ def test_a_gait_for_other_limbs_is_refused():
         crawl(ROBOTS["salamander"], GAITS["high_walk"], duration=0.5)
     with pytest.raises(OutsideLimits, match=r"has phases for 6 limbs; robot 'salamander' has 4"):
         crawl(ROBOTS["salamander"], GAITS["tripod"], duration=0.5)
-    with pytest.raises(OutsideLimits, match=r"limbs are cranks: choose a gait for it"):
+    with pytest.raises(OutsideLimits, match=r"limbs LF and RF of robot .salamandra. are cranks: choose a gait"):
         crawl(ROBOTS["salamandra"], GAITS["salamander_walk"], duration=0.5)
     with pytest.raises(
         UnsuitedRobot, match=r"the feedback rule .* needs .*; robot 'strider' with gait 'tripod' lacks that"
