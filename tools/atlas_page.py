@@ -4,13 +4,16 @@ Usage: python tools/atlas_page.py OUT [DOCS]: reads OUT/flows/*.json, which `suc
 writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png.
 """
 
+import shutil
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from lighter import lighten
 from suchus.atlas import CASES, load_outcome
 from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.figures.atlas import write_atlas
+from suchus.writing import MANIFEST
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -27,10 +30,12 @@ def main(out: Path, docs: Path = DOCS) -> Path:
     trials = [name for name, outcome in found.items() if outcome.quick]
     if trials:
         raise IncompatibleRecord(f"{', '.join(trials)} in {out} are quick trials; run suchus flow-atlas in full first.")
-    page = write_atlas(found, docs)
-    for picture in sorted((docs / "pictures").glob("atlas_*.png")):
-        lighten(picture)
-    return page
+    with TemporaryDirectory() as made:
+        page = write_atlas(found, Path(made))
+        for picture in sorted((Path(made) / "pictures").glob("atlas_*.png")):
+            lighten(picture)
+        shutil.copytree(made, docs, dirs_exist_ok=True, ignore=shutil.ignore_patterns(MANIFEST))
+    return docs / page.name
 
 
 if __name__ == "__main__":

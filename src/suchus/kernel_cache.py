@@ -3,17 +3,28 @@
 numba alone keeps it beside the sources, or in a folder of its own in the user's cache where those cannot be written,
 and asks of a kernel that it loads only whether the kernel's own file has changed. An upgraded package, or an edit of a
 kernel that others call, would leave them as they were. So there is a folder for each state of the sources.
+
+What numba keeps are pickles of machine code, and a flipped bit in them is any error, or the end of the process. So each
+file begins with a digest of the rest and of its name: nothing is unpickled that was damaged or is another's, and it is
+compiled anew. What cannot be kept is compiled each time, and one sentence says so.
 """
 
 import hashlib
 import os
+import pickle
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
+
+from numba.core import config
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+from suchus.writing import new_file
 
 KEPT = 4
 """States of the sources whose code is kept [-]."""
@@ -55,19 +66,77 @@ def digest(files: Iterable[Path]) -> str:
     return text.hexdigest()[:12]
 
 
-@contextmanager
-def kept_in(config: Any, place: Path) -> Iterator[None]:
-    """Let numba keep the kernels that are made meanwhile in a folder.
+def keep(kernel: Any, place: Path) -> None:
+    """Let the machine code of a kernel be kept in a folder; see ``numba.core.dispatcher.Dispatcher.enable_caching``.
 
     Args:
-        config: ``numba.config``, which is read when a kernel is made, for it alone.
+        kernel: that ``numba.njit`` made, without ``cache``.
         place: the folder.
     """
-    asked, config.CACHE_DIR = config.CACHE_DIR, str(place)
+    asked, config.CACHE_DIR = config.CACHE_DIR, str(place)  # which is read when a cache is made, for it alone
     try:
-        yield
+        kernel._cache = _SealedCache(kernel.py_func)
     finally:
         config.CACHE_DIR = asked
+
+
+class _SealedCache(FunctionCache):  # type: ignore[misc]
+    """numba's cache of a kernel, in files whose digests are right."""
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = SealedFiles(self._cache_path, self._impl.filename_base, stamp)
+
+
+_SEAL = b"suchus kernel 1\n"
+
+
+class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
+    """An index of a kernel's signatures and a file for each of them, as numba has them, each with its digest."""
+
+    def save(self, key: Any, data: Any) -> None:
+        """Keep the code of a signature where that can be."""
+        try:
+            super().save(key, data)
+        except OSError as error:
+            _say_unkept(str(error))
+
+    def _load_index(self) -> dict[Any, str]:
+        version, stamp, names = self._read(self._index_name) or ("", None, {})
+        return names if (version, stamp) == (self._version, self._source_stamp) else {}
+
+    def _save_index(self, overloads: dict[Any, str]) -> None:
+        self._write(self._index_name, (self._version, self._source_stamp, overloads))
+
+    def _load_data(self, name: str) -> Any:
+        return self._read(name)
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._write(name, data)
+
+    def _read(self, name: str) -> Any:
+        """Return what a file holds; None where there is none, or it is not as we wrote it."""
+        try:
+            data = Path(self._cache_path, name).read_bytes()
+        except OSError:
+            return None
+        content = data[len(_SEAL) + 32 :]
+        return pickle.loads(content) if data == _sealed(name, content) else None
+
+    def _write(self, name: str, value: Any) -> None:
+        with new_file(Path(self._cache_path, name)) as draft:
+            draft.write_bytes(_sealed(name, self._dump(value)))
+
+
+def _sealed(name: str, content: bytes) -> bytes:
+    """Return the content of a file of this name with its digest."""
+    return _SEAL + hashlib.sha256(name.encode() + b"\0" + content).digest() + content
+
+
+@cache
+def _say_unkept(why: str) -> None:
+    print(f"suchus: compiled code is not kept, and will be compiled again: {why}", file=sys.stderr, flush=True)
 
 
 def _first_writable(folders: Iterable[Path], prefix: str) -> Path | None:

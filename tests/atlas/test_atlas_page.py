@@ -100,7 +100,7 @@ def test_pictures_are_drawn_of_every_kind_of_row():
 def test_the_tool_writes_page_and_pictures_from_a_folder(tmp_path):
     save_outcome(outcome(ROW), tmp_path / "out")
     first = atlas_page.main(tmp_path / "out", tmp_path / "docs").read_text()
-    assert {path.name for path in (tmp_path / "docs" / "pictures").iterdir()} == {
+    assert {path.name for path in (tmp_path / "docs" / "pictures").glob("[!.]*")} == {
         "atlas_parity.png", "atlas_bodies_that_move_in_water_at_rest.png"
     }  # fmt: skip
     save_outcome(outcome(ROW, 1.3), tmp_path / "out")

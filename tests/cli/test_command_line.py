@@ -17,6 +17,7 @@ from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.record import load
 from suchus.robots import ROBOTS
+from suchus.writing import MANIFEST
 
 pytestmark = pytest.mark.usefixtures("fakes")
 FAKES = Path(__file__).parent / "fake_shelf"
@@ -85,14 +86,14 @@ def test_a_foreign_folder_is_never_replaced(capsys, tmp_path):
     (tmp_path / "wave").mkdir()
     (tmp_path / "wave" / "thesis.tex").write_text("years of work")
     assert main(["run", "wave", "--out", str(tmp_path)]) == 2
-    assert "was not written by suchus" in one_sentence(capsys)
+    assert "nothing says that suchus wrote it" in one_sentence(capsys)
     assert (tmp_path / "wave" / "thesis.tex").read_text() == "years of work"
 
 
 def test_a_run_writes_what_the_contract_promises(tmp_path):
     assert main(["run", "wave", "--amplitude", "0.5", "--out", str(tmp_path)]) == 0
     folder = tmp_path / "wave"
-    files = {"index.html", "outcome.json", "record.nc", "samples.txt", "wave.svg", "wave.png", "wave.data.csv"}
+    files = {"index.html", "outcome.json", "record.nc", "samples.txt", "wave.svg", "wave.png", "wave.data.csv", MANIFEST}
     assert {f.name for f in folder.iterdir()} == files
     told = json.loads((folder / "outcome.json").read_text())
     assert told["experiment"] == "wave"

@@ -27,7 +27,7 @@ BAD = {
     "--format": "missing value",
     "--robot kaiman": "Did you mean 'caiman'?",
     "--out /dev/null/here": "cannot be written",
-    "--out .": "was not written by suchus",
+    "--out .": "nothing says that suchus wrote it",
     "--formt urdf": "Did you mean '--format'?",
 }
 

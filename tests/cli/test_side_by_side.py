@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
+from suchus.writing import MANIFEST
 
 FAKES = Path(__file__).parent / "fake_shelf"
 
@@ -67,7 +68,9 @@ def crashing(broken, tmp_path):
 
 def files(folder: Path) -> dict[str, bytes | dict[str, object]]:
     """What a folder holds; of an outcome all but how it was asked for and how long it took."""
-    found: dict[str, bytes | dict[str, object]] = {path.name: path.read_bytes() for path in folder.iterdir()}
+    found: dict[str, bytes | dict[str, object]] = {
+        path.name: path.read_bytes() for path in folder.iterdir() if path.name != MANIFEST
+    }
     found["outcome.json"] = json.loads(found["outcome.json"])
     del found["outcome.json"]["provenance"]["seconds"], found["outcome.json"]["command"]
     return found
@@ -83,13 +86,14 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
     assert "crashing: failed: its process ended with exit code 7" in err
     page = (tmp_path / "out/report.html").read_text()
     assert page.index("it broke, as it should") < page.index("exit code 7")
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["report.html", "wave"]
+    assert sorted(path.name for path in (tmp_path / "out").glob("[!.]*")) == ["report.html", "wave"]
     assert main(["run", "wave", "--out", str(tmp_path / "alone")]) == 0
     assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
 
 
 @pytest.mark.slow("processes are stopped")
-def test_ctrl_c_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path, number):
     out, started = tmp_path / "out", tmp_path / "started"
     (tmp_path / "slow.py").write_text(SLOW)
     process = subprocess.Popen(
@@ -103,11 +107,26 @@ def test_ctrl_c_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tm
     while not started.exists():
         assert process.poll() is None
         time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does, to all of them
+    if number == signal.SIGINT:
+        os.killpg(process.pid, number)  # as a terminal does, to all of them
+    else:
+        os.kill(process.pid, number)
     told, complaint = process.communicate(timeout=30)
-    assert (process.returncode, told) == (130, "")
-    assert complaint.splitlines()[-1].startswith("suchus: stopped")
+    killed = number == signal.SIGKILL
+    assert (process.returncode, told) == (-number if killed else 128 + number, "")
     assert "Traceback" not in complaint
-    assert {path.name for path in out.iterdir()} <= {"wave"}
-    with pytest.raises(ProcessLookupError):
-        os.kill(int(started.read_text()), 0)
+    if not killed:
+        assert complaint.splitlines()[-1].startswith("suchus: stopped")
+        assert {path.name for path in out.iterdir()} <= {"wave"}
+    worker, end = int(started.read_text()), time.monotonic() + 30.0  # it is to sleep for a minute
+    while is_there(worker):
+        assert time.monotonic() < end, "a worker computes on"
+        time.sleep(0.05)
+
+
+def is_there(pid):
+    """Return whether a process lives; one that has ended waits for nobody in particular."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

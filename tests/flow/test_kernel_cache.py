@@ -1,8 +1,11 @@
 """Where compiled kernels are kept: with their sources, in a place that can be written."""
 
 import ast
+import importlib.util
+import random
 from pathlib import Path
 
+import numba
 import pytest
 
 from suchus import kernel_cache
@@ -97,3 +100,81 @@ def test_without_a_home_there_is_still_an_answer(monkeypatch):
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     monkeypatch.delenv("HOME", raising=False)
     assert kernel_cache.user_cache().name == "suchus"
+
+
+# --- damaged and foreign code ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def kernel(tmp_path):
+    """Return a function that makes a kernel anew, as another process does, and calls it."""
+    file = tmp_path / "a_kernel.py"
+    file.write_text("def f(x):\n    return 3 * x + 1\n\n\ndef g(x):\n    return 5 * x\n")
+
+    def call(name="f"):
+        spec = importlib.util.spec_from_file_location("a_kernel", file)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        made = numba.njit(getattr(module, name))
+        kernel_cache.keep(made, tmp_path / "kept")
+        return made(2), bool(made.stats.cache_hits)
+
+    return call
+
+
+def kept_files(tmp_path, end=""):
+    return sorted(path for path in (tmp_path / "kept").rglob("*") if path.is_file() and path.suffix.endswith(end))
+
+
+def test_code_is_kept_and_found(kernel, tmp_path):
+    assert kernel() == (7, False)
+    assert kernel() == (7, True)
+    assert {path.suffix for path in kept_files(tmp_path)} == {".nbi", ".nbc"}
+
+
+FLIPPED = [12, pytest.param(200, marks=pytest.mark.slow("200 kernels are compiled anew"))]
+
+
+@pytest.mark.parametrize("count", FLIPPED)
+def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_path, count):
+    draw = random.Random(count)
+    kernel()
+    for i in range(count):
+        path = draw.choice(kept_files(tmp_path))
+        data = bytearray(path.read_bytes())
+        if i % 4 == 3:
+            data = data[: draw.randrange(len(data))]
+        else:
+            for _ in range(draw.choice((1, 2, 50))):
+                data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
+        path.write_bytes(data)
+        assert kernel() == (7, False), path
+        assert kernel() == (7, True), "it was not mended"
+
+
+def test_what_another_wrote_is_never_unpickled(kernel, tmp_path):
+    kernel()
+    kernel("g")
+    (first, second) = kept_files(tmp_path, ".nbc")
+    second.write_bytes(first.read_bytes())  # whole, and of another kernel
+    assert (kernel(), kernel("g")) == ((7, True), (10, False))
+    assert kernel("g") == (10, True)
+    for path in kept_files(tmp_path):
+        path.write_bytes(b"cbuiltins\nexit\n(I1\ntR.")
+    assert kernel() == (7, False)
+
+
+def test_a_place_that_takes_nothing_is_one_sentence(kernel, tmp_path, monkeypatch, capsys):
+    def full(self, data):
+        raise OSError(28, "No space left on device")
+
+    kernel_cache._say_unkept.cache_clear()
+    with monkeypatch.context() as disk:
+        disk.setattr(Path, "write_bytes", full)
+        assert kernel() == kernel() == (7, False)
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "compiled code is not kept" in told
+    assert "no space left on device" in told
+    assert not kept_files(tmp_path)
+    assert (kernel(), kernel()) == ((7, False), (7, True))

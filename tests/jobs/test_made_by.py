@@ -8,8 +8,8 @@ from suchus.optimise.conduct import ROOMS
 from suchus.record import code_digest
 from suchus.record.provenance import deciding_source
 
-HARMLESS = ("suchus.errors", "suchus.threads", "suchus.progress", "suchus.kernel_cache")
-"""Words, how many threads, how far something is, and where kernels are kept, which change no byte."""
+HARMLESS = ("suchus.errors", "suchus.threads", "suchus.progress", "suchus.kernel_cache", "suchus.writing")
+"""Words, how many threads, how far something is, and where and how things are kept, which change no byte."""
 
 
 @pytest.fixture(scope="module")

@@ -166,7 +166,7 @@ def test_the_command_writes_a_robot_and_a_gait_that_load(desk, capsys):
     out = capsys.readouterr().out
     assert "limbs LF, RF on base: pitch, roll, roll" in out
     assert "note: Front:" in out
-    assert sorted(path.name for path in Path().iterdir()) == ["quad.toml", "quad.urdf", "quad_walk.toml"]
+    assert sorted(path.name for path in Path().glob("[!.]*")) == ["quad.toml", "quad.urdf", "quad_walk.toml"]
     robot = blueprint.read(Path("quad.toml"), Robot, ROBOTS)
     assert (robot.name, len(robot.girdles)) == ("quad", 2)
     assert blueprint.read_gait(Path("quad_walk.toml"), robot, GAITS).period > 0
@@ -177,7 +177,7 @@ def test_a_robot_whose_walk_is_not_found_is_written_all_the_same(desk, capsys):
     Path("it.xml").write_text(skewed().replace('range="-1.2 1.2"', 'range="-0.01 0.01"'))
     assert main(["import", "it.xml"]) == 0
     assert "note: no walk was found" in capsys.readouterr().out
-    assert {path.name for path in Path().iterdir()} == {"it.xml", "it.toml"}
+    assert {path.name for path in Path().glob("[!.]*")} == {"it.xml", "it.toml"}
 
 
 def test_an_include_of_its_own_folder_is_read(desk):

@@ -15,11 +15,12 @@ from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
 from suchus.gaits import GAITS, own_gait
 from suchus.model import compile_model, joint_addresses
 from suchus.model import sites as sensed
-from suchus.model.export import MARK, NoUsd, ball, export, unsaid, unsaid_in_usd
+from suchus.model.export import NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.model.export.urdf import _roll_pitch_yaw
 from suchus.model.export.usd import prim_name
 from suchus.motion import check_limits
 from suchus.robots import ROBOTS
+from suchus.writing import MANIFEST
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
 
@@ -242,11 +243,11 @@ def test_the_same_export_gives_the_same_bytes_and_replaces_only_its_own(robot, c
     one, two = (export(robot, crawl_gait, tmp_path / name, "urdf") for name in ("one", "two"))
     for file in one.rglob("*.*"):
         assert file.read_bytes() == (two / file.relative_to(one)).read_bytes()
-    (one / "stale").write_text("x")
+    (one / "notes").write_text("x")
     export(robot, crawl_gait, one, "urdf")
-    assert not (one / "stale").exists()
-    (two / MARK).unlink()
-    with pytest.raises(Unwritable, match="was not written by suchus"):
+    assert (one / "notes").read_text() == "x"
+    (two / MANIFEST).unlink()
+    with pytest.raises(Unwritable, match="nothing says that suchus wrote it"):
         export(robot, crawl_gait, two, "urdf")
     with pytest.raises(InvalidDesign, match="makes no file name"):
         export(replace(robot, name="../up"), crawl_gait, tmp_path / "x", "mjcf")

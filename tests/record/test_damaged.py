@@ -130,7 +130,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 from suchus.record import new_folder
-with new_folder(Path(sys.argv[1]), mark="m") as draft:
+with new_folder(Path(sys.argv[1])) as draft:
     (draft / "m").write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
 """
@@ -141,10 +141,10 @@ def test_drafts_of_the_dead_are_swept_and_those_of_the_living_stay(tmp_path):
     done = subprocess.run([sys.executable, "-c", KILLED, str(place)], check=False)
     assert done.returncode == -signal.SIGKILL
     assert [p.name[:8] for p in tmp_path.iterdir()] == [".result-"]
-    with new_folder(place, mark="m") as first:
+    with new_folder(place) as first:
         assert len(list(tmp_path.iterdir())) == 1  # the dead one's is gone
         (first / "m").write_text("first")
-        with new_folder(place, mark="m") as second:
+        with new_folder(place) as second:
             (second / "m").write_text("second")
         assert first.is_dir()
     assert [p.name for p in tmp_path.iterdir()] == ["result"]
@@ -156,7 +156,7 @@ def test_many_writers_of_one_place_all_end_well(tmp_path):
 
     def write(number):
         try:
-            with new_folder(place, mark="m") as draft:
+            with new_folder(place) as draft:
                 (draft / "m").write_text(str(number))
         except Unwritable:
             return False  # another one was faster between looking and moving

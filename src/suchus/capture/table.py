@@ -11,6 +11,7 @@ import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,7 +21,7 @@ from jaxtyping import Complex, Float
 from suchus.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
 from suchus.design.checks import require
 from suchus.errors import UnreadableFile
-from suchus.record import new_file
+from suchus.record import write
 
 _HEADING = re.compile(r"\s*(?P<point>.+)_(?P<axis>x|y|z|confidence)\s*\[(?P<unit>[^\]]*)\]\s*")
 _EXAMPLE = "time [s], hip_x [mm], hip_y [mm], ..."
@@ -89,12 +90,12 @@ def write_table(tracks: Tracks, path: str | Path) -> Path:
     headings = [f"{point}_{axis} [{unit}]" for point in tracks.points for axis in axes]
     position = scale * tracks.position
     position[..., 1] *= sign
-    with new_file(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["time [s]", *headings])
-        for time, row in zip(tracks.time, position.reshape(len(tracks.time), -1), strict=True):
-            out.writerow([f"{time:.4f}", *("" if np.isnan(x) else f"{x:.1f}" for x in row)])
-    return path
+    text = StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["time [s]", *headings])
+    for time, row in zip(tracks.time, position.reshape(len(tracks.time), -1), strict=True):
+        out.writerow([f"{time:.4f}", *("" if np.isnan(x) else f"{x:.1f}" for x in row)])
+    return write(path, text.getvalue())
 
 
 def _rows(path: Path) -> list[list[str]]:

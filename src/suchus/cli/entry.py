@@ -1,6 +1,7 @@
 """Where the command line begins and ends: words in, an exit code out."""
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -10,9 +11,13 @@ from shutil import get_terminal_size
 
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
+from suchus.stopping import Stopped, stopping
+from suchus.writing import replacing
 
 PROJECT = "--project"
 """Option of every command: the project folder, see ``suchus.sources``."""
+REPLACE = "--replace"
+"""Option of every command: what a user wrote or changed may be replaced, see ``suchus.writing``."""
 
 
 class BadCommand(SuchusError):
@@ -124,7 +129,7 @@ def main(words: Sequence[str] | None = None) -> int:
     """Carry out a command line and return the exit code.
 
     0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
-    error. 130: stopped by Ctrl-C.
+    error. 130: stopped by Ctrl-C; 129 and 143: by SIGHUP, as of a terminal that is closed, and SIGTERM.
 
     Args:
         words: what follows ``suchus``; by default those of this process.
@@ -133,14 +138,17 @@ def main(words: Sequence[str] | None = None) -> int:
     _prepare_streams()
     try:
         words, folder = _apart(words)
-        with plain_warnings(), within(folder):
+        replace = REPLACE in words
+        words = [word for word in words if word != REPLACE]
+        with stopping(), plain_warnings(), within(folder), replacing(replace):
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except SuchusError as error:
         return _complain(str(error), 2)
-    except KeyboardInterrupt:
-        return _complain("stopped; what was finished is kept, nothing half-written is left.", 130)
+    except KeyboardInterrupt as stop:
+        number = stop.number if isinstance(stop, Stopped) else signal.SIGINT
+        return _complain("stopped; what was finished is kept, nothing half-written is left.", 128 + number)
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         _drop_output()
         return 0
@@ -221,6 +229,8 @@ def _help() -> str:
             "suchus COMMAND --help describes a command; --version prints the version.",
             f"suchus COMMAND ... {PROJECT} DIR takes along what stands in a project folder; without it, what stands in",
             "the working folder, if that has a suchus.toml.",
+            f"suchus COMMAND ... {REPLACE} replaces files that you wrote or changed too, and keeps a backup; without",
+            "it they are never touched.",
         )
     )
 

@@ -83,7 +83,7 @@ def export_commands(words: Sequence[str]) -> int:
         check_name(options.gait.name, "gait")
     folder = options.out or Path("export") / f"{options.gait.name}_commands"
     check_writable(folder.parent)
-    check_replaceable(folder, mark=MARK)
+    check_replaceable(folder)
     servo_map = straight(options.robot) if options.map is None else read_map(options.map, options.robot)
     samples = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
@@ -93,10 +93,10 @@ def export_commands(words: Sequence[str]) -> int:
         check_commands(options.robot, options.gait, servo_map, samples)
         check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)
     except OutsideLimits as error:
-        with new_folder(folder, mark=MARK) as draft:
+        with new_folder(folder) as draft:
             _write_loads(options, borne, draft)
         raise OutsideLimits(f"{error} What each servo bears stands in {folder / 'loads.csv'}.") from error
-    with new_folder(folder, mark=MARK) as draft:
+    with new_folder(folder) as draft:
         _write_loads(options, borne, draft)
         (draft / "commands.csv").write_text(csv_text(samples), encoding="utf-8")
         (draft / "trajectory.yaml").write_text(trajectory_text(options.robot, samples), encoding="utf-8")

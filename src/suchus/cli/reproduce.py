@@ -24,6 +24,7 @@ from suchus.jobs import Job, finish, place_for
 from suchus.progress import Progress
 from suchus.record import check_writable, made_alike, sweep
 from suchus.report import Failure, Result, check_place, load_result, whole, write_page
+from suchus.writing import asked_to_replace, replacing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +37,8 @@ class Reproduction:
     """The folder for results."""
     quick: bool
     """Whether its quick form is asked for, whatever it is."""
+    replace: bool = False
+    """Whether what a user wrote or changed may be replaced."""
 
     @property
     def experiment(self) -> Experiment:
@@ -67,7 +70,8 @@ def attempt(task: Reproduction, progress: Progress) -> Reproduced:
         progress: called with the share that is done, 0 to 1.
     """
     try:
-        done = perform(task.experiment, task.name, task.out, progress, task.command)
+        with replacing(task.replace):
+            done = perform(task.experiment, task.name, task.out, progress, task.command)
         result = load_result(done.folder)
     except SuchusError as error:
         return failed(task.name, str(error))
@@ -157,7 +161,7 @@ def reproduce(words: Sequence[str]) -> int:
     options = parse(ReproduceOptions, "suchus reproduce", words, about)
     sound = dict(EXPERIMENTS.items())  # what is broken is attempted too, and reported with what is wrong
     tasks = [
-        Reproduction(name=name, out=options.out, quick=options.quick)
+        Reproduction(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
         for name in EXPERIMENTS
         if name not in sound or sound[name].reproduces
     ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -25,7 +26,7 @@ from suchus.atlas import (
 from suchus.errors import SuchusError
 from suchus.figures.style import COLOURS, new, styled
 from suchus.flow import ALONG_THE_SKIN
-from suchus.record import new_file
+from suchus.record import write
 
 _COLUMNS = 3
 _OURS = COLOURS["ours"]
@@ -206,18 +207,17 @@ def write_atlas(
         Unwritable: the folder takes nothing.
     """
     listed = entries(rows, outcomes)
-    drawn = {"parity": draw_parity(listed)}
+    figures = {"parity": draw_parity(listed)}
     for group in GROUPS:
         members = [entry for entry in listed if entry.row in GROUPS[group] and entry.outcome is not None]
         if members:
-            drawn[group] = draw_group(members)
-    for name, figure in drawn.items():
-        path = folder / picture(name)
-        with new_file(path) as draft, styled():
-            figure.savefig(draft, dpi=100)
-    with new_file(folder / "atlas.md") as draft:
-        draft.write_text(page(listed), encoding="utf-8")
-    return folder / "atlas.md"
+            figures[group] = draw_group(members)
+    for name, figure in figures.items():
+        drawn = BytesIO()
+        with styled():
+            figure.savefig(drawn, dpi=100, format="png")
+        write(folder / picture(name), drawn.getvalue())
+    return write(folder / "atlas.md", page(listed))
 
 
 def draw_group(listed: Sequence[Entry]) -> Figure:

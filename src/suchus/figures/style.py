@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from suchus.design import LEGS, Robot, layout
 from suchus.figures.data import table
 from suchus.figures.uncover import Uncovering
-from suchus.record import new_file
+from suchus.record import write
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -186,10 +186,8 @@ def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
             drawn = BytesIO()
             figure.savefig(drawn, format=kind, metadata=metadata)
             figure.set_layout_engine(None)  # the axes stand where the first file has them, and are not placed again
-            with new_file(path) as draft:
-                draft.write_bytes(drawn.getvalue())
+            write(path, drawn.getvalue())
     figure.set_layout_engine(layout)
     if numbers := table(figure):
-        with new_file(folder / f"{stem}{DATA}") as draft:
-            draft.write_text(numbers, encoding="utf-8")
+        write(folder / f"{stem}{DATA}", numbers)
     return svg, png

@@ -11,9 +11,11 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from suchus.errors import UnreadableFile, Unwritable
+from suchus.errors import UnreadableFile
 from suchus.fingerprint import fingerprint
 from suchus.flow.setup import Setup
+from suchus.reading import check_file
+from suchus.writing import keep
 
 VERSION = 10
 """Layout of the file; rises with every change of it."""
@@ -51,16 +53,8 @@ def save(sim: Resumable, path: Path) -> None:
     """
     content = BytesIO()
     np.savez(content, allow_pickle=False, setup=np.array(fingerprint(sim.setup)), **sim.state())
-    data = content.getbuffer()
-    part = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with part.open("wb") as file:
-            file.write(MARK + sha256(data).digest())
-            file.write(data)
-        part.replace(path)
-    except OSError as error:
-        raise Unwritable(f"the checkpoint {path} cannot be written: {error.strerror}; choose another place.") from error
+    data = content.getvalue()
+    keep(path, MARK + sha256(data).digest() + data)
 
 
 def load(sim: Resumable, path: Path) -> None:
@@ -69,6 +63,7 @@ def load(sim: Resumable, path: Path) -> None:
     Raises:
         UnreadableFile: not a checkpoint, of another version, damaged, or of another setup.
     """
+    check_file(path)
     try:
         data = path.read_bytes()
     except OSError as error:

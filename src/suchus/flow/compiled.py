@@ -107,12 +107,9 @@ event.register("numba:compile", _Notice())
 
 
 def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
-    made: Callable[P, R]
-    if FOLDER is None:  # compile anew every time
-        made = numba.njit(parallel=parallel, **_OPTIONS)(function)
-    else:
-        with kernel_cache.kept_in(numba.config, FOLDER):
-            made = numba.njit(cache=True, parallel=parallel, **_OPTIONS)(function)
+    made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
+    if FOLDER is not None:  # else it is compiled anew every time
+        kernel_cache.keep(made, FOLDER)
     return made
 
 

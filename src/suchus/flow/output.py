@@ -4,10 +4,8 @@ Both hold velocity, pressure, vorticity and the fluid's share at the cell centre
 Format: VTK file formats, XML ImageData with raw appended data (``https://docs.vtk.org``).
 """
 
-import os
 import struct
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from html import escape, unescape
 from pathlib import Path
@@ -16,8 +14,9 @@ from re import findall
 import numpy as np
 import xarray as xr
 
-from suchus.errors import InvalidDesign, UnreadableFile, Unwritable
+from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.flow.fields import Fields
+from suchus.writing import new_file
 
 _UNITS = {"velocity": "m s-1", "pressure": "Pa", "vorticity": "s-1", "fluid_share": "1"}
 _NAMES = {
@@ -186,13 +185,5 @@ def _add_to_collection(sim: Fields, path: Path) -> None:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(content)
-        part.replace(path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink()
-        raise Unwritable(f"{path} cannot be written: {error.strerror}; choose another place.") from error
+    with new_file(path) as draft:
+        draft.write_bytes(content)

@@ -9,7 +9,7 @@ from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.meaning import meanings
 from suchus.errors import InvalidDesign
-from suchus.record import new_file
+from suchus.record import write
 
 CHANNELS = 16
 """Of the usual servo board [-]; 19 servos need two of them."""
@@ -155,9 +155,7 @@ def write_map(servo_map: ServoMap, path: Path) -> Path:
     for line in servo_map.servos:
         items = ", ".join(f"{f.name} = {_value(getattr(line, f.name))}" for f in fields(line))
         lines.append(f"  {{{items}}},")
-    with new_file(path) as draft:
-        draft.write_text("\n".join([*lines, "]"]) + "\n", encoding="utf-8")
-    return path
+    return write(path, "\n".join([*lines, "]"]) + "\n")
 
 
 def _value(value: object) -> str:

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-import numba
 import numpy as np
 from numba import njit
 
@@ -30,12 +29,9 @@ FOLDER = folder()
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
     """Compile what is called from outside; keep the code on disk (see ``suchus.kernel_cache``)."""
-    made: Callable[P, R]
-    if FOLDER is None:  # compile anew every time
-        made = njit(**_OPTIONS)(function)
-    else:
-        with kernel_cache.kept_in(numba.config, FOLDER):
-            made = njit(cache=True, **_OPTIONS)(function)
+    made: Callable[P, R] = njit(**_OPTIONS)(function)
+    if FOLDER is not None:  # else it is compiled anew every time
+        kernel_cache.keep(made, FOLDER)
     return made
 
 

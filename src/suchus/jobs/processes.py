@@ -16,6 +16,7 @@ from suchus import threads
 from suchus.errors import SuchusError
 from suchus.jobs.job import Died
 from suchus.progress import Progress
+from suchus.stopping import end_with_parent
 
 _EVERY = 0.1  # [s]; between two reports of one stage
 _PATIENCE = 10.0  # [s]; for a process that was told to stop
@@ -171,6 +172,7 @@ def _deaf() -> Iterator[None]:
 def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> None:
     """Take one piece after the other until the other end of the pipe is closed."""
     os.environ["SUCHUS_THREADS"] = str(each)
+    end_with_parent()
     with suppress(*_GONE):
         while True:
             item = pipe.recv()

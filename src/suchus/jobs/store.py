@@ -18,7 +18,9 @@ import xarray as xr
 
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
 from suchus.jobs.made_by import deciding
-from suchus.record import check_writable, load, new_file, read_json, save, there
+from suchus.record import check_writable, load, read_json, save, there
+from suchus.record.store import packed as packed_record
+from suchus.writing import keep, write
 
 _NUMBERS, _COLUMN, _ABOUT, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed
 MARK = "study.json"
@@ -78,8 +80,7 @@ class Store:
                 raise self._taken()
             check_writable(self.folder)
             if not mark.is_file():
-                with new_file(mark) as draft:
-                    draft.write_text(json.dumps(self._origin(), indent=1, sort_keys=True) + "\n", encoding="utf-8")
+                keep(mark, (json.dumps(self._origin(), indent=1, sort_keys=True) + "\n").encode())
             self._sweep()
             yield self
 
@@ -158,9 +159,8 @@ class Store:
                 )
             tables.append(self.get(number))
         whole = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
-        save(whole, self.folder / RESULTS)
-        with new_file(self.folder / TABLE) as draft:
-            whole.to_dataframe().to_csv(draft, lineterminator="\n")
+        write(self.folder / RESULTS, packed_record(whole))
+        write(self.folder / TABLE, whole.to_dataframe().to_csv(lineterminator="\n"))
         return whole
 
     def _origin(self) -> dict[str, Any]:

@@ -41,7 +41,7 @@ def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: 
     shown = [_start(spec), *runs]
     record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))
     numbers = outcome(spec, searches)
-    with records.new_folder(folder / RESULT, mark=OUTCOME) as draft:
+    with records.new_folder(folder / RESULT, lasting=True) as draft:
         for search in searches:
             write_runs(search.spec, search.runs, draft)
         records.save(record, draft / RECORD)

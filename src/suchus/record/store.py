@@ -14,8 +14,8 @@ from xarray.backends.locks import HDF5_LOCK
 
 from suchus.errors import IncompatibleRecord
 from suchus.reading import check_file, unreadable
-from suchus.record.place import new_file
 from suchus.record.provenance import plain
+from suchus.writing import keep
 
 _SEAL = b"\nsuchus sha256 "
 _SEAL_LENGTH = len(_SEAL) + 64 + 1  # [byte]
@@ -101,18 +101,22 @@ def save(record: xr.Dataset, path: str | Path) -> Path:
         Unwritable: the place cannot be written to.
     """
     path = Path(path)
+    keep(path, packed(record))
+    return path
+
+
+def packed(record: xr.Dataset) -> bytes:
+    """Return a record as the bytes of its file, which ``load`` reads."""
     attributes = json.dumps(plain(record.attrs), sort_keys=True)
     marked = record.assign_attrs().drop_attrs(deep=False)
     marked.attrs = {_MARK: _VERSION, _ATTRIBUTES: attributes}
     packed = {"zlib": True, "complevel": 4, "shuffle": True}
     encoding = {str(k): packed for k, v in marked.variables.items() if v.dtype.kind in "biuf" and v.size > 1}
-    with new_file(path) as draft:
-        memory = io.BytesIO()  # HDF5 itself dies when the disk is full
-        store = H5NetCDFStore.open(memory, mode="w", lock=HDF5_LOCK)  # for a lock ``to_netcdf`` imports a cluster
-        marked.dump_to_store(store, encoding=encoding)
-        store.close()
-        draft.write_bytes(sealed(memory.getvalue()))
-    return path
+    memory = io.BytesIO()  # HDF5 itself dies when the disk is full
+    store = H5NetCDFStore.open(memory, mode="w", lock=HDF5_LOCK)  # for a lock ``to_netcdf`` imports a cluster
+    marked.dump_to_store(store, encoding=encoding)
+    store.close()
+    return sealed(memory.getvalue())
 
 
 def load(path: str | Path, *, whole: bool = False) -> xr.Dataset:

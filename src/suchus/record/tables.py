@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.record.place import new_folder
+from suchus.writing import new_folder
 
 COLUMNS = "columns.csv"
 """Lists every column of every file with its unit and meaning; by it a folder of tables is known."""
@@ -26,13 +26,13 @@ def write_tables(record: xr.Dataset, folder: Path) -> Path:
 
     Args:
         record: any; labels along a dimension that are not its own are columns too.
-        folder: an older one that we wrote is replaced, anything else is refused.
+        folder: an older one is replaced where suchus wrote it and nobody changed it.
 
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
     about: list[tuple[str, str, str, str]] = []
-    with new_folder(folder, mark=COLUMNS) as draft:
+    with new_folder(folder) as draft:
         for dims, names in _sets(record).items():
             file = "_".join(part.replace("/", "-") for part in dims) or _SINGLE
             _write(

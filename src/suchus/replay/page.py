@@ -19,7 +19,7 @@ from suchus.design import Robot
 from suchus.design.ground import Ground
 from suchus.figures import limb_colours, panels, styled, vortices
 from suchus.figures.posture import draw_posture
-from suchus.record import ground_of, new_file, versions
+from suchus.record import ground_of, versions, write
 from suchus.replay.frames import Frames, checked, frames
 from suchus.replay.scene import ARROW, KEYS, PackedArrays, quantised, scene
 
@@ -117,9 +117,7 @@ def save(page: str, path: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to.
     """
-    with new_file(path) as draft:
-        draft.write_text(page, encoding="utf-8")
-    return path
+    return write(path, page)
 
 
 def environment() -> Environment:

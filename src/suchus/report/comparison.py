@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from suchus.errors import IncompatibleRecord
-from suchus.record import new_file
+from suchus.record import write
 from suchus.report.rendering import render
 from suchus.report.result import Moving, Picture, Result
 
@@ -130,9 +130,7 @@ def write_comparison(comparison: Comparison, path: Path) -> Path:
         Unwritable: the place cannot be written to.
     """
     text = render_comparison(comparison, path.parent)
-    with new_file(path) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return path
+    return write(path, text)
 
 
 def render_comparison(comparison: Comparison, place: Path) -> str:

@@ -15,7 +15,7 @@ from suchus.gaits import GAITS
 from suchus.land import Lake, Run, failing_joints, joint_failure, simulate
 from suchus.motion import START
 from suchus.progress import Progress, silent, staged
-from suchus.record import new_file, versions
+from suchus.record import versions, write
 from suchus.replay.page import environment, rendered
 from suchus.robots import ROBOTS
 
@@ -74,9 +74,7 @@ def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progres
         pages[lesson.name] = page(lesson, following, part)
     paths = []
     for name, text in pages.items():
-        with new_file(folder / f"{name}.html") as draft:
-            draft.write_text(text, encoding="utf-8")
-        paths.append(folder / f"{name}.html")
+        paths.append(write(folder / f"{name}.html", text))
     return paths
 
 

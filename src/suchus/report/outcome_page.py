@@ -13,7 +13,7 @@ from typing import Any
 
 from suchus.errors import UnreadableFile
 from suchus.experiment import Measure
-from suchus.record import new_file, read_text
+from suchus.record import read_text, write
 from suchus.report.rendering import number, quantity, render, tied
 from suchus.report.result import Result, load_result
 
@@ -48,9 +48,7 @@ def write_outcome_page(folder: Path) -> Path:
         SuchusError: there is no outcome in it, or the place cannot be written to.
     """
     text = render_outcome_page(load_result(folder))
-    with new_file(folder / PAGE) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return folder / PAGE
+    return write(folder / PAGE, text)
 
 
 def render_outcome_page(result: Result) -> str:

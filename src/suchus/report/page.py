@@ -18,7 +18,7 @@ from suchus.errors import SuchusError
 from suchus.gaits import GAITS
 from suchus.metrics.energy import METRES
 from suchus.paper import AUTHORS, CLAIMS, ERRATA, TITLE
-from suchus.record import new_file, versions
+from suchus.record import versions, write
 from suchus.report.beside import beside
 from suchus.report.outcome_page import MARKS, PAGE, told, write_outcome_page
 from suchus.report.rendering import embedded, number, quantity, render, tied
@@ -56,9 +56,7 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Pat
         if not (result.folder / PAGE).is_file():
             write_outcome_page(result.folder)
     text = render_page(results, failures, path.parent)
-    with new_file(path) as draft:
-        draft.write_text(text, encoding="utf-8")
-    return path
+    return write(path, text)
 
 
 def render_page(results: Sequence[Result], failures: Sequence[Failure], place: Path | None = None) -> str:

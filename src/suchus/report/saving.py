@@ -25,7 +25,7 @@ def check_place(folder: Path) -> None:
         Unwritable: no results can go there.
     """
     record.check_writable(folder)
-    record.check_replaceable(folder, mark=OUTCOME)
+    record.check_replaceable(folder)
 
 
 def save_outcome(
@@ -37,13 +37,13 @@ def save_outcome(
         outcome: of the experiment.
         figures: its figures by name.
         experiment: the question.
-        folder: where; an earlier result there is replaced.
+        folder: where; an earlier result there is replaced, with what nobody changed of it.
         command: what makes the same result again.
 
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
-    with record.new_folder(folder, mark=OUTCOME) as draft:
+    with record.new_folder(folder, lasting=True) as draft:
         for name, figure in figures.items():
             pictures.save(figure, draft, name)
         for name, text in outcome.tables.items():

@@ -31,7 +31,7 @@ def write_claims(record: xr.Dataset, folder: Path, varied: Mapping[str, xr.Datas
     """
     of_claim = {str(claim): one for one in (record, *varied.values()) for claim in one.claim.values}
     rows = [claim_row(one, claim) for claim, one in of_claim.items()]
-    with records.new_folder(folder, mark=OUTCOME) as draft:
+    with records.new_folder(folder, lasting=True) as draft:
         (draft / TABLE).write_text(table(rows), encoding="utf-8")
         (draft / SHARES).write_text(shipped(record, rows, varied), encoding="utf-8")
         records.save(record, draft / RECORD)

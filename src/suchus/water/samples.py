@@ -18,8 +18,8 @@ from suchus.errors import UnreadableFile
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.progress import Progress
-from suchus.record import new_file
 from suchus.record.store import holds, sealed
+from suchus.writing import keep
 
 _KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
 
@@ -53,8 +53,7 @@ class Samples:
         state = {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
         content = BytesIO()
         np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
-        with new_file(path) as draft:
-            draft.write_bytes(sealed(content.getvalue()))
+        keep(path, sealed(content.getvalue()))
 
     def load(self, path: Path, time: float, about: str) -> None:
         """Take up the samples until a time [s].

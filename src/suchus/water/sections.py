@@ -23,7 +23,7 @@ from suchus.atlas.outcome import FlowOutcome
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, UnreadableFile
 from suchus.flow import morison
-from suchus.record import new_file
+from suchus.record import write
 
 TABLE = Path(__file__).parent / "data" / "sections.csv"
 """The table that is shipped."""
@@ -146,8 +146,7 @@ def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
         before, last = ([float(found[part][1][i]) for part in ("drag", "added", "left")] for i in (-2, -1))
         numbers = (*last[:2], *before[:2], last[2])
         writer.writerow([aspect, keulegan, cells, *(f"{value:.5g}" for value in numbers), outcomes[name].digest])
-    with new_file(path) as draft:
-        draft.write_text(out.getvalue(), encoding="utf-8")
+    write(path, out.getvalue())
     errors = held_out(path)
     return f"{len(points())} flows; held-out points are off by {errors.max():.1%} at most"
 

@@ -18,7 +18,7 @@ from suchus.record import digest, new_folder, versions
 
 Format = Literal["mjcf", "urdf", "usd"]
 MARK = "suchus_export.json"
-"""The file by which an export is known; a folder without it is never replaced."""
+"""The file that says what is exported, and by what."""
 _LICENCE = """This model was written by suchus and carries its licence, Apache-2.0:
 https://www.apache.org/licenses/LICENSE-2.0
 Its numbers come from robot.toml; keep this note with copies.
@@ -31,7 +31,7 @@ def export(robot: Robot, gait: Gait, folder: Path, kind: Format, *, timestep: fl
     Args:
         robot: the design.
         gait: whose mid-stance is the home posture.
-        folder: an older export there is replaced, anything else is refused.
+        folder: an older export there is replaced where nobody changed it.
         kind: of model.
         timestep: of the physics, for MJCF [s].
 
@@ -55,7 +55,7 @@ def export(robot: Robot, gait: Gait, folder: Path, kind: Format, *, timestep: fl
         "LICENSE": _LICENCE,
         MARK: json.dumps(origin, indent=1, sort_keys=True) + "\n",
     }
-    with new_folder(folder, mark=MARK) as draft:
+    with new_folder(folder) as draft:
         for name, text in texts.items():
             (draft / name).parent.mkdir(exist_ok=True)
             (draft / name).write_text(text, encoding="utf-8")

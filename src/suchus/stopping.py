@@ -1,0 +1,68 @@
+"""Requests to stop: SIGTERM and SIGHUP end a command as Ctrl-C does, and workers end with whom they work for."""
+
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import parent_process
+from multiprocessing.connection import wait
+from threading import Event, Thread, current_thread, main_thread
+from types import FrameType
+
+SOON = 1.5
+"""Time after which a process that was told to stop ends, whatever it is at [s]."""
+
+
+class Stopped(KeyboardInterrupt):
+    """A signal asked the process to stop.
+
+    Attributes:
+        number: of the signal.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+
+
+@contextmanager
+def stopping() -> Iterator[None]:
+    """While the block runs, let SIGTERM and SIGHUP raise ``Stopped``; after ``SOON`` the process ends all the same.
+
+    What compiled code does in between hears no signal. A signal that is ignored, as under nohup, or that somebody else
+    handles, stays so.
+    """
+    if current_thread() is not main_thread():
+        yield
+        return
+    told, done, number = Event(), Event(), [signal.SIGTERM]
+
+    def stop(signum: int, frame: FrameType | None) -> None:
+        del frame
+        number[0] = signal.Signals(signum)
+        told.set()
+        raise Stopped(signum)
+
+    def see_to_it() -> None:
+        told.wait()
+        if not done.wait(SOON):
+            os._exit(128 + number[0])
+
+    heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
+    for one in heard:
+        signal.signal(one, stop)
+    Thread(target=see_to_it, daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
+        told.set()
+        for one in heard:
+            signal.signal(one, signal.SIG_DFL)
+
+
+def end_with_parent() -> None:
+    """Let this process end as soon as the one that started it has, whatever it is at and however that one ended."""
+    parent = parent_process()
+    if parent is not None:
+        Thread(target=lambda: (wait([parent.sentinel]), os._exit(1)), daemon=True).start()
