@@ -249,8 +249,17 @@ def _to_disk(path: Path) -> None:
 
 def _check_names(path: Path) -> None:
     """Refuse a path that the system takes for no path at all."""
-    if "\0" in str(path):
-        raise Unwritable(f"{str(path)!r} is no name that a file can have.")
+    if "\0" in str(path) or not _is_text(str(path)):
+        raise Unwritable(f"{str(path)!r} is no name that a file of suchus's can have: it is to be a text in UTF-8.")
+
+
+def _is_text(name: str) -> bool:
+    """Return whether a name can stand in a text; one with bytes that are no UTF-8 cannot."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _unwritable(path: Path, error: OSError | ValueError) -> Unwritable:

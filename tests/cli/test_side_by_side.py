@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from suchus.cli import main
+from suchus.report import PAGE
 from suchus.writing import MANIFEST
 
 FAKES = Path(__file__).parent / "fake_shelf"
@@ -67,9 +68,9 @@ def crashing(broken, tmp_path):
 
 
 def files(folder: Path) -> dict[str, bytes | dict[str, object]]:
-    """What a folder holds; of an outcome all but how it was asked for and how long it took."""
+    """What a folder holds; of an outcome, and of its page, all but how it was asked for and how long it took."""
     found: dict[str, bytes | dict[str, object]] = {
-        path.name: path.read_bytes() for path in folder.iterdir() if path.name != MANIFEST
+        path.name: path.read_bytes() for path in folder.iterdir() if path.name not in (MANIFEST, PAGE)
     }
     found["outcome.json"] = json.loads(found["outcome.json"])
     del found["outcome.json"]["provenance"]["seconds"], found["outcome.json"]["command"]

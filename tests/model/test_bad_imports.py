@@ -5,13 +5,15 @@ import re
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hinge_trees import joint, link, pendulum, quadruped, shape, skewed, urdf
 
 from suchus import blueprint
 from suchus.cli import main
-from suchus.design import Robot
+from suchus.design import Robot, layout
 from suchus.gaits import GAITS
+from suchus.motion.movement import cycle_targets
 from suchus.robots import ROBOTS
 
 BALL = shape('<sphere radius="0.02"/>')
@@ -185,3 +187,28 @@ def test_an_include_of_its_own_folder_is_read(desk):
     Path("it.xml").write_text(mjcf().replace(BODY, '<include file="part.xml"/>'))
     assert main(["import", "it.xml"]) == 0
     assert [s.name for s in blueprint.read(Path("it.toml"), Robot, ROBOTS).axis] == ["b", "a"]
+
+
+def test_files_that_include_each_other_in_a_chain_are_a_sentence(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    deep, count = 150, 30
+    for i in range(count):
+        inner = f'<include file="{i + 1}.xml"/>' if i < count - 1 else ""
+        Path(f"{i}.xml").write_text(f"<mujoco>{'<worldbody>' * deep}{inner}{'</worldbody>' * deep}</mujoco>")
+    assert main(["import", "0.xml"]) == 2
+    told = capsys.readouterr().err
+    assert "nest more than 200 elements" in told
+    assert told.count("\n") == 1
+
+
+def test_a_leg_with_a_joint_that_nothing_powers_is_imported_and_walks(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    before, knee, after = quadruped().partition('<joint name="FL_knee"')
+    Path("one.urdf").write_text(before + knee + after.replace('effort="30.0"', 'effort="0.0"', 1))
+    assert main(["import", "one.urdf"]) == 0
+    assert "gait: one_walk.toml" in capsys.readouterr().out
+    robot = blueprint.read(Path("one.toml"), Robot, ROBOTS)
+    gait = blueprint.read_gait(Path("one_walk.toml"), robot, GAITS)
+    targets = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 9))
+    assert targets.shape == (9, len(layout(robot).servos))
+    assert np.ptp(targets, axis=0).max() > 0.05

@@ -100,7 +100,7 @@ def test_a_place_is_refused_before_the_work(tmp_path):
 
 
 def test_the_list_of_digests_is_what_sha256sum_checks_and_takes_odd_names(tmp_path):
-    names = ["a b", "100%", "c\nd", os.fsdecode(b"\xff")]
+    names = ["a b", "100%", "c\nd", "ä"]
     for name in names:
         write(tmp_path / name, "one")
         write(tmp_path / name, "two")

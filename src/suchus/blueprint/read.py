@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import asdict, fields
 from pathlib import Path
-from types import UnionType
+from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, overload
 
 from pydantic import TypeAdapter, ValidationError
@@ -49,7 +49,7 @@ def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
     data = read_toml(path)
     base = data.pop("base", None)
     known = base is None or (isinstance(base, str) and base in shelf)
-    kinds = get_args(kind) or (kind,)
+    kinds = tuple(one for one in get_args(kind) or (kind,) if one is not NoneType)
     described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
     if base is not None and known:
         model = shelf[base]

@@ -32,7 +32,7 @@ from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.gaits import own_gait
 from suchus.motion import Gait, check_limits
-from suchus.record import check_writable
+from suchus.record import check_replaceable, check_writable
 from suchus.robots import ROBOTS
 
 
@@ -85,6 +85,7 @@ def capture(words: Sequence[str]) -> int:
     if options.out.suffix != ".toml":
         raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
     check_writable(options.out.parent)
+    check_replaceable(options.out)
     if is_angle_table(options.tracks):
         return _play(options, _asked(words))
     robot = options.robot

@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from suchus.cli.entry import BadCommand
+from suchus.cli.entry import BadCommand, printable
 from suchus.cli.options import check_page, parse
-from suchus.record import check_writable
+from suchus.record import check_replaceable, check_writable
 from suchus.report import OUTCOME, Comparison, compare, load_result, number, quantity, write_comparison
 
 _MOST = 24
@@ -42,6 +42,7 @@ def compare_outcomes(words: Sequence[str]) -> int:
     options = parse(CompareOptions, "suchus compare", words, about)
     check_page(options.out)
     check_writable(options.out.parent)
+    check_replaceable(options.out)
     folders = [_folder(path) for path in (options.first, options.second)]
     names = (str(folders[0]), str(folders[1]))
     comparison = compare(load_result(folders[0]), load_result(folders[1]), names)
@@ -68,7 +69,7 @@ def _folder(path: Path) -> Path:
 def _show(comparison: Comparison) -> None:
     console = Console(highlight=False)
     for letter, name in zip("AB", comparison.names, strict=True):
-        console.print(escape(f"{letter}: {name}"), soft_wrap=True)
+        console.print(escape(printable(f"{letter}: {name}")), soft_wrap=True)
     _print(console, ("setting", "A", "B"), _settings(comparison)[:_MOST])
     _print(
         console, ("claim judged differently", "A", "B"), [(o.quantity, o.first, o.second) for o in comparison.changed]
@@ -110,5 +111,5 @@ def _print(console: Console, head: Sequence[str], rows: Sequence[Sequence[str]])
     for i, heading in enumerate(head):
         table.add_column(heading, justify="left" if i == 0 else "right", overflow="fold", no_wrap=i == 0)
     for row in rows:
-        table.add_row(*map(escape, row))
+        table.add_row(*(escape(printable(cell)) for cell in row))
     console.print(table)

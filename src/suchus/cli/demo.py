@@ -19,7 +19,7 @@ from suchus.gaits import GAITS
 from suchus.land import Run, simulate
 from suchus.metrics import displacement, speed
 from suchus.progress import Progress, staged
-from suchus.record import check_writable
+from suchus.record import check_replaceable, check_writable
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
@@ -66,6 +66,7 @@ def demo(words: Sequence[str]) -> int:
 def _page(out: Path, opener: BaseBrowser | None, live: bool) -> int:
     """Write the page, name it, and print the results."""
     check_page(out)
+    check_replaceable(out)
     check_writable(out.parent)
     with working() as bars:
         move = bars.reporter("demo")

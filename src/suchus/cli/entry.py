@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pkgutil import resolve_name
 from shutil import get_terminal_size
+from unicodedata import category
 
 from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
@@ -236,7 +237,7 @@ def _help() -> str:
 
 
 def _complain(sentence: str, code: int) -> int:
-    print("suchus: " + _printable(" ".join(sentence.split())), file=sys.stderr)
+    print("suchus: " + printable(" ".join(sentence.split())), file=sys.stderr)
     return code
 
 
@@ -278,6 +279,6 @@ def _drop_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _printable(text: str) -> str:
-    """Return a text whose letters a terminal shows and does not obey."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+def printable(text: str) -> str:
+    """Return a text whose letters a terminal shows and does not obey; spaces of every kind stay."""
+    return "".join(c if c.isprintable() or category(c) == "Zs" else c.encode("unicode_escape").decode() for c in text)

@@ -15,7 +15,7 @@ from suchus.design import layout
 from suchus.errors import OutsideLimits
 from suchus.model.importing import Draft, Words, import_robot
 from suchus.motion import Gait, draft_gait
-from suchus.record import check_writable
+from suchus.record import check_replaceable, check_writable
 
 _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
 
@@ -61,6 +61,9 @@ def import_file(words: Sequence[str]) -> int:
     if out.suffix != ".toml":
         raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")
     check_writable(out.parent)
+    walk = out.with_name(f"{out.stem}_walk.toml")
+    for file in (out, walk):
+        check_replaceable(file)
     said = Words(
         front=options.front,
         heading=options.heading,
@@ -78,7 +81,7 @@ def import_file(words: Sequence[str]) -> int:
     blueprint.write(draft.robot, out, notes=draft.notes, head=head)
     print(f"robot: {out}")
     if gait is not None:
-        file = blueprint.write(gait, out.with_name(f"{out.stem}_walk.toml"), head=("A first gait, not the best.",))
+        file = blueprint.write(gait, walk, head=("A first gait, not the best.",))
         print(f"gait: {file}", *run_it(draft.robot, str(out), file), sep="\n")
     return 0
 

@@ -12,7 +12,7 @@ from suchus import record
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import check_page, parse
 from suchus.design import Robot
-from suchus.record import check_file
+from suchus.record import check_file, check_replaceable
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
 
@@ -46,6 +46,7 @@ def make_replay(words: Sequence[str]) -> int:
     check_file(options.file)
     out = options.out or options.file.with_suffix(".html")
     check_page(out)
+    check_replaceable(out)
     stored = record.load(options.file)
     shown = _chosen(stored, options.run, "--run")
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")

@@ -13,7 +13,7 @@ import numpy as np
 
 from suchus.design.body import Robot, bends_trunk
 from suchus.design.hinge import Cable, Hinge
-from suchus.design.limb import Girdle
+from suchus.design.limb import Girdle, Limb
 from suchus.design.segment import Inertia
 from suchus.errors import UnknownName
 
@@ -58,6 +58,8 @@ class LimbPlace:
     """Its hinges among all."""
     servos: slice
     """Its servos among all."""
+    driven: slice | tuple[int, ...]
+    """Those of its hinges that a servo turns, of its own ones."""
     contralateral: int
     """The limb on the other side of its girdle."""
     ipsilateral: tuple[int, ...]
@@ -288,6 +290,12 @@ def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int
     return found
 
 
+def _driven(limb: Limb) -> slice | tuple[int, ...]:
+    """Return which of a limb's hinges servos turn; of all of them a slice, which copies nothing."""
+    with_servo = tuple(i for i, hinge in enumerate(limb.hinges) if hinge.servo is not None)
+    return slice(None) if len(with_servo) == len(limb.hinges) else with_servo
+
+
 def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips: list[int]) -> tuple[LimbPlace, ...]:
     pairs, found = _pairs(robot), []
     for i, (girdle, name, side) in enumerate(pairs):
@@ -304,6 +312,7 @@ def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips:
                 side=side,
                 hinges=slice(mine[0], mine[-1] + 1),
                 servos=slice(start, start + len(driven)),
+                driven=_driven(girdle.limb),
                 contralateral=2 * number + 1 - right,
                 ipsilateral=tuple(2 * n + right for n in near),
                 diagonal=tuple(2 * n + 1 - right for n in near),

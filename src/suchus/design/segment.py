@@ -11,6 +11,7 @@ from suchus.design.hinge import Hinge
 
 Point = tuple[float, float, float]
 """Forward, left, up [m]."""
+_AXES = ("forward", "left", "up")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +33,8 @@ class Rod:
         with Checks(f"rod {self.name}", self) as check:
             check.number("radius", 1e-5, 10.0, "m")
             check.number("mass", 1e-8, 1e5, "kg")
+            check.each("start", _AXES, -100.0, 100.0, "m")
+            check.each("end", _AXES, -100.0, 100.0, "m")
             check.that(self.start != self.end, f"rod {self.name} begins where it ends; give it a length")
 
     @property
@@ -66,6 +69,7 @@ class Shell:
 
     def __post_init__(self) -> None:
         with Checks(f"shell {self.name}", self) as check:
+            check.each("at", _AXES, -100.0, 100.0, "m")
             check.each("half", ("length", "width", "height"), 1e-5, 10.0, "m")
             check.number("mass", 1e-8, 1e5, "kg")
 
@@ -98,7 +102,7 @@ class Inertia:
 
     def __post_init__(self) -> None:
         with Checks("inertia", self) as check:
-            check.each("centre", ("forward", "left", "up"), -100.0, 100.0, "m")
+            check.each("centre", _AXES, -100.0, 100.0, "m")
             check.each("moments", ("xx", "yy", "zz"), 1e-18, 1e9, "kg m2")
             check.each("products", ("xy", "xz", "yz"), -1e9, 1e9, "kg m2")
             least, middle, most = np.linalg.eigvalsh(self.tensor)

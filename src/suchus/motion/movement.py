@@ -111,7 +111,8 @@ class Movement:
             for i, of_limb in zip(
                 alike.among, alike.angles(limbs, steer, draw=draw or steer is not None), strict=False
             ):
-                targets[..., self.place.limbs[i].servos] = of_limb
+                limb = self.place.limbs[i]
+                targets[..., limb.servos] = of_limb[..., limb.driven]
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
         return np.clip(targets, self._low, self._high) if steer is not None else targets

@@ -18,6 +18,7 @@ from suchus.errors import UnreadableFile
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.progress import Progress
+from suchus.reading import check_file
 from suchus.record.store import holds, sealed
 from suchus.writing import keep
 
@@ -62,10 +63,10 @@ class Samples:
             UnreadableFile: they are broken, end too soon or belong to another swim.
         """
         try:
+            check_file(path)
             data = path.read_bytes()
-        except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise UnreadableFile(f"{path} cannot be read: {reason}; delete its checkpoint to start anew.") from error
+        except (OSError, UnreadableFile) as error:
+            raise UnreadableFile(f"{path} cannot be read: {error}; delete its checkpoint to start anew.") from error
         if holds(data) is not True:
             raise UnreadableFile(f"{path} holds no samples of a swim, or is damaged; delete it and its checkpoint.")
         state = store.arrays(data, path)

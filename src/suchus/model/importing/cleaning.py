@@ -232,14 +232,17 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
     """Put what an MJCF includes in its place; only files in its own folder are opened, each once.
 
     Raises:
-        UnreadableFile: an included file lies elsewhere, is included twice, or cannot be read.
+        UnreadableFile: an included file lies elsewhere, is included twice, or cannot be read, or all together nest too
+            deeply.
     """
     home, seen = path.resolve().parent, [path.resolve()]
 
-    def expand(element: ElementTree.Element) -> None:
+    def expand(element: ElementTree.Element, depth: int) -> None:
+        if depth > _DEEPEST:
+            raise UnreadableFile(f"{path.name} and what it includes nest more than {_DEEPEST} elements.")
         for place, child in reversed(list(enumerate(element))):
             if child.tag != "include":
-                expand(child)
+                expand(child, depth + 1)
                 continue
             where = inside(home, child.get("file", ""))
             if where is None:
@@ -251,10 +254,10 @@ def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
                 raise UnreadableFile(f"the MJCF includes {where.name!r} twice, or includes too many files.")
             seen.append(where)
             part = parse(where)
-            expand(part)
+            expand(part, depth)
             element[place : place + 1] = list(part)
 
-    expand(root)
+    expand(root, 1)
     return root
 
 
