@@ -24,6 +24,7 @@ from suchus.viewer.replay import takes
 from suchus.viewer.swim import films, vortex_film
 
 pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+_stand_back = pytest.importorskip("suchus.viewer.server")._stand_back
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 BROWSER = next(
@@ -125,10 +126,49 @@ def noticed(page: Any) -> str:
     return " ".join(page.locator('[data-suchus="notice"]').all_text_contents())
 
 
+CONTRAST = """() => {
+  const parts = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
+  const linear = (x) => x / 255 <= 0.04045 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4;
+  const light = (rgb) => 0.2126 * linear(rgb[0]) + 0.7152 * linear(rgb[1]) + 0.0722 * linear(rgb[2]);
+  const ground = (one) => {
+    for (; one; one = one.parentElement) {
+      const [r, g, b, a = 1] = parts(getComputedStyle(one).backgroundColor);
+      if (a > 0.5) return [r, g, b];
+    }
+    return [255, 255, 255];
+  };
+  const shown = (one) => !one.children.length && one.textContent.trim() && one.getClientRects().length;
+  return [...document.querySelectorAll("label, span, div, p, button")].filter(shown).map((one) => {
+    const [a, b] = [parts(getComputedStyle(one).color), ground(one)].map(light);
+    return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), one.textContent.trim()];
+  }).sort((a, b) => a[0] - b[0]);
+}"""
+"""Contrast of every word on a page with what lies behind it [-], and the word; the least first."""
+
+
+@pytest.mark.parametrize(("wide", "high", "sheet"), [(1280, 800, 0.0), (1920, 1080, 0.0), (390, 800, 0.42)])
+def test_the_whole_robot_is_seen_between_the_panels_and_above_the_sheet_of_a_phone(wide, high, sheet):
+    seen = SimpleNamespace(image_width=wide, image_height=high)
+    _stand_back(seen, *pages.camera(ROBOTS["caiman"]))
+    ahead = np.array(seen.look_at) - seen.position
+    ahead /= np.linalg.norm(ahead)
+    right = np.cross(ahead, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    room = wide if sheet else wide - 700
+    for point in ([0.5, 0.0, 0.05], [-0.6, 0.0, 0.0], [0.2, 0.25, 0.0], [0.2, -0.25, 0.0]):  # snout, tail, front feet
+        line = np.array(point) - seen.position
+        x, y = (line @ side / (line @ ahead) / np.tan(0.36) for side in (right, np.cross(right, ahead)))
+        assert abs(x) * high < room
+        assert 2 * sheet - 1 < y < 1
+
+
 def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_disturb_each_other(tabs, watched, tmp_path):
     first = tabs(watched.viewer.url)
     first.locator('[data-suchus="forward"]').wait_for(state="attached")
     mine = watched.sessions[0]
+    words = first.evaluate(CONTRAST)
+    assert len(words) > 40
+    assert words[0][0] >= 4.5, words[0]
     turn(first, "limb stroke [% of reach]", 25, lambda: mine.settings.gait.number("stroke") == pytest.approx(0.25))
     turn(first, "hip height [% of reach]", 110, lambda: "cannot follow 110 % of reach" in noticed(first))
     assert 0.52 < mine.settings.gait.height < 1.2

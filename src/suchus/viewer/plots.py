@@ -14,6 +14,8 @@ from suchus.metrics.gait import LOADED_SHARE
 
 _POINTS = 400  # of a line; more are not seen
 _LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons
+PLOTS = 370
+"""Width of the plots to the left of the scene [pixel]."""
 AXIS = {"stroke": "#555555", "grid": {"stroke": "#e6e6e6", "width": 1}, "ticks": {"stroke": "#cccccc", "width": 1}}
 """Style of the axes, in the terms of uPlot."""
 
@@ -205,7 +207,7 @@ class Plots:
             self._charts = [Chart(gui, plan, uplot, compared=compared) for plan in plans(robot)]
             self._bars = gui.add_html("")
         panel.dock_left()
-        panel.set_width(370)
+        panel.set_width(PLOTS)
 
     def draw(
         self,

@@ -10,21 +10,24 @@ import secrets
 import socket
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from http import HTTPStatus
 from http.client import HTTPConnection, HTTPException
+from math import tan
 from threading import Event, Lock
 from time import monotonic
 from typing import Any
 from urllib.parse import unquote
 
+import numpy as np
 import viser
 from websockets.asyncio import server
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from suchus.errors import SuchusError
+from suchus.viewer.plots import PLOTS
 from suchus.viewer.stage import CAMERA, LOOKS_AT
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -135,6 +138,31 @@ MOST = 4
 """Browsers that are served at once; each walk takes a tenth to a fifth of a processor core at real time [-]."""
 
 
+PANEL = 330
+"""Width of the controls to the right of the scene [pixel]."""
+_PHONE = 576
+"""Width of a window up to which viser shows all controls in a sheet at its lower end [pixel]."""
+_SHEET = 0.42
+"""Share of the height of such a window that the sheet takes [-]."""
+_FOV = 0.72
+"""Vertical angle of view [rad]."""
+_ROOMY = 0.8
+"""Width over height of a scene from which the camera need not stand farther away [-]."""
+_INK = f"""<style>
+:root[data-mantine-color-scheme="light"] {{
+--mantine-color-dimmed: #535b63 !important; --mantine-color-gray-6: #535b63 !important; }}
+:root[data-mantine-color-scheme="light"] [role="tab"] {{ color: #005f99 !important; }}
+:root[data-mantine-color-scheme="dark"] {{
+--mantine-color-dimmed: #b8bcc0 !important; --mantine-color-dark-2: #b8bcc0 !important; }}
+:root {{ --mantine-color-red-filled: #c92a2a !important; }}
+@media (max-width: {_PHONE}px) {{
+[style*="max-height: 60%"] {{ max-height: {100 * _SHEET:.0f}% !important; width: 100% !important; }}
+[style*="max-height: 60%"] [style*="width: 20em"] {{ width: 100% !important; }}
+}}
+</style>"""
+"""Labels with a contrast of 4.5 to 1 at least, and a sheet that leaves the scene free on a phone."""
+
+
 class CannotServe(SuchusError, OSError):
     """A place in the network that cannot be listened on."""
 
@@ -148,6 +176,7 @@ class BrowserPage(ABC):
 
     def __init__(self, client: Any) -> None:
         self._client, self._closed = client, Event()
+        client.gui.add_html(_INK)
         self._status = client.gui.add_html("")
 
     @abstractmethod
@@ -176,7 +205,7 @@ class BrowserPage(ABC):
         """Put the controls to the right of the scene."""
         panel = self._client.gui.main_panel
         panel.dock_right()
-        panel.set_width(330)
+        panel.set_width(PANEL)
 
 
 class _Server(viser.ViserServer):  # type: ignore[misc]
@@ -223,7 +252,8 @@ class Viewer:
             self._server = _Server(host=host, port=port, label=title, verbose=False)
         self._server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self._server.initial_camera.position, self._server.initial_camera.look_at = camera
-        self._server.initial_camera.fov = 0.72
+        self._server.initial_camera.fov = _FOV
+        self._camera = camera
         self._server.on_client_connect(self._come)
         self._server.on_client_disconnect(self._go)
         bound = self._server.get_port()
@@ -267,6 +297,7 @@ class Viewer:
                 "Close one of them and reload this page, or start the server with a greater `--most`."
             )
             return
+        _stand_back(client.camera, *self._camera)
         try:
             page = self._open(client)
         except SuchusError as error:
@@ -284,6 +315,19 @@ class Viewer:
             page = self._pages.pop(client.client_id, None)
         if page is not None:
             page.close()
+
+
+def _stand_back(camera: Any, place: Sequence[float], looks_at: Sequence[float]) -> None:
+    """Move a camera so far back that what it looks at fits between the panels, or above the sheet of a phone."""
+    wide, high = float(camera.image_width), float(camera.image_height)
+    phone = wide <= _PHONE
+    aspect = (wide if phone else max(wide - PANEL - PLOTS, 1.0)) / max(high, 1.0)
+    target, offset = np.array(looks_at), np.array(place) - np.array(looks_at)
+    offset *= max(1.0, _ROOMY / aspect)
+    if phone:  # what stood in the middle of the window stands in the middle above the sheet
+        target = target - np.array([0.0, 0.0, _SHEET * float(np.linalg.norm(offset)) * tan(0.5 * _FOV)])
+    camera.position = target + offset
+    camera.look_at = target
 
 
 def _check_free(host: str, port: int) -> None:

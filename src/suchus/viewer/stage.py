@@ -124,7 +124,7 @@ class DrawnRod:
 
 CAMERA = (0.8, -1.4, 0.8)
 """Where the camera is at first, for a robot as long as the article's [m]."""
-LOOKS_AT = (-0.1, 0.0, 0.0)
+LOOKS_AT = (-0.02, 0.0, 0.0)
 """Where it looks at first, for a robot as long as the article's [m]."""
 _WEIGHT = 0.276  # [m]; how long the weight of a robot as long as the article's is, as long as its trunk
 _TIP, _COM, _STEP = 0.06, 0.014, 0.005  # [m]; of a push above its body, radius of a ball, between points of the track

@@ -13,7 +13,7 @@ from viser import uplot
 
 from suchus.figures import COLOURS, vortices
 from suchus.skin.mesh import Mesh
-from suchus.viewer.plots import AXIS, Line, legend, series
+from suchus.viewer.plots import AXIS, PLOTS, Line, legend, series
 from suchus.viewer.server import BrowserPage
 from suchus.viewer.stage import light, rgb
 from suchus.viewer.swim import Film, PlottedCurve, VortexFilm, colours
@@ -67,7 +67,7 @@ class CyclePage(BrowserPage):
                 for curve in curves:
                     _draw_curve(gui, curve)
             panel.dock_left()
-            panel.set_width(370)
+            panel.set_width(PLOTS)
 
 
 def status(title: str, lines: Sequence[tuple[str, str]], bar: str = "") -> str:
