@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from suchus import flow
 from suchus.errors import InvalidDesign
+from suchus.flow.midline import Remembered
 
 STILL = flow.Pose()
 SHAPES = [
@@ -62,6 +63,41 @@ def test_rates_of_the_eel_are_the_derivatives():
     for name in ("x", "y", "heading"):
         rate = (getattr(after, name) - getattr(before, name)) / (2 * dt)
         assert getattr(now, f"{name}_rate") == pytest.approx(rate, abs=1e-7)
+
+
+def test_a_remembered_midline_is_the_midline_whatever_becomes_of_what_was_given():
+    """As where a user's function writes into arrays that it has from the start."""
+    asked, room = [], np.zeros(5)
+
+    def spine(time):
+        asked.append(time)
+        room[:] = time * np.arange(5)
+        still = np.zeros(5)
+        return flow.MidlineState(
+            x=np.arange(5.0), y=room, heading=still, half_width=still + 0.1, x_rate=still, y_rate=np.arange(5.0),
+            heading_rate=still,
+        )  # fmt: skip
+
+    kept = Remembered(spine)
+    for time in (0.1, 0.2, 0.1, 0.3, 0.4, 0.1, 0.2):
+        assert np.array_equal(kept(time).y, time * np.arange(5))
+    assert asked == [0.1, 0.2, 0.3, 0.4]
+    assert kept(0.5) is kept(0.5)
+    kept(0.1)
+    assert asked == [0.1, 0.2, 0.3, 0.4, 0.5, 0.1]
+
+
+def test_a_step_makes_a_midline_once():
+    """At its end; once in eight steps, when its rates are compared, near its start too."""
+    asked, eel = [], flow.eel(1.0, stations=65)
+    body = flow.Body(shape=flow.Midline(spine=lambda time: asked.append(time) or eel.spine(time)))
+    grid = flow.Grid(cells=(96, 64), cell=1 / 48, origin=(-0.5, -0.65))
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, bodies=(body,), coarse=True, step=0.004))
+    sim.advance()
+    del asked[:]
+    for _ in range(7):
+        sim.advance()
+    assert len(asked) == 7
 
 
 def test_centre_rate_of_the_eel_is_nearly_the_derivative_of_its_centre():

@@ -148,7 +148,8 @@ class Edge:
 
     def across(self, a: np.ndarray) -> np.ndarray:
         """Return an array of the padded grid with the normal index first."""
-        return np.moveaxis(a, self.prescribed.ndim - self.axis, 0)
+        at = self.prescribed.ndim - self.axis
+        return a.transpose(at, *(k for k in range(a.ndim) if k != at))  # np.moveaxis takes ten times as long
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""

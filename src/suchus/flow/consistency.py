@@ -90,7 +90,7 @@ class GivenMotion(NamedTuple):
 
     def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
         """Return both rates and the remedy."""
-        axes = (given.size + 2) // 2  # 3 numbers in the plane, 6 in space
+        axes = 2 if given.size == 3 else 3
         turning = worst >= axes
         what, of = ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
 
@@ -123,19 +123,18 @@ class GivenMidline(NamedTuple):
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        states = [self.spine(time) for time in times]
-        for time, state in zip(times, states, strict=True):
-            if state.x.size != states[0].x.size:
+        first, *others = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
+        for time, other in zip(times[1:], others, strict=True):
+            if other.shape != first.shape:
                 raise InvalidDesign(
-                    f"the midline of {self.name} has {states[0].x.size} stations at t = {times[0]:.4g} s and "
-                    f"{state.x.size} at t = {time:.4g} s; give as many at every time."
+                    f"the midline of {self.name} has {first.shape[1]} stations at t = {times[0]:.4g} s and "
+                    f"{other.shape[1]} at t = {time:.4g} s; give as many at every time."
                 )
-        places = np.array([(s.x, s.y, s.heading, s.half_width) for s in states])
-        rates = np.array([(s.x_rate, s.y_rate, s.heading_rate, s.swell) for s in states])
-        places = places - places[0]
+        every = np.array([first, *others])  # x, y, heading, half-width, and their rates
+        places, rates = every[:, :4] - first[:4], every[:, 4:]
         places[:, 2] = _short(places[:, 2])
         arms = np.ones(places.shape[1:])
-        arms[2] = states[0].half_width
+        arms[2] = first[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return Seen(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 

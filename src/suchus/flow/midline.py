@@ -1,7 +1,9 @@
 """A body given by its midline and the half-width along it: fish, robots, foils."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass, fields, replace
+from math import isfinite
 
 import numpy as np
 
@@ -44,7 +46,7 @@ class MidlineState:
             values = getattr(self, name)
             if values is not None and values.shape != self.x.shape:
                 raise InvalidDesign(f"{name} of the midline has shape {values.shape}; x has {self.x.shape}.")
-            if values is not None and not np.isfinite(values).all():
+            if values is not None and not isfinite(values.sum()) and not np.isfinite(values).all():
                 raise InvalidDesign(f"{name} of the midline is not finite at station {np.argmin(np.isfinite(values))}.")
         if (self.half_width < 0).any():
             raise InvalidDesign(
@@ -90,6 +92,28 @@ class MidlineState:
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,
         )  # fmt: skip
+
+
+class Remembered:
+    """A midline over time that remembers what it was at the last times: a step asks for the same ones often."""
+
+    LAST = 4
+    """Times that are remembered [-]."""
+
+    def __init__(self, spine: Callable[[float], MidlineState]) -> None:
+        self._spine, self._known = spine, dict[float, MidlineState]()
+
+    def __call__(self, time: float) -> MidlineState:
+        """Return the midline at a time [s]; its arrays are its own, whatever becomes of those that were given."""
+        if time not in self._known:
+            state = copy(self._spine(time))
+            for one in fields(state):
+                if (values := getattr(state, one.name)) is not None:
+                    object.__setattr__(state, one.name, values.copy())
+            if len(self._known) == self.LAST:
+                del self._known[next(iter(self._known))]
+            self._known[time] = state
+        return self._known[time]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,10 +72,9 @@ class Pose:
         Raises:
             InvalidDesign: it has other than two or three, one that is not finite, or what only space has in the plane.
         """
-        for name in ("position", "velocity", "angle", "spin", "pitch", "roll", "spin_x", "spin_y"):
-            given = getattr(self, name)
-            if not all(map(isfinite, given if isinstance(given, tuple) else (given,))):
-                raise InvalidDesign(f"{name} of a pose is {show(given)}; finite numbers are needed.")
+        turns = self.angle + self.spin + self.pitch + self.roll + self.spin_x + self.spin_y
+        if not isfinite(sum(self.position) + sum(self.velocity) + turns):
+            self._refuse_endless()
         position, velocity = (
             (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
         )
@@ -90,6 +89,17 @@ class Pose:
                 f"{self.spin_y:.4g} rad/s; in the plane a body has an angle and a spin alone. Leave the others 0."
             )
         return replace(self, position=position, velocity=velocity)
+
+    def _refuse_endless(self) -> None:
+        """Refuse numbers that are not finite.
+
+        Raises:
+            InvalidDesign: naming them.
+        """
+        for name in ("position", "velocity", "angle", "spin", "pitch", "roll", "spin_x", "spin_y"):
+            given = getattr(self, name)
+            if not all(map(isfinite, given if isinstance(given, tuple) else (given,))):
+                raise InvalidDesign(f"{name} of a pose is {show(given)}; finite numbers are needed.")
 
     @property
     def in_plane(self) -> bool:

@@ -1,6 +1,7 @@
 """A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
 from math import isfinite, prod
 from pathlib import Path
@@ -22,7 +23,7 @@ from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import Log, columns, part_columns
-from suchus.flow.midline import Midline
+from suchus.flow.midline import Midline, Remembered
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
@@ -46,6 +47,15 @@ SLACK = 1.5
 
 OFFSET_CHANGE = 1e-3
 """Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
+
+
+def _remembering(body: AnyBody) -> AnyBody:
+    """Return a body whose midline, if it has one, is not made anew for each time that a step asks for it."""
+    if not isinstance(body.shape, Midline | Trunk):
+        return body
+    shape = copy(body.shape)
+    object.__setattr__(shape, "spine", Remembered(shape.spine))
+    return replace(body, shape=shape)
 
 
 def _fastest_marker(markers: Markers | SkinMarkers) -> float:
@@ -81,7 +91,8 @@ class Simulation(Fields):
         self.water = Fluid(setup.grid, setup.sides, setup.viscosity, setup.dtype)
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
-        self.swimmers = {b.name: Swimmer.of(b) for b in setup.bodies if isinstance(b, FreeBody)}
+        self._bodies = [_remembering(body) for body in setup.bodies]
+        self.swimmers = {b.name: Swimmer.of(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
         self._last = 0.0
@@ -92,23 +103,23 @@ class Simulation(Fields):
         self.water.border.stream = stream
         self._placed = False
         self._outlines = outlines = [
-            b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in setup.bodies
+            b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
         self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
-        self.water.place(list(setup.bodies), [self._in_frame(self.pose(b.name)) for b in setup.bodies], 0.0)
+        self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
         shared = self._watch.shared(self.water, 0.0)
         if shared is not None:
             raise InvalidDesign(shared)
-        for body, cut in zip(setup.bodies, self.water.cut, strict=True):
+        for body, cut in zip(self._bodies, self.water.cut, strict=True):
             if isinstance(body, FreeBody) and body.free is None:
                 self.swimmers[body.name].go &= np.array(symmetric(cut))
         self._log.hold(self.water, outlines)
         self._watch.layers(
-            [setup.layer_error(b, m, stream, 0.0) for b, m in zip(setup.bodies, outlines, strict=True)]
+            [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._watched = [told for b in setup.bodies for told in self._told(b)]
+        self._watched = [told for b in self._bodies for told in self._told(b)]
 
     def _told(self, body: AnyBody) -> list[Consistency]:
         """Return what is to be watched of a body's rates, after a first look at all that it gives."""
@@ -137,9 +148,9 @@ class Simulation(Fields):
 
     def pose(self, name: str, time: float | None = None) -> Pose:
         """Return the pose of a body in the world, now or (unless it is free) at another time [s]."""
-        body = next((b for b in self.setup.bodies if b.name == name), None)
+        body = next((b for b in self._bodies if b.name == name), None)
         if body is None:
-            raise UnknownName("body", name, [b.name for b in self.setup.bodies] or ("none",))
+            raise UnknownName("body", name, [b.name for b in self._bodies] or ("none",))
         if isinstance(body, Body):
             return body.pose(self.time if time is None else time).along(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
@@ -208,22 +219,22 @@ class Simulation(Fields):
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
-        poses = [self._in_frame(self.pose(b.name, time)) for b in self.setup.bodies]
-        moving = self.setup.follow is not None or not all(b.still for b in self.setup.bodies)
+        poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
+        moving = self.setup.follow is not None or not all(b.still for b in self._bodies)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
         if moving or not self._placed or abs(offset - self.water.offset) > OFFSET_CHANGE:
             self.water.offset = offset
-            self.water.place(list(self.setup.bodies), poses, time)
+            self.water.place(self._bodies, poses, time)
             self._placed = True
             self._watch.overlap(self.water, time)
         if moving:
             cell = self.setup.grid.cell
-            self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self.setup.bodies, poses, strict=True)]
+            self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self._bodies, poses, strict=True)]
         markers = self._outlines
         self._watch.layers(
             [
                 self.setup.layer_error(b, m, self._stream(time), time, slack=SLACK)
-                for b, m in zip(self.setup.bodies, markers, strict=True)
+                for b, m in zip(self._bodies, markers, strict=True)
             ]
         )
         ahead = length(self._stream(time))
@@ -240,7 +251,7 @@ class Simulation(Fields):
         if setup.contact is None or not self.swimmers:
             return {}
         outlines, centres = [], []
-        for body in setup.bodies:
+        for body in self._bodies:
             outline = body.shape.markers(self.time, self.pose(body.name), setup.grid.cell)
             assert isinstance(outline, Markers)  # contact is for plane grids
             ahead = 0.5 * dt
@@ -250,7 +261,7 @@ class Simulation(Fields):
             swimmer = self.swimmers.get(body.name)
             centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + ahead * swimmer.rate[:2])
         found = contact.forces(setup.contact, outlines, centres)
-        return dict(zip([b.name for b in setup.bodies], found, strict=True))
+        return dict(zip([b.name for b in self._bodies], found, strict=True))
 
     def _about(self, name: str, pose: Pose) -> tuple[float, ...]:
         """Return the point that a body's torque is about, in the frame of the grid [m]."""
@@ -268,11 +279,11 @@ class Simulation(Fields):
     ) -> None:
         water, setup = self.water, self.setup
         fastest = self._fastest = water.fastest()
-        about = [self._about(b.name, p) for b, p in zip(setup.bodies, poses, strict=True)]
+        about = [self._about(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
         values, body_speed = [], 0.0
         reactions, along = self._log.reactions(water, outlines, about, dt, push), []
         for k, (body, markers, point, (act, *parts)) in enumerate(
-            zip(setup.bodies, outlines, about, reactions, strict=True)
+            zip(self._bodies, outlines, about, reactions, strict=True)
         ):
             load = sample(water, markers, setup.density).load(point) if isinstance(markers, Markers) else None
             place = self.pose(body.name)
@@ -318,8 +329,8 @@ class Simulation(Fields):
         self._fastest = self.water.fastest()
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
-        poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
-        self.water.place(list(self.setup.bodies), poses, self.time)
+        poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+        self.water.place(self._bodies, poses, self.time)
         self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
 
     # --- a run -------------------------------------------------------------------------------------------------
@@ -399,8 +410,8 @@ class Simulation(Fields):
         """
         self._plane_only("a control volume", "Record.force")
         if not self._placed:
-            poses = [self._in_frame(self.pose(b.name)) for b in self.setup.bodies]
-            self.water.place(list(self.setup.bodies), poses, self.time)
+            poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+            self.water.place(self._bodies, poses, self.time)
         j0, j1, i0, i1 = self.water.window
         k = round(margin / self.setup.grid.cell)
         nx, ny = self.setup.grid.cells[:2]
@@ -422,10 +433,10 @@ class Simulation(Fields):
             InvalidDesign: in space.
         """
         self._plane_only("the pressure and friction along an outline", "Record.force")
-        names = [b.name for b in self.setup.bodies]
+        names = [b.name for b in self._bodies]
         if not names or name not in (None, *names):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
-        body = self.setup.bodies[0 if name is None else names.index(name)]
+        body = self._bodies[0 if name is None else names.index(name)]
         pose = self._in_frame(self.pose(body.name))
         outline = body.shape.markers(self.time, pose, self.setup.grid.cell)
         assert isinstance(outline, Markers)
