@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pages.stated import templates, wrapped
+from pages.stated import kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
 from suchus.verdict import RULES, counted
 
@@ -42,7 +42,11 @@ def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
         {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
     )
     for name in ("verdicts", "result", "questions"):
-        text = templates().get_template(f"readme/{name}.md").render(verdicts=table, count=count)
+        text = (
+            templates()
+            .get_template(f"readme/{name}.md")
+            .render(verdicts=table, count=count, joint_faults=kept("joint_faults"))
+        )
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"
         readme = _between(readme, start, end, wrapped(text, width=len(text)).rstrip("\n"))
     return readme

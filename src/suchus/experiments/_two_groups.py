@@ -23,7 +23,7 @@ Numbers = Callable[[xr.Dataset], Mapping[str, xr.DataArray]]
 class TwoGroups(Experiment):
     """The article's two groups in each condition as designed, and as several robots built of the design."""
 
-    judged_with = ("robot", "gait", "control_group", "cycles", "tolerances")
+    judged_with: ClassVar[tuple[str, ...]] = ("robot", "gait", "control_group", "cycles", "tolerances")
     judged_from: ClassVar[Mapping[str, float]] = {"repeats": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])

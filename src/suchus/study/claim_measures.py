@@ -104,20 +104,15 @@ def measures_of(record: xr.Dataset, least: float) -> Mapping[str, np.ndarray]:
 
 
 def _faults(forward: Mapping[str, np.ndarray], able: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what each failed joint costs, and in how many spine and tail keep more of their own displacement."""
+    """Return what each failed joint costs, and how much less of its own displacement is lost with spine and tail."""
     found: dict[str, np.ndarray] = {}
-    better = []
     for joint in FAILED_JOINTS:
         kept = []
         for condition in FAULTY:
             got, own = forward[f"{condition}_{joint}"], forward[condition]
             found[f"loss_{joint}_limp_one_{condition}"] = got / able - 1.0
             kept.append(np.maximum(got / np.where(own > _STANDS, own, np.nan), 0.0))
-        better.append(np.where(np.isnan(kept[0] + kept[1]), np.nan, kept[0] > kept[1]))
-    found["share_spine_and_tail_bear_better"] = np.mean(better, axis=0)
-    found["chance_spine_and_tail_bear_better"] = np.zeros_like(
-        able
-    )  # of one design there is no chance, only its four faults
+        found[f"gain_{joint}_limp_one"] = kept[0] - kept[1]
     return found
 
 

@@ -1,7 +1,7 @@
 """What failed joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -10,19 +10,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
+from suchus.experiment import write
 from suchus.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.figures.timeseries import draw_band, mark_cycles
-from suchus.metrics import loss
 from suchus.motion import START
 from suchus.paper import CLAIMS
 from suchus.verdict import listed
 
 _ARMS = ("coordinated", "limbs_only")
-_MARKS = {"coordinated": "o", "limbs_only": "s", "limbs_tail_lifted": "D"}
 _SHADES = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#B0558A")
-_OFFSET = {"coordinated": 0.13, "limbs_only": -0.13}
 
 
 def _named(joint: str) -> str:
@@ -36,67 +33,62 @@ def _printed(joint: str, arm: str) -> float | None:
     return None if claim is None else claim.value
 
 
-def draw_losses(record: xr.Dataset) -> Figure:
-    """Draw every reading of every fault: median and range of the change, beside what is printed.
+def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
+    """Draw what every cell costs as heat maps with numbers: joints by kind and legs, a panel for each group.
 
     Args:
-        record: of the campaign: ``forward`` and ``intact_forward`` over variation, arm, joint, kind and legs, and
-            ``lifted_forward`` of the control group with its tail in the air.
+        record: of the campaign, for its joints, kinds and legs.
+        measures: ``loss_CELL_GROUP`` and ``own_loss_CELL_limbs_only`` with their intervals.
     """
-    ours = record.intact_forward.sel(arm="coordinated", drop=True)
-    change = 100 * loss(record.forward, ours)
-    bare = 100 * loss(record.intact_forward.sel(arm="limbs_only"), ours)
-    readings = list(product(record.kind.values, record.legs.values))
+    rows = [str(joint) for joint in record.joint.values]
+    columns = [f"{kind}_{legs}" for kind, legs in product(record.kind.values, record.legs.values)]
+    maps = (
+        ("With spine and tail, of its own displacement", "loss_{}_coordinated", "coordinated"),
+        ("With limbs only, of its own displacement", "own_loss_{}_limbs_only", ""),
+        ("With limbs only, of that with spine and tail", "loss_{}_limbs_only", "limbs_only"),
+    )
     with styled():
-        figure, axes = panels(1, 1, width=8.6, height=1.2 + 1.55 * record.sizes["joint"])
-        ax = axes[0, 0]
-        ticks, labels, top = [], [], 0.0
-        for joint in record.joint.values:
-            ax.text(0.0, top + 0.62, _named(str(joint)), fontweight="bold", transform=ax.get_yaxis_transform())
-            ax.axhspan(top + 0.45, top - len(readings) + 0.45, color="#F4F4F4", zorder=0, linewidth=0)
-            for i, (kind, legs) in enumerate(readings):
-                for arm in _ARMS:
-                    losses = change.sel(joint=joint, kind=kind, legs=legs, arm=arm)
-                    _range(ax, losses, top - i + _OFFSET[arm], arm)
-                judged = kind == record.attrs["judged_kind"] and legs == record.attrs["judged_legs"]
-                if judged and joint in record.lost and "lifted_forward" in record:
-                    lifted = 100 * loss(record.lifted_forward.sel(lost=joint), ours)
-                    _range(ax, lifted, top - i + 2 * _OFFSET["limbs_only"], "limbs_tail_lifted")
-                ticks.append(top - i)
-                labels.append(f"{kind}, {'one leg' if legs == 'one' else 'both legs'}")
-            for arm in _ARMS:
-                printed, span = _printed(str(joint), arm), (top - len(readings) + 0.5, top + 0.4)
-                if printed is not None:
-                    x = [100 * printed] * 2
-                    ax.plot(x, span, color=COLOURS[arm], linewidth=2.2, linestyle=(0, (1, 1)), zorder=1)
-            top -= len(readings) + 1.25
-        ax.axvline(float(bare.median()), color=COLOURS["limbs_only"], linewidth=1.2, zorder=0.5)
-        ax.axvspan(
-            float(bare.min()), float(bare.max()), color=COLOURS["limbs_only"], alpha=0.12, linewidth=0, zorder=0.4
-        )
-        ax.axvline(0.0, color=COLOURS["coordinated"], linewidth=1.2, zorder=0.5)
-        ax.set_yticks(ticks, labels)
-        ax.set_ylim(top + 1.6, 1.5)
-        ax.tick_params(axis="y", length=0)
-        ax.spines["left"].set_visible(False)
-        ax.grid(False, axis="y")
-        ax.set_xlabel("change of displacement against the intact robot with spine and tail [%]")
-        keys = [
-            *(
-                Line2D([], [], color=COLOURS[a], marker=_MARKS[a], linewidth=2.5, label=LINES[a]["label"])
-                for a in _MARKS
-            ),
-            Line2D([], [], color=COLOURS["neutral"], linewidth=2.2, linestyle=(0, (1, 1)), label="as printed"),
-            Patch(color=COLOURS["limbs_only"], alpha=0.25, label="limbs only, intact"),
-        ]
-        figure.legend(handles=keys, loc="outside upper center", ncols=3, frameon=False)
+        figure, axes = panels(len(maps), 1, width=5.4, height=len(maps) * (1.0 + 0.46 * len(rows)))
+        for ax, (title, name, arm) in zip(axes[:, 0], maps, strict=True):
+            names = [[name.format(f"{row}_{column}") for column in columns] for row in rows]
+            change = np.array([[100.0 * measures[one] for one in line] for line in names])
+            ax.imshow(np.clip(change, -100.0, 100.0), cmap="RdBu", vmin=-130.0, vmax=130.0, aspect="auto")
+            for (i, j), value in np.ndenumerate(change):
+                _cell(ax, i, j, value, [100.0 * measures[f"{names[i][j]}{end}"] for end in ("_low", "_high")])
+            ax.set_xticks(range(len(columns)), [column.replace("_", ",\n") for column in columns])
+            ax.set_yticks(range(len(rows)), [_row(row, arm) for row in rows])
+            ax.tick_params(length=0)
+            ax.grid(False)
+            ax.set_title(title)
     return captioned(
         figure,
-        "What a failed joint costs, for every reading of the article's 'lost': median and range over the variations of "
-        "gait and friction. Dotted: as printed; of the knees the article says nothing. Orange line and band: the "
-        f"intact robot with limbs only.{_outwalked(record)} Yellow: limbs only with the tail in the air, in the judged "
-        f"reading.",
+        "What a failed joint costs: change of displacement [%], median and interval over the repeats, for every "
+        f"reading of the article's 'lost' (limp or locked, one leg or both).{_outwalked(record)}",
     )
+
+
+def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[float]) -> None:
+    colour = "white" if abs(value) > 88.0 else "#222222"
+    if not np.isfinite(value):
+        ax.text(column, row, "nothing to lose", ha="center", va="center", fontsize=7, color="#222222")
+        return
+    ax.text(column, row - 0.14, write(value, "+.0f"), ha="center", va="center", fontsize=11, color=colour)
+    low, high = interval
+    ax.text(
+        column,
+        row + 0.27,
+        f"{write(low, '+.0f')} to {write(high, '+.0f')}",
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        color=colour,
+    )
+
+
+def _row(joint: str, arm: str) -> str:
+    """Return the name of a joint, and below it what the article prints of it in a group."""
+    printed = _printed(joint, arm)
+    return joint.replace("_", " ") if printed is None else f"{joint.replace('_', ' ')}\n(printed {100 * printed:+.0f})"
 
 
 def _outwalked(record: xr.Dataset) -> str:
@@ -110,12 +102,6 @@ def _outwalked(record: xr.Dataset) -> str:
         f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
         f"{listed([f'{p:+.0%}' for p in less])} with a failed joint let a damaged robot out-walk it."
     )
-
-
-def _range(ax: Axes, values: xr.DataArray, y: float, arm: str) -> None:
-    low, middle, high = (float(values.quantile(q)) for q in (0.0, 0.5, 1.0))
-    ax.plot([low, high], [y, y], color=COLOURS[arm], linewidth=2.5, alpha=0.55, solid_capstyle="round", zorder=3)
-    ax.plot([middle], [y], marker=_MARKS[arm], markersize=6, color=COLOURS[arm], zorder=4)
 
 
 def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
@@ -136,10 +122,10 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
             ax.set_axis_off()
         for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
             for arm in _ARMS:
-                paths = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(variation="run")
+                paths = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(repeat="run")
                 draw_band(ax, paths, arm)
                 ax.plot(record.time, paths.median("run"), **LINES[arm])
-                whole = intact.sel(arm=arm).median("variation")
+                whole = intact.sel(arm=arm).median("repeat")
                 ax.plot(record.time, whole, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
                 printed = _printed(joint, arm)
                 if end > START + 1.5 * period and printed is not None:
@@ -159,7 +145,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
     return captioned(
         figure,
         f"Displacement of the centre of mass with a {kind} joint in {of} of a girdle: medians and ranges over the "
-        "variations of gait and friction. Dotted: the intact robots. Diamonds: what the "
+        "repeats. Dotted: the intact robots. Diamonds: what the "
         f"article's percentages make of its {CLAIMS['displacement_coordinated'].value:g} m.",
     )
 
@@ -173,12 +159,12 @@ def _keys() -> list[Line2D]:
 
 
 def draw_tracks(record: xr.Dataset) -> Figure:
-    """Draw the ways on the ground in the gait as given, a panel per joint: limp joints turn the robot.
+    """Draw the ways on the ground in one repeat, a panel per joint: limp joints turn the robot.
 
     Args:
-        record: of the campaign; the first variation is the gait as given.
+        record: of the campaign; the first repeat is drawn.
     """
-    given = record.isel(variation=0).sel(arm="coordinated")
+    given = record.isel(repeat=0).sel(arm="coordinated")
     looks: dict[tuple[str, str], dict[str, Any]] = {
         ("limp", "one"): {"color": "#B0558A", "label": "limp, one leg"},
         ("limp", "both"): {"color": "#B0558A", "label": "limp, both legs", "linestyle": (0, (3, 1.2))},
@@ -206,8 +192,8 @@ def draw_tracks(record: xr.Dataset) -> Figure:
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
     return captioned(
         figure,
-        "Tracks of the centre of mass seen from above, with spine and tail, the left joint or both failed; arrows show "
-        "the heading at the end.",
+        "Tracks of the centre of mass in one repeat seen from above, with spine and tail, the left joint or both "
+        "failed; arrows show the heading at the end.",
     )
 
 
@@ -230,13 +216,13 @@ def draw_held(record: xr.Dataset) -> Figure:
     Args:
         record: of the campaign: ``held_forward`` over condition, failed joint and hold.
     """
-    whole = float(record.intact_forward.sel(arm="coordinated")[0])
+    whole = float(record.held_intact_forward.sel(arm="coordinated"))
     change = 100 * (record.held_forward / whole - 1.0)
     marks = dict(zip(record.lost.values, itertools.cycle("oD^vsP"), strict=False))
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.2, sharex=True, sharey=True)
         for ax, arm in zip(axes[0], _ARMS, strict=True):
-            bare = 100 * (float(record.intact_forward.sel(arm=arm)[0]) / whole - 1.0)
+            bare = 100 * (float(record.held_intact_forward.sel(arm=arm)) / whole - 1.0)
             ax.axhline(bare, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
             for i, joint in enumerate(record.lost.values):
                 ax.plot(
