@@ -6,7 +6,7 @@ from suchus.paper import CLAIMS
 from suchus.verdict.judging import Examples
 from suchus.verdict.rule import Clause, Rule, between
 
-_REPEATS = "the median of the robots that are built of the design"
+_BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
 _MOST = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
 _ENDS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
@@ -50,7 +50,7 @@ def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
         kind="fitted" if f"fault_{joint}_{arm}" in _FITTED else "measured",
         holds=tuple(Clause(measure, one.relation, one.bound, one.why) for one in said),
         spread=(measure,),
-        of=_REPEATS,
+        of=_BUILT,
         why=(_bare(joint) if arm == "limbs_only" else "") + why,
     )
 
@@ -102,7 +102,7 @@ RULES = (
         "{com_rise_limp:mm+.1f} mm. The foot is off the ground for {foot_free_limp:.0%} of its swing (intact "
         "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
         spread=("support_share_limp", "com_rise_limp", "foot_free_limp"),
-        of=_REPEATS,
+        of=_BUILT,
         unswept="the campaign of each design keeps no loads of the feet, only how far it gets",
     ),
     Rule(
@@ -114,7 +114,7 @@ RULES = (
             for joint in _BORNE
         ),
         spread=tuple(f"gain_{joint}_limp_one" for joint in _BORNE),
-        of=_REPEATS,
+        of=_BUILT,
         why=_borne(),
     ),
 )
