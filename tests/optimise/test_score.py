@@ -7,12 +7,14 @@ import pytest
 import xarray as xr
 
 from suchus.design import servo_names
-from suchus.errors import SuchusError
+from suchus.errors import OutsideLimits, SuchusError
 from suchus.gaits import own_gait
 from suchus.kinematics.tail import servo_angle
 from suchus.motion import excess
 from suchus.optimise import Aim, Limit
-from suchus.optimise.evaluate import allowed, excesses, losses, score, units
+from suchus.optimise import evaluate as evaluating
+from suchus.optimise.aims import AIMS, LIMITS
+from suchus.optimise.evaluate import allowed, evaluate, excesses, losses, score, units
 from suchus.optimise.search import SearchResult
 from suchus.robots import ROBOTS
 
@@ -101,3 +103,46 @@ def test_the_own_gait_of_any_body_has_no_excess_and_a_faster_one_has(name):
     assert excess(robot, replace(own, period=1e-3 * own.period)) > 0.1 * speed
     with pytest.raises(SuchusError):
         excess(ROBOTS["strider" if name != "strider" else "salamander"], own)
+
+
+def test_a_candidate_that_the_simulation_refuses_costs_no_other_one_its_place(small, monkeypatch):
+    strokes = np.array([[0.3, 0.4], [0.5, 0.4], [0.7, 0.4]])
+    alone = evaluate(small, strokes)
+    refused = small.candidate({"gait.stroke": 0.5, "gait.trunk_bend": 0.4}).gait
+    simulate = evaluating.simulate
+
+    def refusing(runs, **options):
+        if any(run.gait == refused for run in runs):
+            raise OutsideLimits("a foot point between those that were looked at is out of reach")
+        return simulate(runs, **options)
+
+    monkeypatch.setattr(evaluating, "simulate", refusing)
+    tried = evaluate(small, strokes)
+    assert tried.status.values.tolist() == ["walked", "refused", "walked"]
+    assert tried.beyond.values.tolist() == [0.0, np.inf, 0.0]
+    assert tried.aim_displacement.values[[0, 2]].tolist() == alone.aim_displacement.values[[0, 2]].tolist()
+
+
+def test_the_foot_that_is_lifted_least_and_those_that_stand_most_and_least_are_told():
+    time = np.arange(0.0, 9.0, 0.01)
+    legs = ["LF", "RF", "LH", "RH"]
+    lifts, stands = np.array([0.03, 0.02, 0.004, 0.01]), np.array([0.5, 0.75, 1.0, 0.25])
+    swing = (time % 4.0)[:, None] / 4.0 >= stands
+    height = np.where(swing, lifts, 0.0)
+    at_rest = stands == 1.0
+    height[:, at_rest] = lifts[at_rest] * (np.arange(len(time)) % 2)[:, None]
+    level = np.zeros_like(height)
+    dims = ("run", "time", "leg", "xyz")
+    position, force = (np.stack([level, level, up], axis=-1)[None] for up in (height, 20.0 * ~swing))
+    record = xr.Dataset(
+        {
+            "foot_position": (dims, position),
+            "foot_force": (dims, force),
+            "period": ("run", [4.0]),
+            "mass": ("run", [3.5]),
+        },
+        coords={"time": time, "leg": legs, "xyz": ["x", "y", "z"]},
+    )
+    assert AIMS["foot_lift"].measure([], record) == pytest.approx([0.004])
+    assert LIMITS["duty_greatest"].measure([], record) == pytest.approx([1.0])
+    assert LIMITS["duty_least"].measure([], record) == pytest.approx([0.25], abs=0.01)

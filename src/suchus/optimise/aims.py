@@ -86,6 +86,22 @@ def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     return np.array(least)
 
 
+def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return how far the foot is lifted that is lifted least."""
+    del runs
+    return np.asarray(metrics.foot_clearance(record).min("leg").values, dtype=float)
+
+
+def _stands_most(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.duty_factor(record).max("leg").values, dtype=float)
+
+
+def _stands_least(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.duty_factor(record).min("leg").values, dtype=float)
+
+
 def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     """Return the least height reached while it is meant to stand; zero for a run that does not stand up."""
     seconds = np.zeros(len(runs))
@@ -105,6 +121,7 @@ AIMS: Mapping[str, Kind] = MappingProxyType(
         "stability": Kind(_height_std, "m", "less", "standard deviation of the height of the centre of mass"),
         "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis"),
         "turning": Kind(_turn, "rad", "more", "change of heading, to whichever side"),
+        "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least"),
         "standing_reach": Kind(_standing, "m", "more", "least height reached while standing on hind legs and tail"),
     }
 )
@@ -119,6 +136,9 @@ LIMITS: Mapping[str, Kind] = MappingProxyType(
         "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis", 0.1),
         "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
         "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
+        "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least", 0.01),
+        "duty_greatest": Kind(_stands_most, "-", "less", "share of the time in which the foot stands that stands most"),
+        "duty_least": Kind(_stands_least, "-", "more", "share of the time in which the foot stands that stands least"),
     }
 )
 """Quantities that a search can limit, by name."""

@@ -50,7 +50,9 @@ def evaluate(
         except SuchusError:
             beyond[i] = np.inf
     table = {name: np.full(count, np.nan) for name in columns(spec)}
-    for i, numbers in _walked(spec, runs, progress, timestep or spec.timestep).items():
+    walked = _walked(spec, runs, progress, timestep or spec.timestep)
+    beyond[[i for i in runs if i not in walked]] = np.inf
+    for i, numbers in walked.items():
         status[i] = APART if numbers is None else WALKED
         for name, value in (numbers or {}).items():
             table[name][i] = value
@@ -75,12 +77,23 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
 def _walked(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
 ) -> dict[int, dict[str, float] | None]:
-    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts."""
+    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts.
+
+    A candidate that the simulation refuses, as for a foot point between those that were looked at, has no row; the
+    batch is halved until it is found.
+    """
     if not runs:
         return {}
     scales = spec.friction_scales
     laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
-    record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+    try:
+        record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+    except SuchusError:
+        if len(runs) == 1:
+            return {}
+        items = list(runs.items())
+        halves = dict(items[: len(items) // 2]), dict(items[len(items) // 2 :])
+        return {i: row for half in halves for i, row in _walked(spec, half, progress, timestep).items()}
     measured = measure(spec, laid, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     measures_of: dict[int, dict[str, float] | None] = {}
