@@ -9,6 +9,7 @@ from suchus.control import Swimming
 from suchus.design import Robot, with_values
 from suchus.design.flotation import float_hull
 from suchus.land import Lake, Run, simulate
+from suchus.land.afloat import capacity
 from suchus.motion import LIMBS_UP, Gait, with_limbs
 from suchus.progress import Progress, silent
 from suchus.water import Outline, Undulation, taken, undulation, unevenness
@@ -40,15 +41,17 @@ def swum_in_sections(robot: Robot, motions: Sequence[Gait], cycles: int, progres
     """Return the record of swims at the surface in six degrees of freedom, one run for each motion.
 
     Args:
-        robot: who swims; without a hull it gets one with which it floats.
+        robot: who swims; if it has no hull and would sink it gets one with which it floats.
         motions: that are commanded; the limbs are held up.
         cycles: that are swum [-].
         progress: told the share that is done.
     """
-    floating = robot if robot.hull is not None else with_values(robot, {"hull": float_hull(robot)})
+    lake = Lake(level=2.0)
+    volume, weight = capacity(robot, lake)
+    sinks = robot.hull is None and volume < weight
+    floating = with_values(robot, {"hull": float_hull(robot)}) if sinks else robot
     runs = [
-        Run(robot=floating, gait=with_limbs(robot, gait, LIMBS_UP), lake=Lake(level=2.0), control=Swimming())
-        for gait in motions
+        Run(robot=floating, gait=with_limbs(robot, gait, LIMBS_UP), lake=lake, control=Swimming()) for gait in motions
     ]
     return simulate(runs, duration=cycles / motions[0].frequency, progress=progress)
 

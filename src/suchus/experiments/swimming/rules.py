@@ -47,8 +47,8 @@ _SPEEDS = {
 _OF_TAIL = _rungs({}, _SPEEDS)
 _OF_SPINE = _rungs(
     {
-        "resistive": "Drag alone gives a tail with one input no mean thrust, since it comes back the way it went: "
-        "without the spine it would stand still by assumption."
+        "resistive": "Drag alone gives a tail with one input no mean thrust, since it comes back the way it went: of "
+        "the article's robot, whose tail hangs on one cable, the answer would be assumed."
     },
     _SPEEDS,
 )
