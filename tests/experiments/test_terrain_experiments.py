@@ -139,7 +139,7 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
     arms, seeds = [*SINGLE, "switching"], 2
     forward = np.ones((4, len(arms), seeds))
     for ground, erect in enumerate(ahead, start=1):
-        forward[ground, arms.index("high_walk_level")] = 1.2 if erect else 0.8
+        forward[ground, arms.index("high_walk")] = 1.2 if erect else 0.8
     values = {name: np.zeros_like(forward) for name in ("aside", "fell", "belly")} | {"cost": np.ones_like(forward)}
     values["cost"][0, arms.index("low_crawl")] = [0.5, 0.6]
     met_by = np.ones_like(forward)
@@ -157,9 +157,10 @@ def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     found = {name: m.value for name, m in EXPERIMENTS["terrain"].measure(rough_record()).items()}
     assert found["erect_ahead_share"] == pytest.approx(2 / 3)
     assert found["met_judged"] == 1.0
-    assert (found["flat_cost_ratio"], found["flat_cost_ratio_high"]) == (0.5, 0.6)
+    assert (found["flat_cost_ratio_low"], found["flat_cost_ratio_high"]) == (0.5, 0.6)
     assert found["transitions_upright"] == 0.5  # 1.1 rad are more than 60 degrees
     assert found["transition_after_least"] == 0.3
+    assert found["erect_ahead_share_low"] < 2 / 3 < found["erect_ahead_share_high"]
     behind = EXPERIMENTS["terrain"].measure(rough_record(ahead=(False, False, True)))
     assert behind["erect_ahead_share"].value == pytest.approx(1 / 3)
     missed = EXPERIMENTS["terrain"].measure(rough_record(met=0.0))

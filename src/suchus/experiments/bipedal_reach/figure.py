@@ -20,7 +20,7 @@ _FEEDBACK = {"on": COLOURS["ours"], "off": COLOURS["limbs_only"]}
 
 
 def draw_heights(record: xr.Dataset, hold: float) -> Figure:
-    """Draw the height that the robot reaches over time, with the repeats and the article's two heights.
+    """Draw the height that the robot reaches over time, with robots as built and the article's two heights.
 
     Args:
         record: of the experiment.
@@ -50,7 +50,7 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
         f"Height of the highest point of head and trunk. The robot crawls, stands for {hold:.0f} s, sits down and "
         "crawls on. Dashed: the article's two heights, "
         + " and ".join(f"{CLAIMS[key].value or 0.0:.2f} m" for key in ("height_crawl", "height_standing"))
-        + ". Bands: the range of repeats with noise on the servos.",
+        + ". Bands: robots built of the design.",
     )
 
 
@@ -64,7 +64,7 @@ def _lay_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> Non
             band.repeat_time, band.min("repeat"), band.max("repeat"), color=colour, alpha=0.3, linewidth=0, label=label
         )
     part = record.reach.isel(run=0).sel(time=slice(begin, stop))
-    ax.plot(part.time, part, color=COLOURS["ours"], label="no noise")
+    ax.plot(part.time, part, color=COLOURS["ours"], label="as designed")
     ax.set_xlim(begin, stop)
 
 

@@ -13,11 +13,11 @@ from suchus.control.topology import topology
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ends, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.gaits import GAITS, own_gait
-from suchus.land import Ground, Limp, Locked, Push, Run, simulate
+from suchus.land import Ground, Limp, Locked, Push, Run, Tolerances, simulate
 from suchus.metrics import heading
 from suchus.metrics.coordination import WITHIN, cycles_until, phase_error
 from suchus.motion import START, Gait, movement
@@ -56,8 +56,6 @@ DISTURBANCES = (
 """What happens after one cycle; a slope is there from the beginning."""
 SHOWN = ("open", "closed", "steered")
 """The arms whose measures are named."""
-_GROUP = 8
-"""Random starts that are counted together, for the spread [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,8 +104,10 @@ class Feedback(Experiment):
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
     """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots of the starts, each built of the design, and their grounds differ from it."""
     seed: int = 0
-    """Seed of the first start; the others follow."""
+    """Seed of the first start and its robot; the others follow."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -195,7 +195,12 @@ class Feedback(Experiment):
         controls = {law: self._suited(control) for law, control in STARTS.items()}
         deaf = [law for law, control in controls.items() if not control.feels and law not in _DISTANCES]
         cells = [(law, i) for law in STARTS for i in range(self.starts) if i == 0 or law not in deaf]
-        runs = [Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i) for law, i in cells]
+        runs = [
+            self.tolerances.built(
+                Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
+            )
+            for law, i in cells
+        ]
         duration = START + self.cycles * self.gait.period
         record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         shape = (len(STARTS), self.starts, record.sizes["time"])
@@ -325,7 +330,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures = {}
     for law in record.law.values:
         taken = cycles_taken.sel(law=law).values
-        measures[f"converged_{law}"] = Measure(float(np.isfinite(taken).mean()), "-")
+        measures |= estimated(f"converged_{law}", np.isfinite(taken), "-", middle=np.mean)
         measures[f"phase_error_{law}"] = Measure(float(_ending(error.sel(law=law), hold * period).mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
             worst = np.quantile(np.minimum(taken, cycles), 0.9)
@@ -333,16 +338,13 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
     measures["converged_closed"] = measures["converged_cross_load"]
     measures["converged_open"] = measures["converged_off"]
-    converged = np.isfinite(cycles_taken.sel(law="cross_load").values)
-    shares = [float(group.mean()) for group in np.array_split(converged, max(converged.size // _GROUP, 1))]
-    measures |= ends("converged_cross_load", shares, "-")
     distances = _ending(record.start_way.rename(start_time="time"), hold * period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
     for name, law in zip(("shared", "isolated"), _DISTANCES, strict=True):
-        measures[f"way_{name}"] = Measure(float(distances.sel(law=law).mean()), "m")
+        measures |= estimated(f"way_{name}", distances.sel(law=law), "m")
         measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
-        measures[f"way_{name}_most"] = Measure(float(distances.sel(law=law).max()), "m")
-    return measures
+    shared, isolated = (distances.sel(law=law, drop=True) for law in _DISTANCES)
+    return measures | estimated("way_gain_shared", shared - isolated, "m")
 
 
 def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> dict[str, Measure]:

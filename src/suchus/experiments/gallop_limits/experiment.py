@@ -18,7 +18,7 @@ from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
 from suchus.figures import captioned
 from suchus.figures.style import COLOURS, panels, styled
 from suchus.gaits import GAITS
-from suchus.land import Run, simulate
+from suchus.land import Run, Tolerances, simulate
 from suchus.metrics import between, displacement, flight_share
 from suchus.motion import START, Gait
 from suchus.robots import ROBOTS
@@ -39,7 +39,7 @@ class GallopLimits(Experiment):
     shows = "Section II.A"
     answers = ("speed_bound", "flight_bound", "bound_over_walk", "servo_speed_needed", "gallops_share")
     needs = ("legs", "shells", "article_spine", "cable_tail")
-    judged_with = ("robot", "bounds", "trots", "walks", "noise")
+    judged_with = ("robot", "bounds", "trots", "walks", "tolerances")
     judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -58,8 +58,10 @@ class GallopLimits(Experiment):
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
     torques: tuple[float, ...] = (1.5, 3.0, 6.0)
     """Torque limits of the legs' servos [N m]; those of the trunk and tail keep their ratio to them."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle [rad]: what only works without it does not count."""
+    repeats: int = 3
+    """Robots that are built of each design: the middle of theirs counts, and no gait that only the design can [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much they and their grounds differ from it."""
     seconds: float = 3.0
     """Duration for which each run is measured, after a second more [s]."""
     timestep: float = 0.002
@@ -71,13 +73,13 @@ class GallopLimits(Experiment):
             check.rising("torques", 0.01, 1e3, "N m")
             check.number("seconds", 0.05, 60.0, "s")
             check.number("timestep", 1e-5, 0.01, "s")
-            check.number("noise", 0.0, 1.0, "rad")
+            check.whole("repeats", 1, 1000)
             for name in ("bounds", "walks"):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
 
     def quick(self) -> "GallopLimits":
-        """Return two speeds, one torque, half a second, a coarse step."""
-        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), seconds=0.5, timestep=0.005)
+        """Return two speeds, one torque, one robot of each design, half a second, a coarse step."""
+        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Bound, trot and walk with every servo on the map."""
@@ -86,12 +88,13 @@ class GallopLimits(Experiment):
         gaits: list[Gait] = [*(one.gait for _, one in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
         robots = [self._with(torque, speed) for torque, speed in cells]
-        runs = [Run(robot=robot, gait=gait, noise=self.noise, label=gait.name) for robot in robots for gait in gaits]
+        designed = [Run(robot=robot, gait=gait, label=gait.name) for robot in robots for gait in gaits]
+        runs = self.tolerances.repeats(designed, self.repeats)
         duration = round(START + _RUN_UP + self.seconds, 2)
         record = simulate(
             runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
         )
-        shape = (len(self.torques), len(self.speeds), len(gaits))
+        shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
         part = between(record, START + _RUN_UP)
         fast = abs(part.servo_velocity.isel(servo=self._legs)).quantile(0.99, "time").max("servo")
         values = {
@@ -103,7 +106,7 @@ class GallopLimits(Experiment):
             {
                 name: (
                     ("torque", "servo_speed", "gait"),
-                    array.values.reshape(shape),
+                    np.median(array.values.reshape(shape), axis=-1),
                     {"units": unit, "long_name": what},
                 )
                 for name, (array, unit, what) in values.items()
@@ -152,7 +155,7 @@ class GallopLimits(Experiment):
             ),
         )
         said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, nearest)]
-        runs = [i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i])) for i in (best, nearest)]
+        runs = [(i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats for i in (best, nearest)]
         return replayed(
             "gallop_replay.html",
             record.isel(run=runs[0]),

@@ -15,12 +15,12 @@ from suchus.design.checks import Checks
 from suchus.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
+from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.figures.gait_diagram import GAIT_LINES
 from suchus.gaits import GAITS, own_gait
-from suchus.land import Ground, Run, simulate
+from suchus.land import Ground, Run, Tolerances, simulate
 from suchus.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.motion import START, Gait, suits
 from suchus.robots import ROBOTS
@@ -87,8 +87,8 @@ class Terrain(Experiment):
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
     """Runs of each posture on each ground [-]."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle in the repeats on even ground [rad]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots and grounds of the seeds differ from their design."""
     walked: float = 8.0
     """Duration for which each run walks [s], 0.5 to 3600."""
     timestep: float = 0.005
@@ -106,7 +106,6 @@ class Terrain(Experiment):
             check.whole("transitions", 1, 6)
             check.whole("seeds", 1, 1000)
             check.number("walked", 0.5, 3600.0, "s")
-            check.number("noise", 0.0, 1.0, "rad")
             check.number("timestep", 1e-5, 0.01, "s")
 
     def quick(self) -> "Terrain":
@@ -247,14 +246,9 @@ class Terrain(Experiment):
     def _rough(self, progress: Progress) -> xr.Dataset:
         grounds, arms = self.grounds(), self.arms()
         runs = [
-            Run(
-                robot=self.robot,
-                gait=gait,
-                control=control,
-                ground=Ground(relief=relief),
-                label=arm,
-                seed=seed,
-                noise=self.noise if relief is None and seed else 0.0,
+            self.tolerances.built(
+                Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm, seed=seed),
+                seed,
             )
             for _, _, reliefs in grounds
             for arm, (gait, control) in arms.items()
@@ -378,28 +372,30 @@ def _most_tilt(record: xr.Dataset) -> np.ndarray:
 
 
 def _flat(record: xr.Dataset) -> dict[str, Measure]:
-    """Return what the crawl costs on even ground, of what the high walk costs, over the repeats with noise."""
+    """Return what the crawl costs on even ground, of what the high walk costs, of robots as built."""
     cost = record.isel(ground=0).cost
     ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
-    return ranged("flat_cost_ratio", ratio[0], ratio, "-")
+    return estimated("flat_cost_ratio", ratio, "-")
 
 
 def _rough(rough: xr.Dataset) -> dict[str, Measure]:
-    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little."""
+    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little.
+
+    Each seed of each kind and height is a ground of its own, and a robot of its own.
+    """
     met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
-    ahead = (rough.forward.sel(arm="high_walk_level") > rough.forward.sel(arm="low_crawl")).mean("ground")
-    distance = rough.forward.mean("seed")
-    crawl, semi, erect, level = (distance.sel(arm=arm) for arm in SINGLE)
+    crawl, semi, erect, level = (rough.forward.sel(arm=arm, drop=True).stack(one=("ground", "seed")) for arm in SINGLE)
     met_enough = met >= 1.0
+
+    def share(name: str, ahead: xr.DataArray) -> dict[str, Measure]:
+        return estimated(name, ahead.astype(float) if met_enough else [float("nan")], "-", middle=np.mean)
+
     return {
         "met_judged": Measure(met, "-"),
-        "rough_grounds": Measure(float(rough.sizes["ground"]), "-"),
-        "rough_runs": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
-        "erect_ahead_share": Measure(float((level > crawl).mean()) if met_enough else float("nan"), "-"),
-        "erect_ahead_share_low": Measure(float(ahead.min()) if met_enough else float("nan"), "-"),
-        "erect_ahead_share_high": Measure(float(ahead.max()) if met_enough else float("nan"), "-"),
-        "erect_open_loop_ahead_share": Measure(float((erect > crawl).mean()), "-"),
-        "semi_erect_ahead_of_both_share": Measure(float(((semi > level) & (semi > crawl)).mean()), "-"),
+        "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
+        **share("erect_ahead_share", erect > crawl),
+        **share("erect_level_ahead_share", level > crawl),
+        **share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl)),
     }
 
 
