@@ -155,16 +155,16 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
 
 def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     found = {name: m.value for name, m in EXPERIMENTS["terrain"].measure(rough_record()).items()}
-    assert found["erect_ahead_share"] == pytest.approx(2 / 3)
+    assert found["erect_open_loop_ahead_share"] == pytest.approx(2 / 3)
     assert found["met_judged"] == 1.0
     assert (found["flat_cost_ratio_low"], found["flat_cost_ratio_high"]) == (0.5, 0.6)
     assert found["transitions_upright"] == 0.5  # 1.1 rad are more than 60 degrees
     assert found["transition_after_least"] == 0.3
-    assert found["erect_ahead_share_low"] < 2 / 3 < found["erect_ahead_share_high"]
+    assert found["erect_open_loop_ahead_share_low"] < 2 / 3 < found["erect_open_loop_ahead_share_high"]
     behind = EXPERIMENTS["terrain"].measure(rough_record(ahead=(False, False, True)))
-    assert behind["erect_ahead_share"].value == pytest.approx(1 / 3)
+    assert behind["erect_open_loop_ahead_share"].value == pytest.approx(1 / 3)
     missed = EXPERIMENTS["terrain"].measure(rough_record(met=0.0))
-    assert np.isnan(missed["erect_ahead_share"].value)
+    assert np.isnan(missed["erect_open_loop_ahead_share"].value)
     assert missed["met_step_low_crawl"].value == 0.5
     assert "met 100% of the bumps, 50% of the steps" in EXPERIMENTS["terrain"].explain(
         {n: m.value for n, m in missed.items()}

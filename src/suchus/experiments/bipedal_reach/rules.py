@@ -19,7 +19,7 @@ RULES = (
                 "hip_height_plausible",
                 "the robot can reach the printed height when it crawls: with hips no higher than a sprawled crawl has",
             ),
-            Clause("distance_crawl_high", ">", 0.0, "a crawl that gets forward"),
+            Clause("distance_high_crawl", ">", 0.0, "a crawl that gets forward"),
         ),
         spread=("reach_crawl",),
         of=_BUILT,
@@ -98,7 +98,7 @@ _CRAWL = {
     "reach_crawl_high": 0.16,
     "hips_at_printed_height": 0.119,
     "hip_height_plausible": 0.12,
-    "distance_crawl_high": 0.3,
+    "distance_high_crawl": 0.3,
     "hip_height": 0.09,
 }
 _LOW = _CRAWL | {"reach_crawl": 0.13, "reach_crawl_low": 0.13}
@@ -141,8 +141,8 @@ EXAMPLES: Examples = {
         (_HIGH | {"reach_crawl_low": 0.164}, "reproduced"),
         (_HIGH | {"reach_crawl_low": 0.166}, "same sense"),
         (_CRAWL | {"hips_at_printed_height": 0.121}, "contradicted"),
-        (_CRAWL | {"distance_crawl_high": 0.01}, "reproduced"),
-        (_CRAWL | {"distance_crawl_high": -0.01}, "contradicted"),
+        (_CRAWL | {"distance_high_crawl": 0.01}, "reproduced"),
+        (_CRAWL | {"distance_high_crawl": -0.01}, "contradicted"),
     ],
     "height_standing": [
         (_STAND, "fitted"),

@@ -393,8 +393,8 @@ def _rough(rough: xr.Dataset) -> dict[str, Measure]:
     return {
         "met_judged": Measure(met, "-"),
         "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
-        **share("erect_ahead_share", erect > crawl),
-        **share("erect_level_ahead_share", level > crawl),
+        **share("erect_open_loop_ahead_share", erect > crawl),
+        **share("erect_ahead_share", level > crawl),
         **share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl)),
     }
 
