@@ -207,8 +207,7 @@ def _waves() -> Lesson:
     return Lesson(
         name="waves",
         title="How does a body without legs swim?",
-        caption="A row of joints in water. Each swings just as far in every run; only which swings first is "
-        "different.",
+        caption="A row of joints in water. Each swings just as far in every run; only which swings first is different.",
         choice="Waves on the body",
         runs=tuple(
             Run(

@@ -26,11 +26,12 @@ RULES = (
         ),
         spread=("erect_open_loop_ahead_share",),
         of="grounds, each with its own obstacles and its own robot",
-        why="Open loop, since the article names no IMU: on {erect_open_loop_ahead_share:.0%} ({erect_open_loop_ahead_share_low:.0%} to "
-        "{erect_open_loop_ahead_share_high:.0%}) of {rough_grounds:.0f} grounds 30 mm and rougher, all met by all robots, the "
-        "erect walk gets farther than the crawl, falling {falls_rough_high_walk:.0f} times (the crawl "
-        "{falls_rough_low_crawl:.0f} times). With an IMU that is so on {erect_ahead_share:.0%}, with "
-        "{falls_rough_high_walk_level:.0f} falls. Semi-erect legs beat both on {semi_erect_ahead_of_both_share:.0%}.",
+        why="Open loop, since the article names no IMU: on {erect_open_loop_ahead_share:.0%} "
+        "({erect_open_loop_ahead_share_low:.0%} to {erect_open_loop_ahead_share_high:.0%}) of {rough_grounds:.0f} "
+        "grounds 30 mm and rougher, all met by all robots, the erect walk gets farther than the crawl, falling "
+        "{falls_rough_high_walk:.0f} times (the crawl {falls_rough_low_crawl:.0f} times). With an IMU that is so on "
+        "{erect_ahead_share:.0%}, with {falls_rough_high_walk_level:.0f} falls. Semi-erect legs beat both on "
+        "{semi_erect_ahead_of_both_share:.0%}.",
     ),
     Rule(
         claim="switches_structure",
