@@ -10,8 +10,11 @@ from suchus.design import crocodile
 from suchus.errors import OutsideLimits
 from suchus.experiment import Outcome
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments.leg_kinematics.experiment import _SHOWN as LEG_SHOWN
+from suchus.experiments.spine_kinematics.experiment import _SHOWN as SPINE_SHOWN
 from suchus.figures import caption, save
 from suchus.gaits import GAITS
+from suchus.kinematics import leg, spine
 from suchus.motion import suits
 from suchus.robots import ROBOTS
 from suchus.verdict import judge
@@ -53,12 +56,31 @@ def test_every_variable_has_a_unit(name, outcomes):
 @pytest.mark.parametrize("name", MODULES)
 def test_figures_are_drawn_with_captions(name, outcomes, tmp_path):
     figures = MODULES[name].draw(outcomes[name])
-    assert len(figures) == (4 if name == "tail_bending" else 3)
+    assert len(figures) == 4 if name == "tail_bending" else "frames" in figures
     for stem, figure in figures.items():
         assert isinstance(figure, Figure)
         assert len(caption(figure)) > 60
         for file in save(figure, tmp_path, stem):
             assert file.stat().st_size > 3000
+
+
+def test_the_frames_that_are_drawn_are_those_of_the_tables(outcomes):
+    drawn, back = (outcomes[name].record for name in ("leg_kinematics", "spine_kinematics"))
+    for record, count in ((drawn, 5), (back, 6)):
+        turned = record.frame_axis.values
+        assert turned.shape == (count, 3, 3)
+        np.testing.assert_allclose(turned @ np.swapaxes(turned, 1, 2), np.tile(np.eye(3), (count, 1, 1)), atol=1e-12)
+        np.testing.assert_allclose(np.linalg.det(turned), 1.0)  # right-handed beside the robot too
+    np.testing.assert_allclose(drawn.frame_axis[0], [[0, 1, 0], [1, 0, 0], [0, 0, -1]])  # outward, forward, down
+    np.testing.assert_allclose(drawn.frame_origin[2], drawn.frame_origin[1])
+    robot = ROBOTS["caiman"]
+    end = spine.forward(robot.spine, np.array(SPINE_SHOWN))[:3, 3]
+    np.testing.assert_allclose(back.frame_origin[-1], end, atol=1e-12)
+    outward, ahead, down = leg.forward(robot.hind_leg, np.array(LEG_SHOWN[:3]))
+    np.testing.assert_allclose(drawn.frame_origin[-1], [ahead, outward, -down], atol=1e-12)
+    figure = MODULES["leg_kinematics"].draw(outcomes["leg_kinematics"])["frames"]
+    words = {text.get_text() for text in figure.axes[0].texts}
+    assert {f"${name}_{i}$" for name in "XZ" for i in range(5)} <= words
 
 
 def test_printed_leg_inverse_holds_in_a_quarter_and_ours_everywhere(outcomes):

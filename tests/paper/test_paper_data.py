@@ -142,6 +142,18 @@ def test_times_higher_is_times_as_high():
     assert pytest.approx(CLAIMS["height_ratio"].value) == 0.68 / 0.16
 
 
+@pytest.mark.parametrize(
+    ("claim", "error", "species"),
+    [("largest_length", "largest_species", "Nile"), ("smallest_length", "smallest_species", "Chinese alligator")],
+)
+def test_a_claim_about_a_species_that_is_another_stands_among_the_errata(claim, error, species):
+    misprint = ERRATA[error]
+    assert misprint.where == CLAIMS[claim].where
+    assert species in CLAIMS[claim].sense
+    assert species in misprint.printed
+    assert species not in misprint.ours
+
+
 def test_vectors_travel_with_the_tests():
     file = Path(__file__).parents[1] / "data/test-vectors.json"
     assert len(json.loads(file.read_text())) == 40

@@ -20,6 +20,7 @@ from suchus.land import Run, simulate
 from suchus.record import save
 from suchus.robots import ROBOTS
 from suchus.viewer import Session
+from suchus.viewer.bodies import pieces
 from suchus.viewer.replay import takes
 from suchus.viewer.swim import films, vortex_film
 
@@ -166,6 +167,9 @@ def test_a_walk_is_watched_steered_and_broken_in_two_browsers_that_do_not_distur
     first = tabs(watched.viewer.url)
     first.locator('[data-suchus="forward"]').wait_for(state="attached")
     mine = watched.sessions[0]
+    (client,) = watched.viewer._server.get_clients().values()
+    bones = sum(len(piece.bones) for piece in pieces(ROBOTS["caiman"]))
+    assert 128 < 2 * bones < client._websock_connection.get_message_buffer().max_window_size / 4  # places and turns
     words = first.evaluate(CONTRAST)
     assert len(words) > 40
     assert words[0][0] >= 4.5, words[0]

@@ -308,6 +308,14 @@ NAMES = (
         shows="The reference given for it, [14], is about the saltwater crocodile.",
     ),
     Misprint(
+        key="smallest_species",
+        where="II.A",
+        printed="the Chinese alligator represents the smallest crocodile species",
+        ours="Cuvier's dwarf caiman, Paleosuchus palpebrosus",
+        shows="Its females grow to 1.2 m, its males to 1.4 m on average; the largest measured have 2.1 m (Campos et "
+        "al. 2010, Amphibia-Reptilia 31:439), as have large Chinese alligators.",
+    ),
+    Misprint(
         key="high_walk_missing",
         where="II.A",
         printed='"On the other hand, sees crocodiles raising their legs"',

@@ -94,16 +94,9 @@ class SkinPiece:
     """Red, green, blue of 255."""
 
 
-_INNER = 0.002
-"""How far the skin under the pieces lies below them, over the robot's length [-]."""
-
-
 @lru_cache(maxsize=8)
 def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
-
-    A slow browser moves one piece after the other, and they gape for a moment: under pieces of several colours lies the
-    whole skin once more, a little smaller and dark.
 
     Args:
         robot: whose skin.
@@ -114,12 +107,9 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
     centres, group = kmeans2(of_faces, count, minit="++", seed=0)
     dense = np.zeros((len(whole.vertices), len(whole.bones)))
     np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
-    cuts = [(whole.vertices, whole.faces[group == number], centre) for number, centre in enumerate(centres)]
-    if count > 1:
-        inner = whole.vertices - _INNER * robot.length * whole.normals
-        cuts.append((inner, whole.faces, min(centres, key=np.sum)))
     parts = []
-    for places, faces_of_colour, centre in cuts:
+    for number, centre in enumerate(centres):
+        faces_of_colour = whole.faces[group == number]
         if len(faces_of_colour) == 0:
             continue
         vertices, faces = np.unique(faces_of_colour, return_inverse=True)
@@ -127,7 +117,7 @@ def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
         red, green, blue = (round(float(value)) for value in centre)
         parts.append(
             SkinPiece(
-                vertices=places[vertices],
+                vertices=whole.vertices[vertices],
                 faces=faces.reshape(-1, 3),
                 weights=dense[np.ix_(vertices, used)],
                 bones=tuple(whole.bones[bone] for bone in used),

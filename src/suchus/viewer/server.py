@@ -140,6 +140,9 @@ MOST = 4
 
 PANEL = 330
 """Width of the controls to the right of the scene [pixel]."""
+WHOLE = 8192
+"""Messages that go to a browser at once [-]; by viser's 128 a picture of a robot arrived in parts, and its skin, in
+as many meshes as it has colours, was torn in a browser that drew in between."""
 _PHONE = 576
 """Width of a window up to which viser shows all controls in a sheet at its lower end [pixel]."""
 _SHEET = 0.42
@@ -297,6 +300,7 @@ class Viewer:
                 "Close one of them and reload this page, or start the server with a greater `--most`."
             )
             return
+        client._websock_connection.get_message_buffer().max_window_size = WHOLE
         _stand_back(client.camera, *self._camera)
         try:
             page = self._open(client)

@@ -11,11 +11,17 @@ from suchus.design import LEGS, Robot, leg_joints, servo_names
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiments._frames import draw_frames, frames_of
 from suchus.experiments.leg_kinematics import figure as pictures
 from suchus.gaits import GAITS
 from suchus.kinematics import leg, printed
 from suchus.motion import Gait, movement
+from suchus.paper import LEG_CHAIN
+from suchus.paper.tables import Chain
 from suchus.robots import ROBOTS
+
+_SHOWN = (0.35, 0.3, 0.8, 0.0)
+"""Angles at which the frames are drawn [rad]."""
 
 EXACT = 1e-9
 """A foot nearer than this to where it should be counts as exact [m]."""
@@ -71,7 +77,7 @@ class LegKinematics(Experiment):
         points = _points(hind, _shell(hind, self.points, self.seed))
         progress("maps of the workspace", 0.5)
         record = xr.merge([points, _histogram(points), _section(hind, self.grid), _top(hind, self.grid)])
-        record = xr.merge([record, _knee_curve(hind), _sweep(hind), _postures(hind), self._steps()])
+        record = xr.merge([record, _knee_curve(hind), _sweep(hind), _postures(hind), self._steps(), _frames(hind)])
         counts = {"leg_servos": len(leg_joints()) / len(LEGS), "actuators": len(servo_names())}
         reach = {"near": hind.reach[0], "far": hind.reach[1], "hip_offset": hind.hip_offset, "floor": hind.tibia}
         return Simulated(record=record.assign_attrs(counts | reach))
@@ -121,11 +127,23 @@ class LegKinematics(Experiment):
             "inverse_as_printed": pictures.leg_inverse(outcome.record),
             "workspace": pictures.leg_workspace(outcome.record),
             "misprints": pictures.leg_misprints(outcome.record),
+            "frames": draw_frames(
+                outcome.record,
+                ("midline", "hip", "", "knee", "foot"),
+                "The frames of the left hind leg, as Fig. 6 and Table I need them for (8) to (14): X_0 outward, Y_0 "
+                "forward, Z_0 down. Frames 1 and 2, yaw and pitch of the hip, have one origin.",
+            ),
         }
 
     def quick(self) -> "LegKinematics":
         """Return it with few points."""
         return replace(self, points=2000, phases=50, grid=41)
+
+
+def _frames(hind: LegMeasures) -> xr.Dataset:
+    """Return the frames of Table I for a leg that is bent a little at every joint."""
+    chain = Chain(a=(hind.hip_offset, 0.0, hind.femur, hind.tibia), alpha=LEG_CHAIN.alpha, d=LEG_CHAIN.d)
+    return frames_of(chain, _SHOWN, np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]))
 
 
 def _shell(hind: LegMeasures, count: int, seed: int) -> np.ndarray:

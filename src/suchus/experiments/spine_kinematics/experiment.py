@@ -12,10 +12,14 @@ from suchus.design import Robot, spine_joints
 from suchus.design.checks import Checks
 from suchus.design.measures import SpineMeasures
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiments._frames import draw_frames, frames_of
 from suchus.experiments.spine_kinematics import figure as pictures
 from suchus.experiments.spine_kinematics.rules import EXACT
 from suchus.kinematics import printed, spine
 from suchus.robots import ROBOTS
+
+_SHOWN = (0.2, -0.15, 0.25, -0.15, 0.2)
+"""Angles at which the frames are drawn [rad]."""
 
 _METRE = {"units": "m"}
 MILD = pi / 6
@@ -67,7 +71,10 @@ class SpineKinematics(Experiment):
         inverted = _inverted(back, angles)
         progress("workspace and least bending", 0.5)
         parts = [inverted, _workspace(back, angles, self.grid), _errors(back, self.postures, self.seed), _turns(back)]
-        record = xr.merge([*parts, _family(self.robot)], combine_attrs="drop_conflicts")
+        record = xr.merge(
+            [*parts, _family(self.robot), frames_of(spine.chain(back), _SHOWN, np.eye(3))],
+            combine_attrs="drop_conflicts",
+        )
         return Simulated(record=record.assign_attrs(_facts(back)))
 
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
@@ -102,6 +109,11 @@ class SpineKinematics(Experiment):
             "workspace": pictures.spine_workspace(outcome.record),
             "misprint": pictures.spine_misprint(outcome.record),
             "least_bending": pictures.spine_least_bending(outcome.record),
+            "frames": draw_frames(
+                outcome.record,
+                ("pelvis", "yaw 1", "pitch 1", "yaw 2", "pitch 2", "yaw 3"),
+                "The frames of the spine, as Fig. 8 and Table II need them: X_0 forward, Y_0 left, Z_0 up.",
+            ),
         }
 
 
