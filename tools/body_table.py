@@ -42,7 +42,7 @@ LEAST = {
     "displacement": "--cycles 1 --repeats 1 --phases 0.0 --strokes 0.5 1.0 --bends 0.5 1.0",
     "feedback": "--starts 1 --cycles 1 --hold 0.1 --after 1",
     "gait_diagram": "--cycles 2",
-    "joint_faults": "--cycles 1 --variations 1 --repeats 1 --holds 0.5",
+    "joint_faults": "--cycles 1 --repeats 1 --holds 0.5",
     "joint_loops": "--integrals 0.0 20.0 --cycles 1",
     "speed_range": "--slower 1.0 --cycles 1",
     "swim_3d": "--cells 64 --compared-cells 64",

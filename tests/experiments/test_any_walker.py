@@ -29,7 +29,7 @@ LEAST = {
     },
     "feedback": {"starts": 1, "cycles": 1, "hold": 0.1, "after": 1},
     "gait_diagram": {"cycles": 2},
-    "joint_faults": {"cycles": 1, "variations": 1, "repeats": 1, "holds": (0.5,)},
+    "joint_faults": {"cycles": 1, "repeats": 1, "holds": (0.5,)},
     "joint_loops": {"integrals": (0.0, 20.0), "cycles": 1},
     "speed_range": {"slower": (1.0,), "cycles": 1},
     "terrain": {"bumps": (), "steps": (), "transitions": 1, "seeds": 1, "walked": 1.0, "surfaces": ("even",)},

@@ -17,7 +17,7 @@ from suchus.experiments import EXPERIMENTS
         ("feedback", {"starts": 0, "hold": nan}, "hold is nan cycle"),
         ("feedback", {"push": (0.0, 1.0)}, "forward, left, up need one each"),
         ("joint_faults", {"holds": (0.5, 0.2)}, "increasing numbers within 0 to 1"),
-        ("joint_faults", {"variations": 0}, "variations is 0"),
+        ("joint_faults", {"repeats": 0}, "repeats is 0"),
         ("speed_range", {"slower": (0.0,)}, "increasing numbers within 0.1 to 10"),
         ("speed_range", {"gaits": ()}, "gaits is empty"),
         ("turning", {"asked": (-1.0,)}, "asked is"),
