@@ -99,7 +99,8 @@ class Run:
     """Play of each servo, gear and dead band together, whole width: so far its command must turn back before the servo
     does; none where it is empty [rad]."""
     noise: float = 0.0
-    """Standard deviation of noise on every servo angle commanded [rad]."""
+    """Standard deviation of white noise on every servo angle commanded [rad]; it shakes a robot forward, so that
+    results take ``zero_error`` and ``play`` instead."""
     seed: int = 0
     """Seed of the noise [-]."""
     label: str = ""

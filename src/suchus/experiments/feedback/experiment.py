@@ -327,7 +327,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     error = phase_error(record.start_phase, gait).rename(start_time="time")
     period = gait.period
     cycles_taken = cycles_until(error, period, start=START, hold=hold)
-    measures = {}
+    measures: dict[str, Measure] = {}
     for law in record.law.values:
         taken = cycles_taken.sel(law=law).values
         measures |= estimated(f"converged_{law}", np.isfinite(taken), "-", middle=np.mean)
