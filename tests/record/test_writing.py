@@ -1,12 +1,9 @@
 """Files belong to someone, and are there whole or not at all, whatever write, rename or fsync fails."""
 
-import builtins
-import errno
-import io
-import os
 import subprocess
 
 import pytest
+from tests.failing import KINDS, each_failing
 
 from suchus.errors import Unwritable
 from suchus.writing import MANIFEST, check_replaceable, keep, new_folder, replacing, write
@@ -118,82 +115,6 @@ def test_a_damaged_list_protects_more_and_not_less(tmp_path):
 
 
 # --- failing writes -------------------------------------------------------------------------------------------------
-
-
-class Failing:
-    """Lets the n-th of the writes, renames or fsyncs in a folder fail, and counts them."""
-
-    def __init__(self, monkeypatch, place, kind, which):
-        self.place, self.kind, self.which, self.count = str(place), kind, which, 0
-        opened = builtins.open
-
-        def open_(file, mode="r", *rest, **more):
-            writes = any(c in mode for c in "wax+") and str(file).startswith(self.place)
-            if writes:
-                self.step("open")
-            made = opened(file, mode, *rest, **more)
-            if writes:
-                write = made.write
-                made = Writing(made, lambda data: (self.step("write"), write(data))[1])
-            return made
-
-        monkeypatch.setattr(io, "open", open_)
-        monkeypatch.setattr(builtins, "open", open_)
-        for name, kind in {"rename": "rename", "replace": "rename", "link": "link", "mkdir": "mkdir"}.items():
-            monkeypatch.setattr(os, name, self.counted(getattr(os, name), kind))
-        monkeypatch.setattr(os, "fsync", self.counted(os.fsync, "fsync", anywhere=True))
-
-    def counted(self, real, kind, *, anywhere=False):
-        def call(path, *rest, **more):
-            if anywhere or str(path).startswith(self.place):
-                self.step(kind)
-            return real(path, *rest, **more)
-
-        return call
-
-    def step(self, kind):
-        if kind == self.kind:
-            self.count += 1
-            if self.count == self.which:
-                raise OSError(errno.ENOSPC, "No space left on device")
-
-
-class Writing:
-    """A file whose writes are counted."""
-
-    def __init__(self, file, write):
-        self.file, self.write = file, write
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.file.close()
-
-    def __getattr__(self, name):
-        return getattr(self.file, name)
-
-
-KINDS = ("open", "write", "rename", "fsync", "link", "mkdir")
-
-
-def each_failing(place, work, monkeypatch):
-    """Yield the kind and the error of each failure, one after the other, until nothing is left to fail."""
-    for kind in KINDS:
-        which = 1
-        while True:
-            with monkeypatch.context() as patch:
-                failing = Failing(patch, place, kind, which)
-                error = None
-                try:
-                    work()
-                except Unwritable as caught:
-                    error = caught
-            if failing.count < which:
-                assert error is None
-                break
-            yield kind, which, error
-            which += 1
 
 
 def test_whatever_fails_a_file_and_a_folder_are_as_before_or_new(tmp_path, monkeypatch):
