@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from tests.bodies import eel, eight, hatchling, six
 
+from body_files import giant
 from suchus import blueprint
 from suchus.cli.entry import main
 from suchus.cli.options import choose
 from suchus.design import NEEDS, lacking, layout
 from suchus.design.scale import coarse_step, control_period
-from suchus.errors import OutsideLimits, UnsuitedRobot
+from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
 from suchus.robots import ROBOTS
@@ -220,3 +221,23 @@ def test_the_six_joint_crocodile_crawls_with_spine_and_tail_of_its_own():
     measures = shortest("gait_diagram", body).run().measures
     assert measures["spine_gain"].value == pytest.approx(1.0, abs=0.1)
     assert measures["tail_gain"].value == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("body", [hatchling, giant], ids=["0.3 m", "3 m"])
+@pytest.mark.parametrize("name", list(EXPERIMENTS))
+def test_every_question_can_be_asked_of_a_body_of_another_size(name, body):
+    """Bounds of fields that grow with the body grow too: time steps, torques, lengths."""
+    for question in (EXPERIMENTS[name], EXPERIMENTS[name].quick()):
+        if not lacking(body(), question.needs):
+            asked = question.on(body())
+            assert getattr(asked, "robot", None) in (None, body())
+
+
+def test_a_time_step_is_at_most_the_control_period_of_the_robot():
+    for name in ("joint_faults", "turning", "floating"):
+        asked = EXPERIMENTS[name].quick().on(giant())
+        assert replace(asked, timestep=control_period(giant())).timestep == 0.02
+        with pytest.raises(InvalidDesign, match=rf"{name}.timestep is 0.04 s; 1e-05 to 0.02 s is allowed"):
+            replace(asked, timestep=0.04)
+        with pytest.raises(InvalidDesign, match=rf"{name}.timestep is 0.02 s; 1e-05 to 0.01 s is allowed"):
+            replace(EXPERIMENTS[name].quick(), timestep=0.02)

@@ -11,6 +11,7 @@ from suchus import blueprint
 from suchus.control import Control, OpenLoop, Standing, Walking
 from suchus.design import value_at, with_values
 from suchus.design.checks import Checks, InvalidFields
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.gaits import gait_of
 from suchus.land import Ground, Run
@@ -105,7 +106,7 @@ class Optimisation(Search):
             check.number("sigma", 0.001, 1.0, "")
             check.whole("seed", 0, 2**32 - 1)
             check.number("duration", 1.1, 86400.0, "s")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.run.robot), "s")
             check.that(len(self.vary) > 0, "optimisation.vary is empty; name at least one field")
             check.that(len(self.aims) > 0, "optimisation.aims is empty; name at least one aim")
             check.that(len(self.arms) > 0, "optimisation.arms is empty; leave it out for a single search")

@@ -6,6 +6,7 @@ from typing import Any, Literal, get_args
 
 from suchus.design import value_at, with_values
 from suchus.design.checks import Checks, InvalidFields
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.land import Run
 from suchus.motion import START
@@ -122,7 +123,7 @@ class Study:
             check.whole("chunk", 1, 10_000)
             check.whole("every", 1, 10_000)
             check.number("duration", SHORTEST, 86400.0, "s")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.run.robot), "s")
             check.that(len(self.vary) > 0, "study.vary is empty; name at least one field")
             check.that(len(self.measure) > 0, "study.measure is empty; name at least one measure")
             design: object = self.design

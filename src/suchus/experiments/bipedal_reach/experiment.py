@@ -11,7 +11,7 @@ from suchus.control import OpenLoop
 from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import STANDING, Robot
 from suchus.design.checks import Checks
-from suchus.design.scale import scaled
+from suchus.design.scale import control_period, scaled
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.bipedal_reach.figure import (
@@ -103,7 +103,7 @@ class BipedalReach(Experiment):
             check.whole("finer", 0, 100)
             check.that(len(self.hips) > 1, f"{self.name()}.hips has {len(self.hips)} heights; two at least are needed")
             check.number("wait", 0.01, 60.0, "s")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.number("longer", 0.001, 0.2, "")
 
     def quick(self) -> "BipedalReach":

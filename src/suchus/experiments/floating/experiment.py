@@ -13,6 +13,7 @@ from suchus import rotation
 from suchus.control import Swimming
 from suchus.design import Robot, with_values
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.floating import cases
@@ -78,7 +79,7 @@ class Floating(Experiment):
             check.whole("points", 2**8, 2**24)
             check.that(self.points.bit_count() == 1, f"points is {self.points}; a power of two is needed")
             check.whole("angles", 3, 1000)
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def quick(self) -> "Floating":
         """Return one heel, few seconds, fewer points and angles."""

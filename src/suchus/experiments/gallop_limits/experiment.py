@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from suchus.design import Robot, Servo, layout
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
 from suchus.design.servos import with_servos
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
@@ -70,9 +71,9 @@ class GallopLimits(Experiment):
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.rising("speeds", 0.1, 1e3, "rad/s")
-            check.rising("torques", 0.01, 1e3, "N m")
+            check.rising("torques", 1e-6, 1e6, "N m")
             check.number("seconds", 0.05, 60.0, "s")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.whole("repeats", 1, 1000)
             for name in ("bounds", "walks"):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")

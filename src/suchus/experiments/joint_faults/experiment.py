@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
 from suchus.design import layout
 from suchus.design.checks import Checks
-from suchus.design.scale import coarse_step
+from suchus.design.scale import coarse_step, control_period
 from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
@@ -104,7 +104,7 @@ class JointFaults(TwoGroups):
         """Check places of locking, time step and tail."""
         check.number("hold", 0.0, 1.0, "")
         check.rising("holds", 0.0, 1.0, "")
-        check.number("timestep", 1e-5, 0.01, "s")
+        check.number("timestep", 1e-5, control_period(self.robot), "s")
         check.number("lifted", -1.6, 1.6, "rad")
 
     def quick(self) -> "JointFaults":

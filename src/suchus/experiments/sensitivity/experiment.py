@@ -12,6 +12,7 @@ from scipy import stats
 
 from suchus.design import Robot
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.figures.sensitivity import draw_shares, spoken
@@ -62,7 +63,7 @@ class Sensitivity(Experiment):
             check.whole("samples", 2, 2**20)
             check.whole("cycles", 1, 1000)
             check.whole("seed", 0, 2**32 - 1)
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
         if log2(self.samples) % 1:
             near = 2 ** round(log2(self.samples))
             raise InvalidDesign(f"sensitivity.samples is {self.samples}; a power of two is needed, such as {near}.")

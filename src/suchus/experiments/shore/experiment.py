@@ -13,6 +13,7 @@ from suchus import rotation
 from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
@@ -135,7 +136,7 @@ class Shore(Experiment):
             check.number("duration", 0.2, 3600.0, "s")
             check.whole("cycles", 1, 1000)
             check.number("depth", 0.0, 100.0, "m")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def quick(self) -> "Shore":
         """Return one slope with one friction scale, no other gaits, the first seconds."""

@@ -73,7 +73,7 @@ class SpeedRange(Experiment):
         with Checks(self.name(), self) as check:
             check.rising("slower", 0.1, 10.0, "")
             check.whole("cycles", 1, 1000)
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
 
     def quick(self) -> "SpeedRange":

@@ -106,7 +106,7 @@ class Terrain(Experiment):
             check.whole("transitions", 1, 6)
             check.whole("seeds", 1, 1000)
             check.number("walked", 0.5, 3600.0, "s")
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
+from suchus.design.scale import control_period
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
@@ -68,7 +69,7 @@ class Turning(Experiment):
             check.rising("mixtures", 0.0, 1.0, "")
             check.rising("asked", 0.05, 1000.0, "m")
             check.whole("cycles", 1, 1000)
-            check.number("timestep", 1e-5, 0.01, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
 
     def quick(self) -> "Turning":
