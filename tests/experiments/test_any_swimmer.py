@@ -5,13 +5,13 @@ from math import isfinite
 
 import pytest
 
-from body_files import eight, giant, hatchling, six
+from body_files import eight, giant, hatchling, imported_quadruped, six
 from suchus.design import check_needs, lacking
 from suchus.errors import UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _motions, _steered
 from suchus.gaits import GAITS
-from suchus.motion import check_speeds, suits
+from suchus.motion import check_speeds, still, suits
 from suchus.robots import ROBOTS
 from suchus.water import swim_of
 
@@ -78,3 +78,10 @@ def test_it_answers(name, one):
     assert sum(isfinite(measure.value) for measure in outcome.measures.values()) > 5
     assert asked.draw(outcome)
     assert all("<canvas" in replay.html for replay in outcome.replays.values())
+
+
+def test_limbs_whose_joints_do_not_reach_zero_are_held_as_near_as_they_go(tmp_path):
+    robot = imported_quadruped(tmp_path)
+    assert suits(robot, still(robot))
+    knees = [hinge.range for hinge in robot.girdles[0].limb.hinges if not hinge.range[0] <= 0.0 <= hinge.range[1]]
+    assert knees

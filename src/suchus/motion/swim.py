@@ -54,7 +54,8 @@ def swimming_gait(
         amplitude: of each of ``lateral_servos(robot)``; that of a cable is the bend of all its hinges together [rad], 0
             to pi.
         lag: phase lag of each of them behind f t [cycle], -1 to 1.
-        limbs: yaw and pitch at which limbs that have such joints are held [rad]; other joints of limbs are held at 0.
+        limbs: yaw and pitch at which limbs that have such joints are held [rad]; other joints of limbs are held as near
+            0 as they go.
 
     Raises:
         InvalidDesign: not one amplitude and lag for each lateral servo, or a number is out of range.
@@ -107,12 +108,11 @@ def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def held(limb: Limb, angles: tuple[float, float]) -> Held:
-    """Return a limb held at yaw and pitch as far as its first such joints go [rad]; other joints are held at 0."""
+    """Return a limb held at yaw and pitch as far as its first such joints go [rad], other joints as near 0 as they go."""
     driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
     turns, row = [hinge.turn for hinge in driven], [0.0] * len(driven)
     for turn, angle in zip(("yaw", "pitch"), angles, strict=True):
         if turn in turns:
-            number = turns.index(turn)
-            low, high = driven[number].range or (-np.pi, np.pi)
-            row[number] = float(min(max(angle, low), high))
-    return Held(angles=tuple(row))
+            row[turns.index(turn)] = angle
+    ranges = [hinge.range or (-np.pi, np.pi) for hinge in driven]
+    return Held(angles=tuple(float(min(max(angle, low), high)) for angle, (low, high) in zip(row, ranges, strict=True)))
