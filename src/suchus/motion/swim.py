@@ -108,7 +108,7 @@ def _knots(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def held(limb: Limb, angles: tuple[float, float]) -> Held:
-    """Return a limb held at yaw and pitch as far as its first such joints go [rad], other joints as near 0 as they go."""
+    """Return a limb held at yaw and pitch as far as its first such joints go, others as near 0 as they go [rad]."""
     driven = [hinge for hinge in limb.hinges if hinge.servo is not None]
     turns, row = [hinge.turn for hinge in driven], [0.0] * len(driven)
     for turn, angle in zip(("yaw", "pitch"), angles, strict=True):
