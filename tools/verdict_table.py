@@ -45,7 +45,7 @@ def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
         text = (
             templates()
             .get_template(f"readme/{name}.md")
-            .render(verdicts=table, count=count, joint_faults=kept("joint_faults"))
+            .render(verdicts=table, count=count, crawl_stability=kept("crawl_stability"))
         )
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"
         readme = _between(readme, start, end, wrapped(text, width=len(text)).rstrip("\n"))

@@ -45,6 +45,7 @@ WHERE = {
 }
 COLUMNS = {
     "experiments/swim_3d/experiment.py": "letters of a digest",
+    "experiments/swimming/ladder.py": "letters of a digest",
     "kernel_cache.py": "letters of a digest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",

@@ -32,12 +32,12 @@ PATIENCE = 3
 
 LEAP = 1.0
 """Distance by which a body may be off the place that its rates lead to [cells]. To it comes what a kink within a step,
-where they change at once, may make: half of the way at the greatest rate so far."""
+where they change at once, may make: half of the distance at the greatest rate so far."""
 
 _LOOK = 0.01  # share of a step over which positions are compared
 
 
-class Seen(NamedTuple):
+class Watched(NamedTuple):
     """Coordinates of a body at some times, each of shape (time, coordinate)."""
 
     places: np.ndarray
@@ -53,7 +53,7 @@ class Seen(NamedTuple):
 class Told(Protocol):
     """What gives coordinates and their rates."""
 
-    def at(self, times: Sequence[float]) -> Seen:
+    def at(self, times: Sequence[float]) -> Watched:
         """Return what is told of some times [s]."""
 
     def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
@@ -79,14 +79,14 @@ class GivenMotion(NamedTuple):
     reach: float
     """Distance of the body's surface from the origin of its frame [m]."""
 
-    def at(self, times: Sequence[float]) -> Seen:
+    def at(self, times: Sequence[float]) -> Watched:
         """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
         poses = [self.motion(time) for time in times]
         axes = len(poses[0].position)
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
         rates = np.array([[*p.velocity, *([p.spin] if axes == 2 else p.spins)] for p in poses])
         turns = (np.arange(places.shape[1]) >= axes).astype(int)
-        return Seen(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
+        return Watched(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
 
     def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
         """Return both rates and the remedy."""
@@ -117,7 +117,7 @@ class GivenMidline(NamedTuple):
     spine: Callable[[float], MidlineState]
     """Its midline at every time [s]."""
 
-    def at(self, times: Sequence[float]) -> Seen:
+    def at(self, times: Sequence[float]) -> Watched:
         """Return position, heading and half-width of the stations, one after the other, and their rates.
 
         Raises:
@@ -136,7 +136,7 @@ class GivenMidline(NamedTuple):
         arms = np.ones(places.shape[1:])
         arms[2] = first[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
-        return Seen(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
+        return Watched(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 
     def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""

@@ -200,4 +200,4 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
     return record.merge(answered(found, value))
 
 
-_STATUS: Mapping[str, str] = {"": "asked", "OutsideLimits": "outside limits", "Diverged": "came apart"}
+_STATUS: Mapping[str, str] = {"": "asked", "OutsideLimits": "outside limits", "Diverged": "diverged"}

@@ -25,7 +25,7 @@ class Voice:
     """What one rung says of a claim."""
 
     rung: Rung
-    """Which."""
+    """The rung that answers."""
     value: float
     """Its measure, the mean over halves and starting sides; NaN where it has none."""
     low: float
