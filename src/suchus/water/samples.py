@@ -65,7 +65,9 @@ class Samples:
         try:
             check_file(path)
             data = path.read_bytes()
-        except (OSError, UnreadableFile) as error:
+        except UnreadableFile as error:
+            raise UnreadableFile(f"{str(error).rstrip('.')}; delete its checkpoint to start anew.") from error
+        except OSError as error:
             raise UnreadableFile(f"{path} cannot be read: {error}; delete its checkpoint to start anew.") from error
         if holds(data) is not True:
             raise UnreadableFile(f"{path} holds no samples of a swim, or is damaged; delete it and its checkpoint.")
