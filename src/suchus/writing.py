@@ -392,8 +392,10 @@ def _sign(folder: Path) -> None:
 
 def _note(folder: Path, digests: Mapping[str, str]) -> None:
     """Add states of files to what suchus wrote into a folder; whatever happens then, the file is one of ours."""
-    if digests:
-        lines = "".join(f"{digest}  {_plain(name)}\n" for name, digest in digests.items())
+    known = _written(folder)
+    new = {name: digest for name, digest in digests.items() if digest not in known.get(name, ())}
+    if new:
+        lines = "".join(f"{digest}  {_plain(name)}\n" for name, digest in new.items())
         with (folder / MANIFEST).open("a", encoding="ascii") as file:
             file.write(lines)
 

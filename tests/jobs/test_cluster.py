@@ -6,7 +6,7 @@ import pickle
 import subprocess
 import sys
 import time
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -173,21 +173,21 @@ def test_a_generation_in_pieces_is_the_generation(search):
     assert told[-1] == 1.0
 
 
-class Done:
-    """Of a sweep; on a class, since what a function is made with belongs to its store."""
-
-    numbers: list
+@cache
+def done():
+    """Numbers that a sweep was at; of a call, since what a function is made with belongs to its store."""
+    return []
 
 
 def halved(number, progress):
-    Done.numbers.append(number)
-    if len(Done.numbers) == 3:
+    done().append(number)
+    if len(done()) == 3:
         raise KeyboardInterrupt
     return xr.Dataset({"x": ((), number / 2)})
 
 
 def test_a_sweep_goes_on_with_what_is_missing_and_refuses_another(tmp_path):
-    Done.numbers = []
+    done.cache_clear()
     with pytest.raises(KeyboardInterrupt):
         conduct_sweep("halves", halved, (1, 2, 3, 4), tmp_path / "s")
     for name, work, items in (("halves", halved, (1, 2, 3)), ("halves", squared, (1, 2, 3, 4))):
@@ -197,7 +197,7 @@ def test_a_sweep_goes_on_with_what_is_missing_and_refuses_another(tmp_path):
     whole = conduct_sweep(
         "halves", halved, (1, 2, 3, 4), tmp_path / "s", progress=lambda _, share: shares.append(share)
     )
-    assert Done.numbers == [1, 2, 3, 3, 4]
+    assert done() == [1, 2, 3, 3, 4]
     assert shares == [0.75, 1.0]
     assert [float(one.x) for one in whole] == [0.5, 1.0, 1.5, 2.0]
     with pytest.raises(InvalidDesign, match="items is empty"):
