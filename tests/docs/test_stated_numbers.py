@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import lifted_design
 from pages.passages import names
 from pages.stated import filled, keep, kept, made, measured, pages, sources, text_of, wrapped
 from suchus.experiment import write
@@ -103,6 +104,12 @@ def test_a_measure_that_is_no_number_is_kept_as_none():
     name, found = measured(outcome)
     assert (name, found["speed_free"]) == ("swimming", 0.1)
     assert math.isnan(found["slip"])
+
+
+@pytest.mark.validate
+def test_the_design_whose_control_walks_measures_what_is_kept():
+    """Renew with ``python tools/lifted_design.py``."""
+    assert lifted_design.judged() == pytest.approx(kept(lifted_design.NAME), rel=0.02, abs=0.01)
 
 
 @pytest.mark.validate
