@@ -98,7 +98,8 @@ def disagree(said: Sequence[Voice]) -> bool:
 def contested(said: Sequence[Voice]) -> bool:
     """Return whether one rung alone has an answer, and one that is not settled says otherwise in all of its spread.
 
-    No word rests on one model where another stands beside it.
+    No word rests on one model where another stands beside it. This was added after a first result had been seen; it
+    can only take a word away.
     """
     heard = [voice for voice in said if voice.says in ("holds", "does not hold")]
     others = {voice.leans for voice in said if voice.says == "no word"}

@@ -43,9 +43,9 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
     rows = [str(joint) for joint in record.joint.values]
     columns = [f"{kind}_{legs}" for kind, legs in product(record.kind.values, record.legs.values)]
     maps = (
-        ("With spine and tail, of its own displacement", "loss_{}_coordinated", "coordinated"),
-        ("With limbs only, of its own displacement", "own_loss_{}_limbs_only", ""),
-        ("With limbs only, of that with spine and tail", "loss_{}_limbs_only", "limbs_only"),
+        ("With spine and tail, of its own displacement [%]", "loss_{}_coordinated", "coordinated"),
+        ("With limbs only, of its own displacement [%]", "own_loss_{}_limbs_only", ""),
+        ("With limbs only, of that with spine and tail [%]", "loss_{}_limbs_only", "limbs_only"),
     )
     with styled():
         figure, axes = panels(len(maps), 1, width=5.4, height=len(maps) * (1.0 + 0.46 * len(rows)))
