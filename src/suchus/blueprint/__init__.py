@@ -1,8 +1,20 @@
-"""Robots and gaits as TOML files that people write, and every mistake in them named at once."""
+"""Robots, gaits and servos as TOML files that people write, and every mistake in them named at once."""
 
 from suchus.blueprint.gaits import read_gait
 from suchus.blueprint.mistakes import MistakenFile
+from suchus.blueprint.motors import motor, motors, read_motors
 from suchus.blueprint.read import described, described_robot, read
 from suchus.blueprint.write import render, write
 
-__all__ = ["MistakenFile", "described", "described_robot", "read", "read_gait", "render", "write"]
+__all__ = [
+    "MistakenFile",
+    "described",
+    "described_robot",
+    "motor",
+    "motors",
+    "read",
+    "read_gait",
+    "read_motors",
+    "render",
+    "write",
+]

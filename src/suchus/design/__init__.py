@@ -25,6 +25,7 @@ from suchus.design.layout import (
     spine_joints,
 )
 from suchus.design.limb import Foot, Girdle, Limb, Link
+from suchus.design.motor import LINE, Heat, Motor, Winding
 from suchus.design.needs import MEASURED, NEEDS, STANDING, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Inertia, Rod, Segment, Shell
@@ -34,6 +35,7 @@ from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 __all__ = [
     "GRAVITY",
     "LEGS",
+    "LINE",
     "MEASURED",
     "NEEDS",
     "STANDING",
@@ -48,6 +50,7 @@ __all__ = [
     "Foot",
     "Girdle",
     "Head",
+    "Heat",
     "Hinge",
     "Hull",
     "Inertia",
@@ -57,6 +60,7 @@ __all__ = [
     "Limb",
     "LimbPlace",
     "Link",
+    "Motor",
     "Pelvis",
     "Robot",
     "Rod",
@@ -69,6 +73,7 @@ __all__ = [
     "Tail",
     "Thorax",
     "Turn",
+    "Winding",
     "behind_hips",
     "cable_joints",
     "check_needs",

@@ -1,9 +1,10 @@
 """Hinges and what moves them: a servo, a crank, a spring, or a cable over several."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Optional
 
 from suchus.design.checks import Checks
+from suchus.design.motor import Motor, Winding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +20,7 @@ class Servo:
     integral_limit: float
     """Greatest torque that integral action may build up [N m]."""
     torque: float
-    """Torque limit [N m]."""
+    """Torque limit [N m]: with a winding, the torque at standstill."""
     speed: float
     """Slew limit of the commanded angle [rad/s]: the no-load speed."""
     armature: float
@@ -28,6 +29,8 @@ class Servo:
     """Dry friction of the gear at the output shaft [N m]; it stays when the servo is limp."""
     damping: float
     """Viscous friction of the gear [N m s/rad]."""
+    winding: Winding | None = None
+    """Its DC motor, by which torque falls with speed, supply and heat; None: full torque at any speed, for ever."""
 
     def __post_init__(self) -> None:
         with Checks("servo", self) as check:
@@ -50,6 +53,43 @@ class Servo:
         """
         return replace(self, damping=self.torque / self.speed)
 
+    @staticmethod
+    def of(motor: Motor, volts: float | None = None, *, like: Optional["Servo"] = None) -> "Servo":
+        """Return a servo that is bought, at a supply.
+
+        Torque, speed and winding are the motor's. No data sheet gives the numbers of the loop and of the gear, since
+        the first are set and the second differ from one to the next: they are those of another servo, or, without one,
+        those of the article's robot's servos in proportion to the torque. ``suchus calibrate`` measures them.
+
+        Args:
+            motor: as it is bought.
+            volts: its supply [V]; that of its data sheet if None.
+            like: whose gains, rotor inertia and friction it has; None for those in proportion to its torque.
+
+        Raises:
+            InvalidFields: the supply is not one that the motor bears.
+        """
+        volts = motor.volts if volts is None else volts
+        winding, share = motor.winding(volts), volts / motor.volts
+        torque, speed = share * motor.stall_torque, share * motor.no_load_speed
+        if like is not None:
+            return replace(like, torque=torque, speed=speed, winding=winding)
+        return Servo(
+            kp=_STIFFNESS * torque,
+            ki=0.0,
+            kd=_STIFFNESS * _LEAD * torque,
+            integral_limit=0.0,
+            torque=torque,
+            speed=speed,
+            armature=_INERTIA * torque,
+            friction=_FRICTION * torque,
+            damping=_DAMPING * torque,
+            winding=winding,
+        )
+
+
+_STIFFNESS, _LEAD = 40.0 / 3.0, 0.6 / 40.0  # gains over torque [1/rad] and [s], as the legs of the article's robot have
+_INERTIA, _FRICTION, _DAMPING = 0.005 / 3.0, 0.01, 0.05 / 3.0  # of rotor and gear over torque [s2], [-], [s/rad]
 
 Turn = Literal["yaw", "pitch", "roll"]
 """What a hinge does.
