@@ -63,6 +63,18 @@ class OtherMuJoCo(SuchusError, RuntimeError):
         )
 
 
+class BusFailure(SuchusError, RuntimeError):
+    """Servos that cannot be reached or had to be stopped; the command line ends with 3.
+
+    Attributes:
+        record: of what was driven until then; None where nothing was.
+    """
+
+    def __init__(self, message: str, *, record: Any = None) -> None:
+        super().__init__(message)
+        self.record = record
+
+
 class NotConverged(SuchusError, RuntimeError):
     """An iteration that ended without an answer."""
 

@@ -10,7 +10,7 @@ from pkgutil import resolve_name
 from shutil import get_terminal_size
 from unicodedata import category
 
-from suchus.errors import Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
+from suchus.errors import BusFailure, Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
 from suchus.stopping import Stopped, stopping
 from suchus.writing import replacing
@@ -130,7 +130,8 @@ def main(words: Sequence[str] | None = None) -> int:
     """Carry out a command line and return the exit code.
 
     0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
-    error. 130: stopped by Ctrl-C; 129 and 143: by SIGHUP, as of a terminal that is closed, and SIGTERM.
+    error. 3: servos could not be reached, or had to be stopped. 130: stopped by Ctrl-C; 129 and 143: by SIGHUP, as of a
+    terminal that is closed, and SIGTERM.
 
     Args:
         words: what follows ``suchus``; by default those of this process.
@@ -145,6 +146,8 @@ def main(words: Sequence[str] | None = None) -> int:
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
+    except BusFailure as error:
+        return _complain(str(error), 3)
     except SuchusError as error:
         return _complain(str(error), 2)
     except KeyboardInterrupt as stop:

@@ -186,6 +186,11 @@ class SimulationBatch:
         now = self.physics.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
         self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
 
+    @property
+    def pressed(self) -> np.ndarray:
+        """The contact forces among the readings, for writing, shape (run, 3 forces) [N]."""
+        return self._mean
+
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
         angles: np.ndarray = self._shafts[sim]

@@ -82,7 +82,8 @@ class Loop:
     ) -> None:
         self.runs = runs
         self.period = control_period(runs[0].robot)
-        self._steps = physics_steps(timestep, self.period)
+        self.steps = physics_steps(timestep, self.period)
+        """Physics steps of a control period [-]."""
         self.batch = SimulationBatch(runs, timestep)
         self.sensors = Sensors(self.batch, runs[0].robot)
         self.feels = any(run.control.feels for run in runs)
@@ -129,22 +130,42 @@ class Loop:
         targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
         self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
 
-    def advance(self, *, felt: bool = True, read: bool = True) -> None:
+    def advance(self, *, felt: bool = True, read: bool = True, before: tuple[np.ndarray, int] | None = None) -> None:
         """Let one control period pass in which the servos do as they are commanded.
 
         Args:
             felt: whether contact forces will be read after it, see ``SimulationBatch.advance``.
             read: whether any sensor will be.
+            before: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many physics
+                steps, fewer than the period has, where a command arrives late; of a loop of one run.
         """
+        if before is not None:
+            self._advance_late(*before)
+            return
         targets, _, air_fraction = self.command
         shared = self._deduplication
         shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
         self.batch.waters.flood(self.time, air_fraction)
         if shared.others.size:
-            self.batch.advance(targets, self._steps, self.time, shared.first, felt=felt, read=read)
+            self.batch.advance(targets, self.steps, self.time, shared.first, felt=felt, read=read)
             self.batch.copy(shared.others, shared.whom)
         else:
-            self.batch.advance(targets, self._steps, self.time, felt=felt, read=read)
+            self.batch.advance(targets, self.steps, self.time, felt=felt, read=read)
+        self._count()
+
+    def _advance_late(self, early: np.ndarray, steps: int) -> None:
+        """Let a control period pass whose command acts after some physics steps; forces are means over all of it."""
+        targets, _, air_fraction = self.command
+        self.batch.waters.flood(self.time, air_fraction)
+        self.batch.advance(early, steps, self.time)
+        means, share = (self.batch.pressed, self.batch.worked), steps / self.steps
+        first = [share * mean for mean in means]
+        self.batch.advance(targets, self.steps - steps, self.time)
+        for mean, part in zip(means, first, strict=True):
+            mean[:] = part + (1.0 - share) * mean
+        self._count()
+
+    def _count(self) -> None:
         self.tick += 1
         self.clocks += self._going
 

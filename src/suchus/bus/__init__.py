@@ -1,0 +1,54 @@
+"""The wire: packets of servo buses, control tables, ports, and which servo hangs where."""
+
+from suchus.bus.bus import WAIT, Bus, Counts, NoAnswer
+from suchus.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
+from suchus.bus.ports import BusGone, Port, Stream, bit_rate, latency_timer, open_port
+from suchus.bus.tables import STEPS, TABLES, Register, Table
+from suchus.bus.wiring import (
+    CLOCK,
+    FRAMINGS,
+    BoardPlace,
+    BusPlace,
+    ServoPlace,
+    Steps,
+    Wiring,
+    board_table,
+    check_names,
+    fingerprint,
+    straight,
+    twice,
+)
+
+__all__ = [
+    "BROADCAST",
+    "CLOCK",
+    "FRAMINGS",
+    "STEPS",
+    "TABLES",
+    "WAIT",
+    "BoardPlace",
+    "Bus",
+    "BusGone",
+    "BusPlace",
+    "Counts",
+    "Decoder",
+    "Framing",
+    "Instruction",
+    "NoAnswer",
+    "Packet",
+    "Port",
+    "Register",
+    "ServoPlace",
+    "Steps",
+    "Stream",
+    "Table",
+    "Wiring",
+    "bit_rate",
+    "board_table",
+    "check_names",
+    "fingerprint",
+    "latency_timer",
+    "open_port",
+    "straight",
+    "twice",
+]

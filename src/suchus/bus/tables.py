@@ -1,0 +1,304 @@
+"""Control tables: the registers of each servo that we speak with, by the same names for all makers.
+
+Sources: ROBOTIS e-manual and the tables of its SDK (Apache-2.0) for the X series; LeRobot's tables (Apache-2.0) and
+Feetech's manual for STS. Boards for sensors are nobody's product: their tables say what a board of one's own must do.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import pi
+from types import MappingProxyType
+from typing import Literal
+
+from suchus.errors import UnknownName
+
+Sign = Literal["none", "two", "bit"]
+
+STEPS = 4096
+"""Steps of a turn, of every servo here [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Register:
+    """One value in a control table."""
+
+    name: str
+    """As ``present_position``."""
+    address: int
+    """Of its first byte."""
+    size: int
+    """Width [byte]."""
+    unit: float = 1.0
+    """What a step of it is in SI units: rad, rad/s, A, V, K, s."""
+    sign: Sign = "none"
+    """How negative numbers are written: none are, as two's complement, or by a bit."""
+    sign_bit: int = 15
+    """Which bit says minus, where one does [-]."""
+    writable: bool = False
+    """Whether it can be written."""
+    initial: int = 0
+    """As it comes from the maker, in steps of the register [-]."""
+    span: tuple[int, int] | None = None
+    """Least and greatest value that it takes; None for all that fit."""
+
+    def encode(self, value: int) -> bytes:
+        """Return the bytes of a value, which is clipped to what fits."""
+        if self.sign == "two":
+            most = 1 << (8 * self.size - 1)
+            return min(max(value, -most), most - 1).to_bytes(self.size, "little", signed=True)
+        if self.sign == "bit":
+            most = 1 << self.sign_bit
+            value = min(abs(value), most - 1) | (most if value < 0 else 0)
+        return min(max(value, 0), (1 << 8 * self.size) - 1).to_bytes(self.size, "little")
+
+    def decode(self, data: bytes) -> int:
+        """Return the value that bytes are."""
+        value = int.from_bytes(data, "little", signed=self.sign == "two")
+        if self.sign == "bit" and value >> self.sign_bit & 1:
+            return -(value & ((1 << self.sign_bit) - 1))
+        return value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """The registers of one model, and how they are used."""
+
+    model: str
+    """As ``hardware.toml`` calls it."""
+    number: int
+    """What it answers when it is asked for its model [-]."""
+    protocol: str
+    """``dynamixel`` or ``feetech``."""
+    registers: tuple[Register, ...]
+    """In the order of their addresses."""
+    stall_torque: float = 1.0
+    """Torque at rest at 12 V, or at the highest voltage that it takes [N m]; what its load is a share of."""
+    torque_per_ampere: float = 1.0
+    """That over the current at rest [N m/A]: what a current is taken to be, which gears' friction makes inaccurate."""
+    felt: tuple[str, str]
+    """First and last register of the block that is read at every tick."""
+    health: tuple[str, str] | None = None
+    """First and last register of the block that is read of one servo a tick by turns; None where the block at every
+    tick holds voltage and temperature."""
+    bauds: Mapping[int, int] = field(default_factory=dict)
+    """Bit rates by the value of ``baud_rate`` [1/s]."""
+    persistent: int = 0
+    """Addresses below this are kept without power, and refused while torque is on (``locks``) [-]."""
+    full: int = 1000
+    """Value of ``torque_limit`` that stands for all of the torque [-]."""
+    alerts: tuple[tuple[int, str], ...] = ()
+    """Bits of ``hardware_error``, and what they say."""
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Register]:
+        """The registers by name."""
+        return MappingProxyType({one.name: one for one in self.registers})
+
+    def __getitem__(self, name: str) -> Register:
+        if name not in self.by_name:
+            raise UnknownName(f"register of {self.model}", name, self.by_name)
+        return self.by_name[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.by_name
+
+    def block(self, ends: tuple[str, str]) -> tuple[int, int]:
+        """Return address and length of what lies from one register to another [byte]."""
+        first, last = self[ends[0]], self[ends[1]]
+        return first.address, last.address + last.size - first.address
+
+    def unpack(self, ends: tuple[str, str], data: bytes) -> dict[str, int]:
+        """Return the values of a block by register."""
+        start, length = self.block(ends)
+        return {
+            one.name: one.decode(data[one.address - start : one.address - start + one.size])
+            for one in self.registers
+            if start <= one.address and one.address + one.size <= start + length
+        }
+
+    @cached_property
+    def length(self) -> int:
+        """Bytes of the whole table [byte]."""
+        last = self.registers[-1]
+        return last.address + last.size
+
+
+_RPM = 2 * pi / 60
+_STEP = 2 * pi / STEPS
+
+
+def _x_series(
+    model: str, number: int, *, stall: tuple[float, float], current: float, hottest: int, volts: tuple[int, int]
+) -> Table:
+    """Return the table of an X servo.
+
+    Args:
+        model: its name.
+        number: its model number.
+        stall: torque [N m] and current [A] at rest.
+        current: what a step of ``present_current`` is [A]; 0 where it tells a load only.
+        hottest: temperature at which it switches off [degrees Celsius].
+        volts: least and greatest voltage [0.1 V].
+    """
+    two: Sign = "two"
+    return Table(
+        model=model,
+        number=number,
+        protocol="dynamixel",
+        stall_torque=stall[0],
+        torque_per_ampere=stall[0] / stall[1],
+        registers=(
+            Register(name="model_number", address=0, size=2, initial=number),
+            Register(name="firmware", address=6, size=1, initial=48),
+            Register(name="id", address=7, size=1, writable=True, initial=1, span=(0, 252)),
+            Register(name="baud_rate", address=8, size=1, writable=True, initial=1, span=(0, 7)),
+            Register(name="return_delay", address=9, size=1, unit=2e-6, writable=True, initial=250, span=(0, 254)),
+            Register(name="operating_mode", address=11, size=1, writable=True, initial=3, span=(0, 16)),
+            Register(name="homing_offset", address=20, size=4, unit=_STEP, sign=two, writable=True),
+            Register(name="temperature_limit", address=31, size=1, writable=True, initial=hottest, span=(0, 100)),
+            Register(name="voltage_high", address=32, size=2, unit=0.1, writable=True, initial=volts[1]),
+            Register(name="voltage_low", address=34, size=2, unit=0.1, writable=True, initial=volts[0]),
+            Register(name="position_high", address=48, size=4, unit=_STEP, writable=True, initial=STEPS - 1,
+                     span=(0, STEPS - 1)),
+            Register(name="position_low", address=52, size=4, unit=_STEP, writable=True, span=(0, STEPS - 1)),
+            Register(name="shutdown", address=63, size=1, writable=True, initial=52),
+            Register(name="torque_enable", address=64, size=1, writable=True, span=(0, 1)),
+            Register(name="status_level", address=68, size=1, writable=True, initial=2, span=(0, 2)),
+            Register(name="hardware_error", address=70, size=1),
+            Register(name="bus_watchdog", address=98, size=1, unit=0.02, sign=two, writable=True, span=(0, 127)),
+            Register(name="torque_limit", address=100, size=2, sign=two, writable=True, initial=885,
+                     span=(-885, 885)),
+            Register(name="profile_velocity", address=112, size=4, unit=0.229 * _RPM, writable=True),
+            Register(name="goal_position", address=116, size=4, unit=_STEP, sign=two, writable=True, initial=2048),
+            Register(name="present_current" if current else "present_load", address=126, size=2,
+                     unit=current or 1e-3, sign=two),
+            Register(name="present_velocity", address=128, size=4, unit=0.229 * _RPM, sign=two),
+            Register(name="present_position", address=132, size=4, unit=_STEP, sign=two, initial=2048),
+            Register(name="present_voltage", address=144, size=2, unit=0.1, initial=120),
+            Register(name="present_temperature", address=146, size=1, initial=25),
+        ),
+        felt=("present_current" if current else "present_load", "present_position"),
+        health=("present_voltage", "present_temperature"),
+        bauds=MappingProxyType(
+            {0: 9600, 1: 57600, 2: 115200, 3: 1_000_000, 4: 2_000_000, 5: 3_000_000, 6: 4_000_000}
+        ),
+        persistent=64,
+        full=885,
+        alerts=(
+            (0, "input voltage"), (2, "overheated"), (3, "encoder"), (4, "electrical shock"), (5, "overload"),
+        ),
+    )  # fmt: skip
+
+
+def _sts(model: str, number: int, *, stall: tuple[float, float], volts: tuple[int, int]) -> Table:
+    """Return the table of an STS servo; it has no watchdog of the bus, and holds its last goal when the host is gone.
+
+    Args:
+        model: its name.
+        number: its model number.
+        stall: torque [N m] and current [A] at rest.
+        volts: least and greatest voltage [0.1 V].
+    """
+    return Table(
+        model=model,
+        number=number,
+        protocol="feetech",
+        stall_torque=stall[0],
+        torque_per_ampere=stall[0] / stall[1],
+        registers=(
+            Register(name="firmware", address=0, size=1, initial=3),
+            Register(name="model_number", address=3, size=2, initial=number),
+            Register(name="id", address=5, size=1, writable=True, initial=1, span=(0, 253)),
+            Register(name="baud_rate", address=6, size=1, writable=True, span=(0, 7)),
+            Register(name="return_delay", address=7, size=1, unit=2e-6, writable=True, span=(0, 254)),
+            Register(name="status_level", address=8, size=1, writable=True, initial=1, span=(0, 1)),
+            Register(name="position_low", address=9, size=2, unit=_STEP, writable=True, span=(0, STEPS - 1)),
+            Register(name="position_high", address=11, size=2, unit=_STEP, writable=True, initial=STEPS - 1,
+                     span=(0, STEPS - 1)),
+            Register(name="temperature_limit", address=13, size=1, writable=True, initial=70, span=(0, 100)),
+            Register(name="voltage_high", address=14, size=1, unit=0.1, writable=True, initial=volts[1]),
+            Register(name="voltage_low", address=15, size=1, unit=0.1, writable=True, initial=volts[0]),
+            Register(name="homing_offset", address=31, size=2, unit=_STEP, sign="bit", sign_bit=11, writable=True),
+            Register(name="operating_mode", address=33, size=1, writable=True, span=(0, 3)),
+            Register(name="torque_enable", address=40, size=1, writable=True, span=(0, 128)),
+            Register(name="goal_position", address=42, size=2, unit=_STEP, sign="bit", writable=True, initial=2048),
+            Register(name="goal_velocity", address=46, size=2, unit=_STEP, sign="bit", writable=True),
+            Register(name="torque_limit", address=48, size=2, writable=True, initial=1000, span=(0, 1000)),
+            Register(name="lock", address=55, size=1, writable=True, initial=1, span=(0, 1)),
+            Register(name="present_position", address=56, size=2, unit=_STEP, sign="bit", initial=2048),
+            Register(name="present_velocity", address=58, size=2, unit=_STEP, sign="bit"),
+            Register(name="present_load", address=60, size=2, unit=1e-3, sign="bit", sign_bit=10),
+            Register(name="present_voltage", address=62, size=1, unit=0.1, initial=120),
+            Register(name="present_temperature", address=63, size=1, initial=25),
+            Register(name="hardware_error", address=65, size=1),
+            Register(name="present_current", address=69, size=2, unit=6.5e-3, sign="bit"),
+        ),
+        felt=("present_position", "present_current"),
+        bauds=MappingProxyType(
+            {0: 1_000_000, 1: 500_000, 2: 250_000, 3: 128_000, 4: 115_200, 5: 76_800, 6: 57_600, 7: 38_400}
+        ),
+        persistent=40,
+        alerts=((0, "input voltage"), (1, "encoder"), (2, "overheated"), (3, "current"), (5, "overload")),
+    )  # fmt: skip
+
+
+TABLES: Mapping[str, Table] = MappingProxyType(
+    {
+        table.model: table
+        for table in (
+            _x_series("XL430-W250", 1060, stall=(1.5, 1.4), current=0.0, hottest=72, volts=(60, 140)),
+            _x_series("XC330-M288", 1240, stall=(0.93, 1.8), current=1e-3, hottest=70, volts=(35, 70)),
+            _x_series("XM430-W350", 1020, stall=(4.1, 2.3), current=2.69e-3, hottest=80, volts=(95, 160)),
+            _x_series("XM540-W270", 1120, stall=(10.6, 4.4), current=2.69e-3, hottest=80, volts=(95, 160)),
+            _sts("STS3215-12V", 777, stall=(2.94, 2.7), volts=(40, 140)),
+            _sts("STS3250", 2825, stall=(4.9, 4.5), volts=(40, 140)),
+        )
+    }
+)
+"""The servos that we speak with, by model."""
+
+
+def _board(model: str, number: int, protocol: str, registers: tuple[Register, ...]) -> Table:
+    """Return the table of a board for sensors: its number, then what it feels, in one block."""
+    own = Register(name="model_number", address=0, size=2, initial=number)
+    return Table(
+        model=model,
+        number=number,
+        protocol=protocol,
+        registers=(own, *registers),
+        felt=(registers[0].name, registers[-1].name),
+    )
+
+
+def _row(names: tuple[str, ...], start: int, unit: float) -> tuple[Register, ...]:
+    return tuple(
+        Register(name=name, address=start + 2 * i, size=2, unit=unit, sign="two") for i, name in enumerate(names)
+    )
+
+
+IMU = (
+    *_row(("orientation_w", "orientation_x", "orientation_y", "orientation_z"), 128, 2.0**-14),
+    *_row(("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"), 136, 1 / 900),
+    *_row(("acceleration_x", "acceleration_y", "acceleration_z"), 142, 0.01),
+)
+"""Registers of an inertial measurement unit: its orientation in the world, its angular velocity [rad/s] and its
+acceleration with gravity [m/s2], in the units of Bosch's BNO055, which does the same."""
+
+
+def imu_board(protocol: str) -> Table:
+    """Return the table of an inertial measurement unit on a board that speaks a protocol."""
+    return _board("imu", 60001, protocol, IMU)
+
+
+def load_board(protocol: str, kind: str, places: int, unit: float) -> Table:
+    """Return the table of a board that feels the normal force at several places.
+
+    Args:
+        protocol: that it speaks.
+        kind: ``feet``, ``belly`` or ``tail``.
+        places: how many.
+        unit: force of a step [N].
+    """
+    names = tuple(f"load_{i}" for i in range(places))
+    return _board(kind, 60002, protocol, _row(names, 128, unit))
