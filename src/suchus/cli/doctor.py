@@ -35,6 +35,7 @@ _EXTRAS = {
     "capture": "tracks of DeepLabCut, SLEAP, LightningPose",
     "gym": "Gymnasium tasks",
     "usd": "suchus export --format usd",
+    "hardware": "suchus drive and suchus calibrate, with real servos",
     "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",
 }
