@@ -1,13 +1,14 @@
 """Added mass of a body, from the pressure equation that the solver itself uses."""
 
 from collections.abc import Sequence
-from math import prod
+from dataclasses import dataclass
 
 import numpy as np
 
 from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
 from suchus.flow.solid import SkinMarkers
+from suchus.flow.twist import Twists, held_faces, none, part_of, rise
 from suchus.flow.water import Fluid
 
 _LIMIT = 1e-5
@@ -30,36 +31,48 @@ def added_mass(
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    h, axes, cut = water.grid.cell, water.axes, water.cut[body]
-    here, kept = water.here, symmetric(cut)
+    axes, cut = water.axes, water.cut[body]
+    kept = symmetric(cut)
     if wanted is not None:  # in open water the body's whole momentum counts, that along other axes too
         unbounded = water.border.water is not None and axes == 3
         asked = [bool(one) or (unbounded and k < axes) for k, one in enumerate(wanted)]
         kept = [keep and one for keep, one in zip(kept, asked, strict=True)]
-    modes = [mode for mode, keep in zip(_modes(water, about), kept, strict=True) if keep]
-    rows = water.rows[body]
-    own = [(owner >= rows.start) & (owner < rows.stop) for owner in water.owners]
-    shares = [(1 - m[here].astype(np.float64)) * mine for m, mine in zip(water.passage, own, strict=True)]
-    for share in shares:
-        _leave_images(share, cut)
-    rises, shores, inward = [], [], []
-    for mode in modes:
-        scale = max(float(np.abs(part).max()) for part in mode)
-        given = np.stack([share * part for share, part in zip(shares, mode, strict=True)]) / scale
-        potential = water.potential(given, _LIMIT)
-        shores.append([scale * line.astype(np.float64) for line in water.along_sides(potential)])
-        near = potential[tuple(slice(s.start - 1, s.stop) for s in here)].astype(np.float64)
-        rises.append([scale * _rise(near, axes - 1 - c) for c in range(axes)])
-        inward.append([scale * side for side in water.answer(given)])
-    held, own_mass = (
-        prod([h] * axes) * np.array([[_work(mode, shares, parts) for parts in what] for mode in modes])
-        for what in (rises, modes)
-    )
-    both = np.ix_(kept, kept)
+    modes = [mode for mode, keep in zip(_rigid(water, about, body), kept, strict=True) if keep]
+    answers = _Answers.of(water, modes)
+    volume, both = water.grid.cell**axes, np.ix_(kept, kept)
     whole = np.full((len(kept), len(kept)), np.nan)
-    rim = _rim(water, markers, about, cut)[both]
-    whole[both] = 2 ** sum(cut) * density * (_in_open_water(held, own_mass, shores, inward, prod([h] * axes)) + rim)
+    held = _in_open_water(volume * answers.held, volume * answers.own, answers.shores, answers.inward, volume)
+    of_body = slice(water.rows[body].start, water.rows[body].stop)
+    mine = [_part(mode, of_body) for mode in modes]
+    whole[both] = 2 ** sum(cut) * density * (held + _rim(water, [markers], [mine], [cut]))
     return whole
+
+
+def generalised_added_mass(
+    water: Fluid, outlines: Sequence[Markers | SkinMarkers], modes: Sequence[Twists], density: float
+) -> np.ndarray:
+    """Return the added mass for motions of all bodies together, such as those of joints, shape (mode, mode).
+
+    The generalised force of the water in mode i is ``-Ma[i, k]`` per unit acceleration of mode k. The sides of the
+    domain are held, so that it is, if anything, too large. What lies beyond mirrors is counted.
+
+    Args:
+        water: with the bodies placed.
+        outlines: of each body.
+        modes: velocities of all parts of all bodies for unit rates, symmetric about mirrors that cut the bodies.
+        density: of the water [kg/m^3].
+
+    Raises:
+        NotConverged: the pressure solver got stuck.
+    """
+    answers, mine = _Answers.of(water, modes), []
+    for rows in water.rows:
+        own = slice(rows.start, rows.stop)
+        mine.append([_part(mode, own) for mode in modes])
+    rim = _rim(water, outlines, mine, water.cut)
+    times = 2 ** max(sum(cut) for cut in water.cut)
+    whole: np.ndarray = times * density * (water.grid.cell**water.axes * answers.held + rim)
+    return 0.5 * (whole + whole.T)
 
 
 def symmetric(cut: tuple[bool, ...]) -> list[bool]:
@@ -68,57 +81,84 @@ def symmetric(cut: tuple[bool, ...]) -> list[bool]:
     return [*(not off for off in across), *(not (across[a] or across[b]) for a, b in TURNS[len(across)])]
 
 
-def _modes(water: Fluid, about: tuple[float, ...]) -> list[list[np.ndarray]]:
-    """Return the velocity of each mode on the faces of the window, mode by mode and component by component."""
-    axes, here = water.axes, water.here
-    shape = tuple(s.stop - s.start for s in here)
-    off = [
-        np.expand_dims(water.grid.centres(s.start, s.stop, d) - about[d], [n for n in range(axes) if n != axes - 1 - d])
-        for d, s in enumerate(reversed(here))
-    ]
-    ones, none = np.ones(shape), np.zeros(shape)
-    modes = [[ones if c == d else none for c in range(axes)] for d in range(axes)]
-    for a, b in TURNS[axes]:
-        turn = {a: np.broadcast_to(-off[b], shape), b: np.broadcast_to(off[a], shape)}
-        modes.append([turn.get(c, none) for c in range(axes)])
-    return modes
+def _rigid(water: Fluid, about: tuple[float, ...], body: int) -> list[Twists]:
+    """Return the rigid motions of one body along each axis and about a point, the others at rest."""
+    axes, rows, found = water.axes, water.rows[body], []
+    turns = len(TURNS[axes])
+    for k in range(axes + turns):
+        mode = none(len(water.given), axes)
+        mode.about[:] = about
+        (mode.linear if k < axes else mode.angular)[rows.start : rows.stop, k if k < axes else k - axes] = 1.0
+        found.append(mode)
+    return found
 
 
-def _leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
-    """Set to nothing what lies beyond the mirrors that cut a body."""
-    for k, is_cut in enumerate(cut):
-        lines = np.moveaxis(share, share.ndim - 1 - k // 2, 0)
-        if is_cut and k % 2 == 0:
-            lines[0] = 0
-        elif is_cut:
-            lines[-2:] = 0
+def _part(mode: Twists, rows: slice) -> Twists:
+    """Return the motion of the parts of one body."""
+    return Twists(about=mode.about[rows], linear=mode.linear[rows], angular=mode.angular[rows])
 
 
-def _rise(near: np.ndarray, axis: int) -> np.ndarray:
-    """Return how much a field rises from cell to cell along an axis, without the first cell along each."""
-    inner = (slice(1, None),) * near.ndim
-    rise: np.ndarray = near[inner] - near[tuple(slice(None, -1) if n == axis else s for n, s in enumerate(inner))]
-    return rise
+@dataclass(slots=True)
+class _Answers:
+    """What the water does as the bodies are accelerated in some modes, over the density and the volume of a cell."""
+
+    held: np.ndarray
+    """What the pressure does against each mode in each, the sides held, shape (mode, mode) [m^2/s^2]."""
+    own: np.ndarray
+    """The same of the bodies' own region in the place of the water."""
+    shores: list[list[np.ndarray]]
+    """Potential along each side, mode by mode [m/s^2 cells]."""
+    inward: list[list[np.ndarray]]
+    """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
+
+    @classmethod
+    def of(cls, water: Fluid, modes: Sequence[Twists]) -> "_Answers":
+        """Return the answers of the water around placed bodies."""
+        faces, axes = held_faces(water), water.axes
+        shape = tuple(s.stop - s.start for s in water.here)
+        rises, moves, shores, inward = [], [], [], []
+        for mode in modes:
+            parts = [mode.at(one.row, one.points)[c] for c, one in enumerate(faces)]
+            scale = max(float(np.abs(part).max(initial=0.0)) for part in parts) or 1.0
+            given = np.zeros((axes, *shape))
+            for c, (one, part) in enumerate(zip(faces, parts, strict=True)):
+                given[c].ravel()[one.place] = one.closed * part / scale
+            x = water.potential(given, _LIMIT)
+            shores.append([scale * line.astype(np.float64) for line in water.along_sides(x)])
+            rises.append([scale * rise(water, x, one, c) for c, one in enumerate(faces)])
+            inward.append([scale * side for side in water.answer(given)])
+            moves.append([one.closed * part for one, part in zip(faces, parts, strict=True)])
+        held, own = (
+            np.array([[_work(mode, parts) for parts in what] for mode in moves])
+            for what in (rises, [[m.at(one.row, one.points)[c] for c, one in enumerate(faces)] for m in modes])
+        )
+        return cls(held, own, shores, inward)
 
 
-def _work(mode: list[np.ndarray], shares: list[np.ndarray], parts: list[np.ndarray]) -> float:
-    """Return what a mode does against a field, on the body's share of the faces."""
-    total = 0.0
-    for a, share, part in zip(mode, shares, parts, strict=True):
-        total += (a * share * part).sum()
+def _work(mode: list[np.ndarray], parts: list[np.ndarray]) -> float:
+    """Return what a mode does against a field, on the bodies' share of the faces."""
+    return float(sum((a * part).sum() for a, part in zip(mode, parts, strict=True)))
+
+
+def _rim(
+    water: Fluid, outlines: Sequence[Markers | SkinMarkers], modes: Sequence[Sequence[Twists]],
+    cut: Sequence[tuple[bool, ...]],
+) -> np.ndarray:  # fmt: skip
+    """Return the mass over the density of the skin that the immersion holds with the bodies, per mode and mode.
+
+    Args:
+        water: with the bodies placed.
+        outlines: of each body.
+        modes: motions of the parts of each body.
+        cut: which mirrors cut each body.
+    """
+    total = np.zeros((len(modes[0]), len(modes[0])))
+    for outline, own, ends in zip(outlines, modes, cut, strict=True):
+        skin = water.offset * water.grid.cell * 0.5 ** sum(ends) * outline.share
+        row = part_of(outline)
+        moves = np.array([mode.at(row, outline.points) for mode in own])
+        total += np.einsum("icm,jcm,m->ij", moves, moves, skin)
     return total
-
-
-def _rim(water: Fluid, markers: Markers | SkinMarkers, about: tuple[float, ...], cut: tuple[bool, ...]) -> np.ndarray:
-    """Return the mass over the density of the skin that the immersion holds with the body, per mode and mode."""
-    axes, turns = water.axes, TURNS[water.axes]
-    off = [points - place for points, place in zip(markers.points, about, strict=True)]
-    skin = water.offset * water.grid.cell * 0.5 ** sum(cut) * markers.share
-    none = 0 * skin
-    modes = [*({d: skin} for d in range(axes)), *({a: -off[b] * skin, b: off[a] * skin} for a, b in turns)]
-    rims = np.array([[mode.get(c, none) for mode in modes] for c in range(axes)])  # component, mode, marker
-    moments = [(off[a] * rims[b] - off[b] * rims[a]).sum(axis=1) for a, b in turns]
-    return np.array([*rims.sum(axis=2), *moments])
 
 
 def _in_open_water(

@@ -8,6 +8,7 @@ import numpy as np
 from suchus.errors import Diverged
 from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
+from suchus.flow.midline import Midline
 from suchus.flow.momentum import Reaction, contents_of, reaction, skin
 from suchus.flow.pose import Pose, cross
 from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
@@ -19,6 +20,28 @@ from suchus.flow.water import Fluid
 
 FASTEST = 100.0
 """Speed, over that of stream and bodies, above which a simulation counts as diverged [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loads:
+    """What the water did to one body in one step."""
+
+    about: np.ndarray
+    """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
+    whole: Reaction
+    """On the whole body, mean over the step."""
+    parts: tuple[Reaction, ...]
+    """On each of its parts; of a body that is not divided the whole."""
+
+    @property
+    def forces(self) -> np.ndarray:
+        """Forces on the parts, shape (part, axis) [N/m, N]."""
+        return np.array([part.force for part in self.parts])
+
+    @property
+    def torques(self) -> np.ndarray:
+        """Torques on the parts, shape (part, 1) or (part, 3) [N, N m]."""
+        return np.array([part.moment for part in self.parts])
 
 
 @dataclass(slots=True)
@@ -39,26 +62,26 @@ class Log:
     def __post_init__(self) -> None:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
-    def hold(self, water: Fluid, outlines: Sequence[Markers | SkinMarkers]) -> np.ndarray:
-        """Note what the placed bodies' regions hold now; return what they held before.
-
-        Of a body that mirrors cut that is the part inside the domain.
-        """
-        grid, before = self.setup.grid, self.held
+    def hold(self, water: Fluid, outlines: Sequence[Markers | SkinMarkers]) -> None:
+        """Note what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
+        grid = self.setup.grid
         skins = [
             0.5 ** sum(cut) * skin(part, water.offset, grid.origin, grid.cell)
             for m, cut, rows in zip(outlines, water.cut, water.rows, strict=True)
             for part in _parts(m, len(rows))
         ]
         self.held = water.contents() - np.array(skins).reshape(-1, contents_of(grid.axes))
-        return before
 
     def reactions(
         self, water: Fluid, outlines: Sequence[Markers | SkinMarkers], about: list[tuple[float, ...]], dt: float,
-        push: tuple[float, ...],
+        push: tuple[float, ...], before: np.ndarray,
     ) -> list[list[Reaction]]:  # fmt: skip
-        """Return, per body, what the water did to the whole body in the step that just ended, and to its parts."""
-        before, grid = self.hold(water, outlines), self.setup.grid
+        """Return, per body, what the water did to the whole body in the step that just ended, and to its parts.
+
+        ``before`` is what ``held`` was when the step began.
+        """
+        grid = self.setup.grid
+        self.hold(water, outlines)
 
         def act(rows: Sequence[int], point: tuple[float, ...], cut: tuple[bool, ...]) -> Reaction:
             first, *others = rows
@@ -117,9 +140,9 @@ class Log:
         )  # fmt: skip
 
 
-def _parts(outline: Markers | SkinMarkers, count: int) -> list[Markers | SkinMarkers]:
+def _parts(outline: Markers | SkinMarkers, count: int) -> list[SkinMarkers | Markers]:
     """Return the skin of each part of a body, or its whole outline where there is one part."""
-    if count == 1 or not isinstance(outline, SkinMarkers) or outline.part is None:
+    if count == 1 or outline.part is None:
         return [outline]
     return [
         SkinMarkers(outline.points[:, mine], outline.share[mine], outline.velocities[:, mine])
@@ -160,13 +183,15 @@ def part_columns(
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """
-    if len(acts) < 2 or not isinstance(body.shape, Trunk):
+    if len(acts) < 2 or not isinstance(body.shape, Trunk | Midline):
         return []
     force, torque = (np.array([getattr(act, what) for act in acts]) for what in ("force", "moment"))
-    power = np.array([act.power for act in acts]) - force[:, :2] @ frame[:2] - force[:, 2] * frame[2]
+    power = np.array([act.power for act in acts]) - force @ frame
     behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
     ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)
-    axis = pose.matrix[:, 2]  # the midline bends about the body's z
-    joint = (moment - np.stack(cross(ends.T, behind.T), axis=1)) @ axis
-    columns: list[float] = np.column_stack([force[:, :2], torque[:, 2], power, joint]).ravel().tolist()
+    if len(about) == 2:
+        joint = moment[:, 0] - (ends[:, 0] * behind[:, 1] - ends[:, 1] * behind[:, 0])
+    else:  # the midline bends about the body's z
+        joint = (moment - np.stack(cross(ends.T, behind.T), axis=1)) @ pose.matrix[:, 2]
+    columns: list[float] = np.column_stack([force[:, :2], torque[:, -1], power, joint]).ravel().tolist()
     return columns

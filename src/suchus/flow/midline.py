@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields, replace
 from math import isfinite
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from suchus.errors import InvalidDesign
 from suchus.flow.mass import Mass, of_midline
@@ -94,6 +95,22 @@ class MidlineState:
         )  # fmt: skip
 
 
+MOST_PARTS = 64
+"""Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
+
+
+def check_cuts(cuts: tuple[float, ...], what: str) -> None:
+    """Refuse cuts that divide nothing.
+
+    Raises:
+        InvalidDesign: they do not rise from 0, or are too many.
+    """
+    if not all(isfinite(cut) for cut in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
+        raise InvalidDesign(f"the cuts of a {what} are at {cuts} m; give rising arc lengths above 0.")
+    if len(cuts) >= MOST_PARTS:
+        raise InvalidDesign(f"a {what} has {len(cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
+
+
 class Remembered:
     """A midline over time that remembers what it was at the last times: a step asks for the same ones often."""
 
@@ -115,6 +132,10 @@ class Remembered:
             self._known[time] = state
         return self._known[time]
 
+    def forget(self) -> None:
+        """Ask anew from now on: the body has become another."""
+        self._known.clear()
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Midline(Shape):
@@ -124,17 +145,44 @@ class Midline(Shape):
     """The midline at every time [s]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
+    cuts: tuple[float, ...] = ()
+    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
+    [m]."""
+
+    def __post_init__(self) -> None:
+        check_cuts(self.cuts, "midline")
 
     @property
     def rigid(self) -> bool:
         """Whether the shape never changes."""
         return not self.deforms
 
+    @property
+    def parts(self) -> int:
+        """Parts that the cuts leave [-]."""
+        return len(self.cuts) + 1
+
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
         placed = self.spine(time).placed(pose)
         h = (x[-1] - x[0]) / (x.size - 1)
-        return Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
+        field = Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
+        if self.cuts:
+            field.part = self._nearest_parts(placed, x, y, np.abs(field.distance) < reach)
+        return field
+
+    def _nearest_parts(self, placed: MidlineState, x: np.ndarray, y: np.ndarray, near: np.ndarray) -> np.ndarray:
+        """Return which part has the station that is nearest to each point of a window, where it is near the body."""
+        rows, columns = np.nonzero(near)
+        nearest = KDTree(np.column_stack([placed.x, placed.y])).query(np.column_stack([x[columns], y[rows]]))[1]
+        part = np.zeros(near.shape)
+        part[rows, columns] = np.searchsorted(self.cuts, placed.arc, side="right")[nearest]
+        return part
+
+    def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+        """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
+        placed = self.spine(time).placed(pose)
+        return np.column_stack([np.interp(arc, placed.arc, line) for line in (placed.x, placed.y)])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges, long edges split."""
@@ -156,7 +204,8 @@ class Midline(Shape):
         side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
         vx, vy, spin = sections(point, guess, placed.rows, placed.swell)
-        return Markers(point[0], point[1], normal[0], normal[1], length[edge] / count, vx, vy, spin, s, side)
+        part_of = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
+        return Markers(point[0], point[1], normal[0], normal[1], length[edge] / count, vx, vy, spin, s, side, part_of)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""

@@ -119,7 +119,7 @@ class Record:
             raise UnknownName("column", str(name), PART_COLUMNS)
         number = self._number(body)
         if not any(self.divided[number:][:1]):
-            raise OutsideLimits(f"body {self.names[number]!r} is not divided; give its Trunk some cuts.")
+            raise OutsideLimits(f"body {self.names[number]!r} is not divided; give its Midline or Trunk some cuts.")
         first = sum(self.divided[:number])
         return self.parts[:, first : first + self.divided[number], PART_COLUMNS.index(name)]
 

@@ -32,6 +32,8 @@ class Field:
     """The same along y [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
+    part: np.ndarray | None = None
+    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
 
     @property
     def normal(self) -> tuple[np.ndarray, ...]:
@@ -68,6 +70,8 @@ class Markers:
     """Where along the body: arc length of the midline, or of the outline where there is no midline [m]."""
     side: np.ndarray
     """+1 on the left of the midline, -1 on the right, 0 where there is no midline [-]."""
+    part: np.ndarray | None = None
+    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
 
     @property
     def points(self) -> np.ndarray:

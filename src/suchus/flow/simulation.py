@@ -1,10 +1,11 @@
 """A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from math import isfinite, prod
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -22,7 +23,8 @@ from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
-from suchus.flow.log import Log, columns, part_columns
+from suchus.flow.log import Loads, Log, columns, part_columns
+from suchus.flow.memory import Snapshot, give, take
 from suchus.flow.midline import Midline, Remembered
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
@@ -33,6 +35,7 @@ from suchus.flow.shape import Cylinder, Markers
 from suchus.flow.solid import SkinMarkers, Sphere
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
+from suchus.flow.twist import Twists, accelerate, joined, moved_on, none
 from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Fluid
 
@@ -102,6 +105,8 @@ class Simulation(Fields):
             component[:] = part
         self.water.border.stream = stream
         self._placed = False
+        self._taken: _Taken | None = None
+        self._loads: list[Loads] = []
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
@@ -148,9 +153,7 @@ class Simulation(Fields):
 
     def pose(self, name: str, time: float | None = None) -> Pose:
         """Return the pose of a body in the world, now or (unless it is free) at another time [s]."""
-        body = next((b for b in self._bodies if b.name == name), None)
-        if body is None:
-            raise UnknownName("body", name, [b.name for b in self._bodies] or ("none",))
+        body = self._bodies[self._number(name)]
         if isinstance(body, Body):
             return body.pose(self.time if time is None else time).along(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
@@ -243,7 +246,10 @@ class Simulation(Fields):
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
         self.time, self._last = time, dt
-        self._note(dt, poses, markers, push, 0.5 * (old_frame[1] + self.frame[1]))
+        drift = 0.5 * (old_frame[1] + self.frame[1])
+        self._taken = _Taken(dt, poses, push, drift, self._log.held)
+        self._note(self._taken)
+        self._log.control(self.water, dt, push)
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
         """Return the force and torque by contact on each body, in the middle of the next step [N/m, N]."""
@@ -269,19 +275,16 @@ class Simulation(Fields):
             return pose.position
         return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
-    def _note(
-        self,
-        dt: float,
-        poses: list[Pose],
-        outlines: Sequence[Markers | SkinMarkers],
-        push: tuple[float, ...],
-        drift: np.ndarray,
-    ) -> None:
-        water, setup = self.water, self.setup
+    def _note(self, taken: "_Taken") -> None:
+        water, setup, dt, poses, outlines = self.water, self.setup, taken.dt, taken.poses, self._outlines
         fastest = self._fastest = water.fastest()
         about = [self._about(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        reactions, along = self._log.reactions(water, outlines, about, dt, push), []
+        reactions, along = self._log.reactions(water, outlines, about, dt, taken.push, taken.before), []
+        self._loads = [
+            Loads(about=np.array(point), whole=whole, parts=tuple(parts) or (whole,))
+            for point, (whole, *parts) in zip(about, reactions, strict=True)
+        ]
         for k, (body, markers, point, (act, *parts)) in enumerate(
             zip(self._bodies, outlines, about, reactions, strict=True)
         ):
@@ -294,8 +297,8 @@ class Simulation(Fields):
                 if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
                     asked = swimmer.go if self.axes == 3 else None
                     swimmer.take_added(added_mass(water, markers, point, setup.density, k, asked), self.time)
-            values += columns(load, act, drift, place, self._watch.errors[k])
-            along += part_columns(body, parts, point, poses[k], self.time, drift)
+            values += columns(load, act, taken.drift, place, self._watch.errors[k])
+            along += part_columns(body, parts, point, poses[k], self.time, taken.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, setup.sides.fastest(setup.grid))
@@ -305,10 +308,75 @@ class Simulation(Fields):
         )  # fmt: skip
         good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
-        self._log.control(water, dt, push)
         self._log.rows.append(row)
         if len(self._log.rows) % EVERY == 0:
             self._watch.sides(water, self.time)
+
+    def last(self, name: str) -> Loads:
+        """Return what the water did to a body, and to each of its parts, in the last step.
+
+        Raises:
+            UnknownName: there is no such body.
+            OutsideLimits: no step has been taken since the simulation was set up or resumed.
+        """
+        if self._taken is None:
+            raise OutsideLimits("the loads of the last step are asked for before any step was taken; call advance.")
+        return self._loads[self._number(name)]
+
+    def accelerate(self, more: Mapping[str, Twists]) -> None:
+        """Let bodies have moved otherwise at the end of the last step, and the water with them; see ``twist``.
+
+        ``more`` is added to the velocities of their parts. The last row of the record becomes that of the step as it
+        then was. What a ``Body`` is told from outside, its shape and motion, must from now on say the same.
+
+        Raises:
+            UnknownName: there is no such body.
+            InvalidDesign: a body has another number of parts than it is given motions of.
+            OutsideLimits: no step has been taken yet.
+            Diverged: see ``advance``.
+        """
+        if self._taken is None:
+            raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
+        each = [none(len(rows), self.axes) for rows in self.water.rows]
+        for name, motion in more.items():
+            number = self._number(name)
+            if motion.about.shape != each[number].about.shape:
+                raise InvalidDesign(
+                    f"{name} is given the motions of {len(motion.about)} parts, and it has {len(each[number].about)}; "
+                    f"give one for each part, from the first to the last."
+                )
+            each[number] = motion
+        accelerate(self.water, joined(each), self._taken.dt)
+        self._outlines = [moved_on(one, motion) for one, motion in zip(self._outlines, each, strict=True)]
+        self._forget()
+        self._log.rows.pop()
+        self._note(self._taken)
+
+    def _number(self, name: str) -> int:
+        names = [b.name for b in self._bodies]
+        if name not in names:
+            raise UnknownName("body", name, names or ("none",))
+        return names.index(name)
+
+    def _forget(self) -> None:
+        for body in self._bodies:
+            spine = getattr(body.shape, "spine", None)
+            if isinstance(spine, Remembered):
+                spine.forget()
+
+    def snapshot(self) -> Snapshot:
+        """Return all that changes, in copies, to come back to with ``restore``."""
+        return take(self)
+
+    def restore(self, kept: Snapshot) -> None:
+        """Go back to a snapshot of this simulation; what follows is what followed it then, to the same bytes."""
+        give(self, kept)
+        self._forget()
+        self._taken = None
+        if kept.arrays["b"].size:
+            poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+            self.water.place(self._bodies, poses, self.time)
+            self.water.b[:] = kept.arrays["b"]
 
     def state(self) -> store.State:
         """Return all that changes, for a checkpoint."""
@@ -441,6 +509,21 @@ class Simulation(Fields):
         outline = body.shape.markers(self.time, pose, self.setup.grid.cell)
         assert isinstance(outline, Markers)
         return sample(self.water, outline, self.setup.density)
+
+
+class _Taken(NamedTuple):
+    """What is known of a step that was taken."""
+
+    dt: float
+    """Its length [s]."""
+    poses: list[Pose]
+    """Bodies at its end, in the frame of the grid."""
+    push: tuple[float, ...]
+    """Uniform acceleration of the water [m/s^2]."""
+    drift: np.ndarray
+    """Mean velocity of the grid [m/s]."""
+    before: np.ndarray
+    """What the bodies' regions held when it began; see ``momentum.contents``."""
 
 
 def _even(dt: float, left: float) -> float:

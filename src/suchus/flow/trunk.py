@@ -2,21 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite
 from typing import ClassVar
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.mass import SpaceMass, of_trunk
-from suchus.flow.midline import MidlineState
+from suchus.flow.midline import MidlineState, check_cuts
 from suchus.flow.paint import ring
 from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape
-
-MOST_PARTS = 64
-"""Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
 _FEWEST = 12
 """Points around a section, at least [-]."""
@@ -52,10 +48,7 @@ class Trunk(SpaceShape):
                 f"the half-heights of a trunk have shape {heights.shape} and go from {heights.min():.4g} to "
                 f"{heights.max():.4g} m; give one row of finite numbers, none negative."
             )
-        if not all(isfinite(cut) for cut in self.cuts) or (np.diff((0.0, *self.cuts)) <= 0).any():
-            raise InvalidDesign(f"the cuts of a trunk are at {self.cuts} m; give rising arc lengths above 0.")
-        if len(self.cuts) >= MOST_PARTS:
-            raise InvalidDesign(f"a trunk has {len(self.cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
+        check_cuts(self.cuts, "trunk")
 
     @property
     def rigid(self) -> bool:

@@ -450,6 +450,28 @@ class Fluid:
         self._seal(x)
         return x
 
+    def press(self, given: np.ndarray, dt: float, limit: float) -> np.ndarray:
+        """Give velocities on the faces of the window to the water, and what its pressure answers over a step.
+
+        The sides stay as they are. Returns ``potential`` of what is given: the pressure times the step in cells.
+
+        Args:
+            given: shape (axis, ...) [m/s].
+            dt: length of the step [s].
+            limit: mean divergence that may be left [m/s per cell].
+
+        Raises:
+            NotConverged: the pressure solver got stuck.
+        """
+        x, one, none = self.potential(given, limit), self.dtype(1), self.dtype(0)
+        self.velocity[:, *self.here] += given.astype(self.dtype)
+        solved, rest, gain = self._x, self._part(multigrid.X), self.dtype(self.grid.cell / dt)
+        velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
+        correct(velocity, p, solved, rest, one, none, passage, self._layout[0], self.inner, gain)
+        self._seal(self.p)
+        self.border.fill(self.velocity)
+        return x
+
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""
         cells = x[(slice(PAD, -PAD),) * self.axes]

@@ -1,0 +1,68 @@
+"""The state of a simulation kept in memory, from which the same step can be taken again to the same bytes."""
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from suchus.flow.consistency import Consistency
+from suchus.flow.shape import Markers
+from suchus.flow.solid import SkinMarkers
+
+if TYPE_CHECKING:
+    from suchus.flow.simulation import Simulation
+
+_NUMBERS = ("time", "_last", "_speed", "_reference", "_fastest", "_placed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Snapshot:
+    """All that changes of a simulation, in copies; ``Simulation.restore`` goes back to it, as often as it is asked to.
+
+    What a ``Body`` is told from outside is not in it: its shape and motion must be what they were at that time.
+    """
+
+    numbers: Mapping[str, float]
+    """Time, last step, speeds."""
+    arrays: Mapping[str, np.ndarray]
+    """Velocity, pressure, sides, frame, the bodies' velocity in the window, and what their regions hold."""
+    swimmers: Mapping[str, Mapping[str, np.ndarray]]
+    """States of free bodies."""
+    rows: tuple[int, int, np.ndarray | None]
+    """Rows of the record and of its control volume, and the last row."""
+    watched: tuple[Consistency, ...]
+    """How rates and places agreed so far."""
+    outlines: tuple[Markers | SkinMarkers, ...]
+    """Skins of the bodies."""
+
+
+def take(sim: "Simulation") -> Snapshot:
+    """Return a snapshot of a simulation."""
+    log, state = sim._log, sim.water.state()
+    more = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
+    return Snapshot(
+        numbers={name: getattr(sim, name) for name in _NUMBERS},
+        arrays={name: np.array(value) for name, value in {**state, **more}.items()},
+        swimmers={name: swimmer.state() for name, swimmer in sim.swimmers.items()},
+        rows=(len(log.rows), len(log.control_rows), log.rows[-1] if log.rows else None),
+        watched=tuple(copy(one) for one in sim._watched), outlines=tuple(sim._outlines),
+    )  # fmt: skip
+
+
+def give(sim: "Simulation", kept: Snapshot) -> None:
+    """Let a simulation be what it was, but for the bodies in the equations, which are placed anew."""
+    for name, value in kept.numbers.items():
+        setattr(sim, name, value)
+    arrays = {name: value.copy() for name, value in kept.arrays.items()}
+    log, (count, controls, last) = sim._log, kept.rows
+    del log.rows[count:], log.control_rows[controls:]
+    if last is not None:
+        log.rows[-1] = last
+    log.held, sim.frame = arrays["held"], arrays["frame"]
+    sim.water.resume(arrays)
+    for name, state in kept.swimmers.items():
+        sim.swimmers[name].resume({key: value.copy() for key, value in state.items()})
+    sim._watched = [copy(one) for one in kept.watched]
+    sim._outlines = list(kept.outlines)

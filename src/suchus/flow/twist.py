@@ -1,0 +1,189 @@
+"""Rigid motions of bodies and of their parts, and what the water does when they are accelerated within a step.
+
+A step of the flow sees a motion that was foreseen. When forces say that the bodies were accelerated otherwise, the
+water need not go through the step again: to first order in the step it is given the potential flow of the difference,
+which takes one solve of the pressure equation. The immersion holds the share ``1 - mu0`` of each face with the body in
+both stages of a step, so that this is what a step with the other acceleration would have done.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from suchus.flow.pose import TURNS
+from suchus.flow.shape import Markers
+from suchus.flow.solid import SkinMarkers
+from suchus.flow.water import Fluid
+
+SOLVED = 1e-4
+"""Mean divergence that ``accelerate`` leaves over, relative to the largest change of a body's velocity [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Twists:
+    """Rigid motions of parts, one a row: velocities, or what is added to them.
+
+    A body that is not divided is one part; one that bends is as many rigid pieces as it has parts.
+    """
+
+    about: np.ndarray
+    """Points of the parts that ``linear`` is the velocity of, in the frame of the grid, shape (part, axis) [m]."""
+    linear: np.ndarray
+    """Velocities of these points, shape (part, axis) [m/s]."""
+    angular: np.ndarray
+    """Angular velocities, about z in the plane and about x, y and z in space, shape (part, 1) or (part, 3) [rad/s]."""
+
+    def at(self, part: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Return the velocities of points, shape (axis, point), of parts, shape (point,): the same shape [m/s]."""
+        out = self.linear.T[:, part].astype(float)
+        off = points - self.about.T[:, part]
+        for turn, (a, b) in zip(self.angular.T, TURNS[len(points)], strict=True):
+            out[a] -= off[b] * turn[part]
+            out[b] += off[a] * turn[part]
+        return out
+
+    def at_origin(self) -> np.ndarray:
+        """Return the velocities that the parts have at the origin of the frame, shape (part, axis) [m/s]."""
+        return self.at(np.arange(len(self.about)), np.zeros(self.about.T.shape)).T
+
+    def __mul__(self, factor: float) -> "Twists":
+        """Return the same motions, so many times as fast."""
+        return replace(self, linear=factor * self.linear, angular=factor * self.angular)
+
+
+def none(rows: int, axes: int) -> Twists:
+    """Return parts that rest."""
+    turns = len(TURNS[axes])
+    return Twists(
+        about=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
+    )  # fmt: skip
+
+
+def joined(each: Sequence[Twists]) -> Twists:
+    """Return the motions of several bodies, one after the other."""
+    return Twists(
+        about=np.concatenate([one.about for one in each]), linear=np.concatenate([one.linear for one in each]),
+        angular=np.concatenate([one.angular for one in each]),
+    )  # fmt: skip
+
+
+class HeldFaces(NamedTuple):
+    """Faces across one axis that the bodies hold in part, each array of shape (face,) but for the points."""
+
+    place: np.ndarray
+    """Which of the window's faces they are, counted in the order of its array [-]."""
+    row: np.ndarray
+    """Part that each belongs to [-]."""
+    points: np.ndarray
+    """Their middles, in the frame of the grid, shape (axis, face) [m]."""
+    held: np.ndarray
+    """Share of each that moves with the body, ``1 - mu0`` [-]."""
+    closed: np.ndarray
+    """Share that the pressure does not act on, ``1 - passage`` [-]."""
+
+
+def held_faces(water: Fluid) -> list[HeldFaces]:
+    """Return the faces that the placed bodies hold, axis by axis; those beyond mirrors are left out."""
+    here, axes, grid, found = water.here, water.axes, water.grid, []
+    inside = np.ones([s.stop - s.start for s in here], bool)
+    for cut in water.cut:
+        leave_images(inside, cut)
+    ends = [(s.start, s.stop) for s in reversed(here)]
+    for c in range(axes):
+        held, closed = (1 - share[c][here].astype(np.float64) for share in (water.mu0, water.passage))
+        index = np.flatnonzero(((held > 0) | (closed > 0)) & inside)
+        lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(axes)]
+        places = np.unravel_index(index, held.shape)
+        points = np.stack([lines[d][places[axes - 1 - d]] for d in range(axes)])
+        row = water.owners[c].ravel()[index].astype(np.intp)
+        found.append(HeldFaces(index, row, points, held.ravel()[index], closed.ravel()[index]))
+    return found
+
+
+def leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
+    """Set to nothing what lies beyond the mirrors that cut a body."""
+    for k, is_cut in enumerate(cut):
+        lines = np.moveaxis(share, share.ndim - 1 - k // 2, 0)
+        if is_cut and k % 2 == 0:
+            lines[0] = 0
+        elif is_cut:
+            lines[-2:] = 0
+
+
+def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
+    """Return how much a field at the cells rises across faces, shape (face,)."""
+    low = [s.start for s in water.here]
+    behind = [place + first for place, first in zip(np.unravel_index(faces.place, _shape(water)), low, strict=True)]
+    before = [place - (n == water.axes - 1 - axis) for n, place in enumerate(behind)]
+    return x[tuple(behind)].astype(np.float64) - x[tuple(before)]
+
+
+def _shape(water: Fluid) -> tuple[int, ...]:
+    return tuple(s.stop - s.start for s in water.here)
+
+
+def accelerate(water: Fluid, more: Twists, dt: float) -> None:
+    """Let the bodies' velocities at the end of the last step be others, and the water have followed all through it.
+
+    On return velocity and pressure, the bodies' velocity and what the immersion gave are those of a step to whose end
+    the bodies came with velocities that are ``more``. The sides stay as they are.
+
+    Args:
+        water: after a step.
+        more: what is added to the velocity of each part; of all parts of all bodies.
+        dt: length of the step [s].
+
+    Raises:
+        NotConverged: the pressure solver got stuck.
+    """
+    axes, h, faces = water.axes, water.grid.cell, held_faces(water)
+    changes = [more.at(part.row, part.points)[c] for c, part in enumerate(faces)]
+    largest = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
+    if largest == 0.0:
+        return
+    shape, count = _shape(water), len(water.given)
+    given = np.zeros((axes, *shape))
+    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
+        given[c].ravel()[part.place] = part.held * change
+    x = water.press(given, dt, SOLVED * largest)
+    energy, turns = axes + len(TURNS[axes]), TURNS[axes]
+    sums = np.zeros_like(water.given)
+    corner = np.array(water.grid.origin)
+    lever = replace(more, about=more.about - corner)
+    # half of the step's mean velocity is new, of all that was given before
+    before, spin = water.given, h * more.angular
+    sums[:, energy] += 0.5 * (lever.at_origin() * before[:, :axes]).sum(axis=1)
+    sums[:, energy] += 0.5 * (spin * before[:, axes:energy]).sum(axis=1)
+    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
+        gained = part.held * change + part.closed * rise(water, x, part, c)
+        sums[:, c] += np.bincount(part.row, gained, count)
+        for n, (a, b) in enumerate(turns):
+            if c in (a, b):
+                off = (part.points[b if c == a else a] - corner[b if c == a else a]) / h
+                sums[:, axes + n] += np.bincount(part.row, (-off if c == a else off) * gained, count)
+        mean = water.mean[c].ravel()[part.place].astype(np.float64)
+        sums[:, energy] += np.bincount(part.row, (mean + 0.5 * change) * gained, count)
+        moved = water.b[c].ravel()
+        moved[part.place] += change.astype(water.dtype)
+        water.mean[c].ravel()[part.place] += (0.5 * change).astype(water.dtype)
+    water.given += sums
+
+
+def part_of(outline: Markers | SkinMarkers) -> np.ndarray:
+    """Return which of its body's parts each point of a skin belongs to, shape (point,) [-]."""
+    if outline.part is None:
+        return np.zeros(outline.points.shape[1], np.intp)
+    return outline.part.astype(np.intp)
+
+
+def moved_on(outline: Markers | SkinMarkers, more: Twists) -> Markers | SkinMarkers:
+    """Return the skin of one body whose parts move faster, by twists of this body's parts alone."""
+    row = part_of(outline)
+    velocities = outline.velocities + more.at(row, outline.points)
+    if isinstance(outline, SkinMarkers):
+        return replace(outline, velocities=velocities)
+    return replace(
+        outline, velocity_x=velocities[0], velocity_y=velocities[1], spin=outline.spin + more.angular[row, 0]
+    )
