@@ -20,7 +20,7 @@ from jinja2.ext import Extension
 from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, control_period, scaled_fields
 from suchus.errors import BrokenFile, InvalidDesign
-from suchus.gaits import own_gait
+from suchus.gaits import in_size, own_gait
 from suchus.motion import Gait, suits
 from suchus.progress import Progress, silent, staged
 from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
@@ -292,14 +292,21 @@ class Experiment(ABC):
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
-        """Return the fields that hold gaits, for a robot that cannot follow those of now: its own.
+        """Return the fields that hold gaits, for a robot that cannot follow those of now or is of another size.
+
+        They are those of now in its size where it can follow them all and would walk so by itself, else its own gait.
 
         Raises:
             UnsuitedRobot: no gait on the shelf suits it.
         """
-        own = own_gait(robot)
+        here: Robot = self.robot  # type: ignore[attr-defined]
+        own, names = own_gait(robot), [one.name for one in fields(self)]  # type: ignore[arg-type]
+        held = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
+        if own.name == own_gait(here).name:
+            sized = {name: tuple(in_size(gait, robot, here) for gait in _gaits(value)) for name, value in held.items()}
+            if all(suits(robot, gait) for gaits in sized.values() for gait in gaits):
+                return {name: gaits if isinstance(held[name], tuple) else gaits[0] for name, gaits in sized.items()}
         found = {"gait": own, "gaits": (own,)}
-        names = {one.name for one in fields(self)}  # type: ignore[arg-type]
         return {name: value for name, value in found.items() if name in names}
 
     def unjudged(self) -> str:

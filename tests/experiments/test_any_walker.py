@@ -11,6 +11,7 @@ from body_files import giant
 from suchus import blueprint
 from suchus.cli.entry import main
 from suchus.cli.options import choose
+from suchus.cli.run import moves
 from suchus.design import NEEDS, lacking, layout
 from suchus.design.scale import coarse_step, control_period
 from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
@@ -135,6 +136,31 @@ def test_a_robot_that_no_gait_of_the_shelf_suits_gets_one_drafted_and_that_is_sa
         assert f"No gait on the shelf suits {body.name}: it moves in one that was drafted" in capsys.readouterr().out
     main(words)
     assert "drafted" not in capsys.readouterr().out
+
+
+def test_which_gaits_another_robot_moves_in_is_said_with_their_period_in_its_size():
+    asked = EXPERIMENTS["gait_diagram"]
+    assert moves(asked) == moves(asked.on(ROBOTS["caiman"])) == []
+    assert moves(asked.on(ROBOTS["strider"])) == ["strider moves in the gait tripod."]
+    (told,) = moves(asked.on(hatchling()))
+    assert told == "hatchling moves in the gait belly_crawl (a cycle in 2.18 s; 4 s on the shelf)."
+    (told,) = moves(EXPERIMENTS["turning"].on(hatchling()))
+    assert told.startswith("hatchling moves in the gaits ")
+    assert " and " in told
+    assert moves(EXPERIMENTS["leg_kinematics"]) == moves(EXPERIMENTS["floating"].on(hatchling())) == []
+
+
+def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
+    asked = EXPERIMENTS["pattern_generator"]
+    floats = asked.on(ROBOTS["pleurobot"])
+    longer = ROBOTS["pleurobot"].length / asked.swimmer.length
+    assert (floats.swimmer, floats.swimmer_gait) == (ROBOTS["pleurobot"], own_gait(ROBOTS["pleurobot"]))
+    assert floats.water_line == pytest.approx(longer * asked.water_line)
+    assert floats.shore_time == pytest.approx(sqrt(longer) * asked.shore_time)
+    sinks = asked.on(ROBOTS["strider"])
+    assert (sinks.swimmer, sinks.swimmer_gait) == (asked.swimmer, asked.swimmer_gait)
+    assert (sinks.water_line, sinks.shore_time) == (asked.water_line, asked.shore_time)
+    assert asked.on(ROBOTS["salamander"]) == asked
 
 
 def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():

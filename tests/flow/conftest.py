@@ -1,10 +1,5 @@
-import sys
-from pathlib import Path
-
 import pytest
 from validation_rows import OUT, ROOT, SOURCES, is_whole, tests_there_are
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 
 from validation_page import write_table
 

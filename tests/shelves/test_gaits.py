@@ -6,10 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import suchus
+from body_files import giant, hatchling, imported_quadruped
 from suchus.design import layout, value_at, with_values
 from suchus.design.reasons import numbers
-from suchus.gaits import GAITS
+from suchus.design.scale import control_period, scaled
+from suchus.experiments import EXPERIMENTS
+from suchus.gaits import DRAFTED, GAITS, in_size, own_gait
 from suchus.gaits.belly_crawl import LIMBS
+from suchus.metrics import displacement
 from suchus.motion import check_limits, cycle_targets, limb_reaches, suits
 from suchus.paper import CYCLE_PERIOD
 from suchus.robots import ROBOTS
@@ -93,3 +98,47 @@ def test_a_number_without_a_reason_is_found():
     assert _without_a_reason(faster, GAITS.beside("belly_crawl", "chosen", ())) == {
         "period", *(f"limb_phases[{i}]" for i in range(1, 4)),
     }  # fmt: skip
+
+
+def test_a_body_of_another_size_takes_the_gait_in_the_time_that_gravity_needs_for_it():
+    caiman = ROBOTS["caiman"]
+    for body in (hatchling(), giant()):
+        period, step = CYCLE_PERIOD * (body.length / caiman.length) ** 0.5, control_period(body)
+        own = own_gait(body)
+        assert own == replace(GAITS["belly_crawl"], period=own.period)
+        assert abs(own.period - period) <= step / 2
+        assert own.period / step == pytest.approx(round(own.period / step), abs=1e-9)
+    nearly = scaled(caiman, length_factor=1.4)
+    assert own_gait(nearly) is GAITS["belly_crawl"]  # a variant of a design is compared with it in one gait
+    assert in_size(GAITS["high_walk"], caiman, caiman) is GAITS["high_walk"]
+
+
+def test_a_quarter_of_a_body_walks_alike_at_half_the_period():
+    """By dynamic similarity: all of the model scales but what MuJoCo's solver takes as a number."""
+    caiman = ROBOTS["caiman"]
+    small = scaled(caiman, length_factor=0.25)
+    assert control_period(small) == control_period(caiman) / 2
+    assert own_gait(small).period == CYCLE_PERIOD / 2
+    whole, quarter = (
+        float(displacement(suchus.crawl(one, own_gait(one), cycles=1)).sel(xyz="x")) for one in (caiman, small)
+    )
+    assert whole > 0.1
+    assert 4 * quarter == pytest.approx(whole, rel=0.05)
+
+
+def test_questions_with_several_gaits_ask_all_of_them_in_the_size_of_the_body():
+    asked, body = EXPERIMENTS["speed_range"], hatchling()
+    gaits = asked.on(body).gaits
+    assert [gait.name for gait in gaits] == [gait.name for gait in asked.gaits]
+    assert [gait.period / of.period for gait, of in zip(gaits, asked.gaits, strict=True)] == pytest.approx(
+        [(body.length / asked.robot.length) ** 0.5] * len(gaits), rel=0.01
+    )
+    assert [gait.name for gait in asked.on(ROBOTS["strider"]).gaits] == ["tripod"]
+
+
+def test_limbs_that_turn_about_other_axes_than_those_of_a_gaits_maker_get_a_gait_drafted(tmp_path):
+    """They could follow the crocodile's crawl, and would walk backwards in it."""
+    body = imported_quadruped(tmp_path)
+    assert suits(body, GAITS["belly_crawl"])
+    assert own_gait(body).name == DRAFTED
+    assert float(displacement(suchus.crawl(body, own_gait(body), cycles=4)).sel(xyz="x")) > 0.1 * body.length

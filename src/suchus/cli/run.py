@@ -22,11 +22,12 @@ from suchus.errors import plain_warnings
 from suchus.experiment import Experiment, Outcome
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import styled
-from suchus.gaits import DRAFTED
+from suchus.gaits import DRAFTED, GAITS
 from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
 from suchus.report import OUTCOME, PAGE, carried, check_place, quantity, save_outcome
 from suchus.sources import current
+from suchus.verdict import listed
 
 _COLOURS = {
     "reproduced": "green",
@@ -93,9 +94,8 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
     console = Console(highlight=False)
     console.print(f"[bold]{escape(question.title)}[/]")
-    gait, robot = getattr(question, "gait", None), getattr(question, "robot", None)
-    if gait is not None and robot is not None and gait.name == DRAFTED:
-        console.print(escape(f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."))
+    for line in moves(question):
+        console.print(escape(line))
     console.print(escape(answer(done.outcome.decides)))
     numbers = Table("measure", "value", "range", box=None, padding=(0, 2, 0, 0))
     for row in carried(question.answers, done.outcome.measures):
@@ -122,6 +122,23 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     if done.outcome.unjudged:
         console.print(escape(done.outcome.unjudged), soft_wrap=True)
     console.print(f"{done.seconds:.1f} s; the page with all of it: {escape(str(done.folder / PAGE))}", soft_wrap=True)
+
+
+def moves(question: Experiment) -> list[str]:
+    """Return in a sentence in which gaits the robot moves, where it is another one than the question's own."""
+    robot = getattr(question, "robot", None)
+    one = getattr(question, "gait", None)
+    gaits = getattr(question, "gaits", ()) if one is None else (one,)
+    if not gaits or robot is None or robot == getattr(type(question)(), "robot", None):
+        return []
+    if gaits[0].name == DRAFTED:
+        return [f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."]
+    told = []
+    for gait in gaits:
+        shelf = GAITS.get(gait.name, gait)
+        other = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
+        told.append(gait.name + (other if gait.period != shelf.period else ""))
+    return [f"{robot.name} moves in the gait{'s' * (len(told) > 1)} {listed(told)}."]
 
 
 def answer(decides: str) -> str:

@@ -1,11 +1,13 @@
 """The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
 
+from dataclasses import replace
 from functools import lru_cache
 from operator import attrgetter
 from pathlib import Path
 
 from suchus.catalog import Catalog
 from suchus.design import Robot, layout
+from suchus.design.scale import control_period, gravity_time
 from suchus.errors import OutsideLimits, SuchusError, UnreadableFile, UnsuitedRobot
 from suchus.gaits._animal_swim import ANIMAL_SWIM
 from suchus.gaits.limbs_tail_lifted import LIFTED
@@ -39,15 +41,18 @@ a tail dragged still; with the trunk and the tail in the air; with a straight tr
 
 DRAFTED = "drafted_gait"
 """Name of the gait of a robot that none of the shelf suits."""
+ALIKE = 1.5
+"""Lengths of two robots whose ratio is below this are about the same: the shorter one takes no quicker gait [-]."""
 
 
 def own_gait(robot: Robot) -> Gait:
     """Return the gait in which a robot moves unless another one is asked for.
 
-    A gait made for a robot of its name comes first, then one made for another robot whose limbs it can move: of a robot
-    that pitches its tail those first that lay it down, of any other robot those that leave it alone. For which robots a
-    gait was made its module says by ``made_for``, and nothing else does. For a robot that none of them suits one
-    is drafted, ``DRAFTED``: a walk in which every other limb steps, or a wave along a body without limbs.
+    A gait made for a robot of its name comes first, then one made for another robot whose limbs turn about the same
+    axes, in the size of this robot (``in_size``): of a robot that pitches its tail those first that lay it down, of any
+    other robot those that leave it alone. For which robots a gait was made its module says by ``made_for``, and nothing
+    else does. For a robot that none of them suits one is drafted, ``DRAFTED``: a walk in which every other limb steps,
+    or a wave along a body without limbs.
 
     Args:
         robot: on the shelf or not.
@@ -61,8 +66,10 @@ def own_gait(robot: Robot) -> Gait:
     others = [name for name, robots in made.items() if robots and name not in named]
     others.sort(key=lambda name: GAITS[name].has("tail pitch") != pitches)
     for name in named + others:
-        if suits(robot, GAITS[name]):
-            return GAITS[name]
+        maker: Robot = ROBOTS[robot.name if robot.name in ROBOTS and name in named else made[name][0]]
+        gait = in_size(GAITS[name], robot, maker)
+        if _turns(robot) == _turns(maker) and suits(robot, gait):
+            return gait
     try:
         return _drafted(robot)
     except SuchusError as error:
@@ -71,6 +78,28 @@ def own_gait(robot: Robot) -> Gait:
             f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}, and none can be drafted: {error} "
             "Give one of its own, as a TOML file."
         ) from error
+
+
+def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
+    """Return a gait as a robot of another size moves in it: in the time that gravity takes for that size.
+
+    Everything else of a gait is an angle or a share of a limb, and fits any size. For robots of about the same length
+    it is the gait itself, so that a design and its variants move alike.
+
+    Args:
+        gait: for the robot ``maker``.
+        robot: who is to move in it.
+        maker: for whom it was made.
+    """
+    if 1 / ALIKE < robot.length / maker.length < ALIKE:
+        return gait
+    period, step = gait.period * gravity_time(robot.length) / gravity_time(maker.length), control_period(robot)
+    return replace(gait, period=round(max(1, round(period / step)) * step, 12))
+
+
+def _turns(robot: Robot) -> list[list[str]]:
+    """Return about which axes the hinges of each pair of limbs turn."""
+    return [[hinge.turn for hinge in girdle.limb.hinges] for girdle in robot.girdles]
 
 
 def gait_of(robot: Robot, gait: Gait | str | Path | None, place: Path = Path()) -> Gait:
@@ -156,5 +185,6 @@ def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
 
 
 __all__ = [
-    "ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "gait_of", "own_gait", "suits",
+    "ALIKE", "ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "gait_of", "in_size",
+    "own_gait", "suits",
 ]  # fmt: skip

@@ -49,6 +49,12 @@ def hovers(robot: Robot, lake: Lake) -> bool:
     return 0.0 < spare <= sum(chambers(robot))
 
 
+def floats(robot: Robot) -> bool:
+    """Return whether a robot is lighter than the fresh water that it displaces, its air as it is built."""
+    volume, weight = capacity(robot, Lake(level=robot.length))
+    return volume >= weight
+
+
 def check_floats(robot: Robot, lake: Lake) -> None:
     """Refuse a robot that is heavier than the water that it displaces.
 

@@ -13,12 +13,14 @@ from suchus.control import Oscillators, PatternGenerator, oscillate
 from suchus.control.pattern_posture import axis_segments
 from suchus.design import Robot
 from suchus.design.checks import Checks
+from suchus.design.scale import scaled_fields
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.pattern_generator import one_drive
 from suchus.experiments.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
-from suchus.gaits import GAITS
+from suchus.gaits import GAITS, own_gait
 from suchus.land import Run, simulate
+from suchus.land.afloat import floats
 from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
 from suchus.robots import ROBOTS
@@ -105,6 +107,21 @@ class PatternGeneratorExperiment(Experiment):
         return replace(
             self, drives=(1.0, 3.0, 4.0), starts=4, followed=6.0, hold=0.5, cycles=1, ramp=2.0, shore_time=3.0
         )
+
+    def on(self, robot: Robot) -> "PatternGeneratorExperiment":
+        """Return the same question for another robot, which goes from the water to the land itself where it floats."""
+        asked = super(PatternGeneratorExperiment, self).on(robot)  # a class with slots has no short form
+        if robot == self.robot:
+            return asked
+        swimmer = robot if floats(robot) else self.swimmer
+        sized = scaled_fields(
+            self,
+            ("water_line", "shore_time"),
+            length_factor=swimmer.length / self.swimmer.length,
+            mass_factor=swimmer.mass / self.swimmer.mass,
+        )
+        across = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
+        return replace(asked, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **across)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Sweep the drive, start at random, ramp the drive, and walk."""
