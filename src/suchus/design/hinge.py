@@ -3,6 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import Literal, Optional
 
+import numpy as np
+from jaxtyping import Float
+
 from suchus.design.checks import Checks
 from suchus.design.motor import Motor, Winding
 
@@ -22,7 +25,7 @@ class Servo:
     torque: float
     """Torque limit [N m]: with a winding, the torque at standstill."""
     speed: float
-    """Slew limit of the commanded angle [rad/s]: the no-load speed."""
+    """Slew limit of the commanded angle [rad/s]: the no-load speed, friction of the gear included."""
     armature: float
     """Rotor inertia seen at the output shaft [kg m2]."""
     friction: float
@@ -43,15 +46,33 @@ class Servo:
             check.number("armature", 1e-15, 100.0, "kg m2")
             check.number("friction", 0.0, 1e4, "N m")
             check.number("damping", 0.0, 1e4, "N m s/rad")
+            if self.winding is not None:
+                check.that(
+                    self._idle < _MOST_IDLE * self.torque,
+                    f"friction and damping of its gear take {self._idle:.3g} N m at {self.speed:g} rad/s, of a torque "
+                    f"of {self.torque:g} N m: it cannot reach that speed; give less of them, or less speed",
+                )
 
-    def with_speed_line(self) -> "Servo":
-        """Return the servo with a straight torque-speed line.
+    @property
+    def _idle(self) -> float:
+        """Torque that its gear takes at the speed without load [N m]."""
+        return self.friction + self.damping * self.speed
 
-        Its damping then takes away what a motor at its voltage lacks when it turns: the torque that reaches the joint
-        falls from ``torque`` at rest to nothing at ``speed``. It costs the physics no time. Below saturation a real
-        servo would make up for the loss; this one lags behind instead, by less than 0.08 rad at ``speed``.
+    @property
+    def ideal_speed(self) -> float:
+        """Speed at which its motor gives nothing, above ``speed``, at which it turns its gear alone [rad/s]."""
+        return self.speed / (1.0 - self._idle / self.torque)
+
+    def given(self, speed: Float[np.ndarray, "..."], supply: float = 1.0) -> Float[np.ndarray, "..."]:
+        """Return the greatest torque that its motor gives in the direction of a torque [N m].
+
+        Args:
+            speed: of the shaft in that direction; negative where it is driven backwards [rad/s].
+            supply: share of its supply [-].
         """
-        return replace(self, damping=self.torque / self.speed)
+        if self.winding is None:
+            return np.full(np.shape(speed), self.torque)
+        return np.clip(self.torque * (supply - np.asarray(speed) / self.ideal_speed), 0.0, self.torque)
 
     @staticmethod
     def of(motor: Motor, volts: float | None = None, *, like: Optional["Servo"] = None) -> "Servo":
@@ -88,6 +109,7 @@ class Servo:
         )
 
 
+_MOST_IDLE = 0.9  # of the torque; beyond, the motor's own line would be that of a motor ten times as fast
 _STIFFNESS, _LEAD = 40.0 / 3.0, 0.6 / 40.0  # gains over torque [1/rad] and [s], as the legs of the article's robot have
 _INERTIA, _FRICTION, _DAMPING = 0.005 / 3.0, 0.01, 0.05 / 3.0  # of rotor and gear over torque [s2], [-], [s/rad]
 

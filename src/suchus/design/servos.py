@@ -7,6 +7,7 @@ from typing import Any
 from suchus.design.article import remade
 from suchus.design.body import Robot
 from suchus.design.hinge import Hinge, Servo, Spring
+from suchus.design.motor import LINE
 
 _LIMBS = ("girdles", "front_leg", "hind_leg")
 """Fields of a robot or of the article's tables that hold limbs."""
@@ -22,9 +23,17 @@ def with_leg_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     return remade(robot, in_limbs)
 
 
+def with_speed_line(servo: Servo) -> Servo:
+    """Return a servo whose torque falls to nothing at its speed; one that has a winding already stays as it is.
+
+    The viscous friction of its gear is in that line.
+    """
+    return servo if servo.winding is not None else replace(servo, winding=LINE, damping=0.0)
+
+
 def with_speed_lines(robot: Robot) -> Robot:
-    """Return a robot with ``Servo.with_speed_line`` in each of its servos."""
-    return with_servos(robot, Servo.with_speed_line)
+    """Return a robot with ``with_speed_line`` for each of its servos."""
+    return with_servos(robot, with_speed_line)
 
 
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:

@@ -17,7 +17,7 @@ from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.lake import Waters, gravity, up
 from suchus.land.run import Afloat, Run
-from suchus.model import activations, compile_model, force_sensors, standing
+from suchus.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
 from suchus.model.wet import wet_model
 from suchus.motion import hip_height
 
@@ -102,7 +102,7 @@ class SimulationBatch:
         self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
         self._owned: set[int] = set()
         self._written = False
-        self._timestep = timestep
+        self._timestep, self._robots = timestep, [run.robot for run in runs]
         self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
@@ -162,6 +162,8 @@ class SimulationBatch:
                 self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
             if run.ground.uphill or run.ground.sideways:
                 self.field("opt.gravity", sim)[:] = gravity(run.ground)
+            if run.supply != 1.0:
+                self.supply(sim, run.supply)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
 
@@ -190,6 +192,18 @@ class SimulationBatch:
     def pressed(self) -> np.ndarray:
         """The contact forces among the readings, for writing, shape (run, 3 forces) [N]."""
         return self._mean
+
+    def supply(self, sim: int, share: float) -> None:
+        """Let a run's servos that have a winding get a share of their supply, from the next ``commit`` on.
+
+        Args:
+            sim: the run.
+            share: of the supply of the design [-].
+        """
+        volts = supplies(self._robots[sim])
+        motors = ~np.isnan(volts)
+        if motors.any():
+            self.field("actuator_gainprm", sim)[motors, SUPPLY] = share * volts[motors]
 
     def angles(self, sim: int) -> np.ndarray:
         """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""

@@ -10,7 +10,7 @@ from suchus.design import Robot, layout
 from suchus.fault import Fault
 from suchus.land.batch import SimulationBatch
 from suchus.land.run import Push, Run
-from suchus.model import SLEW
+from suchus.model import slew_column
 
 _KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"}
 """What the rows of a model's field are, by how its name begins."""
@@ -127,7 +127,8 @@ class Site:
 
     def speed_limit(self, servo: str) -> np.ndarray:
         """Return the speed limit of a servo for writing [rad/s]."""
-        return self.parameter("actuator_dynprm", servo)[SLEW : SLEW + 1]
+        column = slew_column(self._batch.model, servo)
+        return self.parameter("actuator_dynprm", servo)[column : column + 1]
 
     def unpower(self, servo: str) -> None:
         """Take the torque from a servo."""

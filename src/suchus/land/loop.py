@@ -201,8 +201,8 @@ class Deduplication:
     """The runs of a batch in groups that differ in nothing that the physics has felt yet.
 
     Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
-    ground and first posture, and had the same commanded servo angles to the last bit; a run with another command, or is
-    about to break or be pushed, leaves.
+    ground, supply and first posture, and had the same commanded servo angles to the last bit; a run with another
+    command, or is about to break or be pushed, leaves.
 
     Args:
         runs: the runs.
@@ -213,7 +213,8 @@ class Deduplication:
     def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
         groups: dict[object, list[int]] = {}
         for sim, run in enumerate(runs):
-            key = (run.robot, run.ground, run.afloat, run.lake, hip_height(run.robot, run.gait), first[sim].tobytes())
+            world = (run.ground, run.afloat, run.lake, run.supply)
+            key = (run.robot, *world, hip_height(run.robot, run.gait), first[sim].tobytes())
             groups.setdefault(key, []).append(sim)
         self._groups = [members for members in groups.values() if len(members) > 1]
         self._leaves: dict[int, set[int]] = {}

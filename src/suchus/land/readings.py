@@ -15,8 +15,8 @@ from suchus.hydro import column
 from suchus.land.batch import SimulationBatch
 from suchus.land.lake import lake_text, up
 from suchus.land.run import Run
-from suchus.model import joint_addresses, sensor_names
-from suchus.record import WATER, dataset, ground_text
+from suchus.model import ambient, joint_addresses, sensor_names, warming
+from suchus.record import HEAT, WATER, dataset, ground_text
 
 
 class Sensors:
@@ -97,6 +97,10 @@ class Recorder:
         self._targets = np.full((*shape, len(place.servos)), np.nan)
         self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
         self._worked = np.full((*shape, batch.worked.shape[1]), np.nan)
+        self._warm = warming(batch.model, runs[0].robot)
+        self._air = np.array([ambient(run.robot) for run in runs])
+        heated = len(place.servos) if (self._warm >= 0).any() else 0
+        self._temperature = np.full((*shape, heated), np.nan)
 
     def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
         """Keep one sample of the living.
@@ -113,15 +117,17 @@ class Recorder:
         self._targets[alive, sample] = targets[alive]
         self._water[alive, sample] = self._batch.waters.rows[alive]
         self._worked[alive, sample] = self._batch.worked[alive]
+        if self._temperature.shape[-1]:
+            self._temperature[alive, sample] = self._batch.activations[alive][:, self._warm] + self._air[alive]
 
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
 
-        In water those of ``record.WATER`` too.
+        In water those of ``record.WATER`` too, with servos that warm up that of ``record.HEAT``.
         """
         arrays = self._arrays()
         wet = self._wet(arrays["foot_force"]) if self._water.shape[-1] else {}
-        return {name: np.array(values[run, sample]) for name, values in (arrays | wet).items()}
+        return {name: np.array(values[run, sample]) for name, values in (arrays | wet | self._warmed()).items()}
 
     def record(self, time: np.ndarray) -> xr.Dataset:
         """Return everything that was read, in the schema of a run."""
@@ -149,9 +155,16 @@ class Recorder:
             "label": [run.label or run.gait.name for run in self._runs],
         }
         record = dataset(arrays, per_run, coordinates)
+        for name, values in self._warmed().items():
+            dims, unit, what = HEAT[name]
+            record[name] = (("run", *dims), values, {"units": unit, "long_name": what})
         if not self._water.shape[-1]:
             return record
         return _put(record, self._wet(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs])
+
+    def _warmed(self) -> dict[str, np.ndarray]:
+        """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
+        return {"servo_temperature": self._temperature} if self._temperature.shape[-1] else {}
 
     def _wet(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
         """Return what the water does, by the names of ``record.WATER``."""

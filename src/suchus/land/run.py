@@ -98,6 +98,9 @@ class Run:
     play: tuple[float, ...] = ()
     """Play of each servo, gear and dead band together, whole width: so far its command must turn back before the servo
     does; none where it is empty [rad]."""
+    supply: float = 1.0
+    """Share of their supply that the servos get, as of a battery that sags [-]; those without a winding do not feel
+    it."""
     noise: float = 0.0
     """Standard deviation of white noise on every servo angle commanded [rad]; it shakes a robot forward, so that
     results take ``zero_error`` and ``play`` instead."""
@@ -110,6 +113,7 @@ class Run:
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
         object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
         with Checks("run", self) as check:
+            check.number("supply", 0.01, 2.0, "")
             check.number("noise", 0.0, 1.0, "rad")
             servos = len(servo_names(self.robot))
             for name, least in (("zero_error", -1.0), ("play", 0.0)):

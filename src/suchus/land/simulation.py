@@ -37,7 +37,8 @@ def simulate(
     from then on are NaN, ``ended`` and ``cause`` say when and why, and the others go on.
 
     Args:
-        runs: at least one; the robots must share their number of tail joints, and which servos have integral action.
+        runs: at least one; the robots must share their number of tail joints, and which servos have integral action
+            and warm up.
         duration: [s].
         timestep: of the physics [s], a whole part of the control period; that of the robots' size if None.
         every: keep one sample of so many control periods.
@@ -91,7 +92,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     if len({topology(run.robot) for run in runs}) > 1:
         raise InvalidDesign(
             "the robots of one batch must have the same bodies, hinges and servos (equally many tail joints, as an "
-            "example), and integral action in the same servos; "
+            "example), and integral action in the same servos, and the same servos must warm up; "
             "simulate them one after another."
         )
     for pair in {(run.robot, run.gait) for run in runs}:

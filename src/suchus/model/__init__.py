@@ -1,8 +1,7 @@
 """From a design to a MuJoCo model: the only room that writes MJCF."""
 
+from suchus.model.actuators import SUPPLY, activations, ambient, slew_column, supplies, warming
 from suchus.model.build import (
-    SLEW,
-    activations,
     build,
     compile_model,
     force_sensors,
@@ -14,14 +13,18 @@ from suchus.model.build import (
 )
 
 __all__ = [
-    "SLEW",
+    "SUPPLY",
     "activations",
+    "ambient",
     "build",
     "compile_model",
     "force_sensors",
     "joint_addresses",
     "sensor_names",
     "sites",
+    "slew_column",
     "standing",
+    "supplies",
     "topology",
+    "warming",
 ]

@@ -14,12 +14,10 @@ from suchus.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 from suchus.design.pieces import foam_centres, masses
 from suchus.design.segment import Point, together
 from suchus.errors import InvalidDesign
+from suchus.model.actuators import add_servo, warms
 from suchus.rotation import about
 
 TIMESTEP = 0.002  # [s]; of the article's robot; 0.5 to 8 ms were measured to give the same displacement within 1 %
-SLEW = 1
-"""Column of ``actuator_dynprm`` in which MuJoCo's pid keeps its slew limit."""
-_POSITION_INPUT = 1  # the servo takes an angle; the other inputs of MuJoCo's pid stay unused
 
 
 def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = None) -> Any:
@@ -49,7 +47,7 @@ def build(robot: Robot, *, timestep: float = TIMESTEP, relief: Relief | None = N
     lay_cables(spec, place.robot)
     servos = servos_of(place.robot)
     for number, name in enumerate(place.servos):
-        _add_servo(spec, number, name, servos[name], place)
+        add_servo(spec, number, name, servos[name], place)
     _add_sensors(spec, place)
     return spec
 
@@ -76,15 +74,15 @@ def topology(robot: Robot) -> tuple[object, ...]:
     """Return what two robots must share to run in one batch: all that decides the sizes of states and sensors.
 
     That is every body with its parent and its hinges, which of them are free of limits or springs, the servos, and
-    which of them have integral action and so a state of its own.
+    which of them have integral action or warm up, and so a state of its own.
     """
     place = layout(robot)
     bodies = tuple((body.name, body.parent, tuple(name for _, name, _ in body.hinges)) for body in place.bodies)
     servos = servos_of(robot)
-    integrating = tuple(name for name in place.servos if servos[name].ki > 0)
+    states = tuple((servos[name].ki > 0, warms(servos[name])) for name in place.servos)
     shapes = tuple(len(segment.shapes) for segment in place.robot.axis)
     foam = () if place.robot.hull is None else tuple(one.body for one in place.robot.hull.foam)
-    return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), integrating
+    return bodies, foam, place.servos, shapes, tuple(cable.hinges for cable in place.robot.cables), states
 
 
 def joint_addresses(model: Any, names: Sequence[str]) -> list[int]:
@@ -101,29 +99,6 @@ def _set_options(spec: Any, timestep: float) -> None:
     option.impratio = 10.0
     option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE  # 1.6 to 1.8 times faster here than dense
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET  # divergence ends a run, it does not restart it
-
-
-def _add_servo(spec: Any, number: int, name: str, servo: Servo, place: Layout) -> None:
-    actuator = spec.add_actuator(name=name, group=number)
-    actuator.set_to_pid(
-        kp=servo.kp,
-        kv=servo.kd,
-        ki=servo.ki if servo.ki > 0 else -1,
-        imax=servo.integral_limit / servo.ki if servo.ki > 0 else -1,
-        slewmax=servo.speed,
-        ctrlspec=_POSITION_INPUT,
-    )
-    if number in place.cables:
-        actuator.trntype = mujoco.mjtTrn.mjTRN_TENDON
-        actuator.target = name
-        actuator.gear[0] = (
-            1.0 / place.cable(number).pulley
-        )  # cable length to angle of the pulley, and its torque to tension
-    else:
-        actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT
-        actuator.target = name
-    actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
-    actuator.forcerange = [-servo.torque, servo.torque]
 
 
 def _add_sensors(spec: Any, place: Layout) -> None:
@@ -467,10 +442,3 @@ def standing(model: Any, robot: Robot, hip_height: float, servos: np.ndarray) ->
     deepest = min((float(c.dist) for c in data.contact), default=0.0)
     data.qpos[2] -= min(deepest, 0.0)
     return np.array(data.qpos)
-
-
-def activations(model: Any, servos: np.ndarray) -> np.ndarray:
-    """Return the servos' inner states at rest: the slew-limited target first, then the integral."""
-    act = np.zeros(model.na)
-    act[model.actuator_actadr] = servos
-    return act

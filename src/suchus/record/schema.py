@@ -54,6 +54,11 @@ Force and powers are means over the control period; they hold what the added mas
 physics step before.
 """
 
+HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "servo_temperature": (("time", "servo"), "degC", "of the winding; NaN where it does not warm up"),
+}
+"""Further variables of runs whose robots have servos that warm up, as in ``VARIABLES``."""
+
 PER_RUN: Mapping[str, tuple[str, str]] = {
     "mass": ("kg", "of the robot"),
     "period": ("s", "of the gait"),

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from suchus import rotation
-from suchus.design import GRAVITY, Robot, Rod, Segment, Servo, layout
+from suchus.design import GRAVITY, Robot, Rod, Segment, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.design.servos import with_leg_servos
+from suchus.design.servos import with_leg_servos, with_speed_line
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
@@ -225,7 +225,7 @@ _UNITS = {
 
 def _limited(robot: Robot) -> Robot:
     """Return the robot with a torque-speed line in its legs' servos."""
-    return with_leg_servos(robot, Servo.with_speed_line)
+    return with_leg_servos(robot, with_speed_line)
 
 
 def _lying(robot: Robot, part: xr.Dataset) -> float:

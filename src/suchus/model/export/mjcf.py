@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from suchus.design import Robot
-from suchus.model.build import TIMESTEP, activations, build, standing
+from suchus.model.actuators import activations
+from suchus.model.build import TIMESTEP, build, standing
 from suchus.motion import Gait, hip_height, middle_stance
 
 _DIGITS = 6  # what MuJoCo prints
