@@ -3,11 +3,12 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
 from suchus.cli.entry import main
 from suchus.cli.run import answer
-from suchus.experiment import Measure
+from suchus.experiment import Measure, estimated
 from suchus.experiments import EXPERIMENTS
 from suchus.report import carried
 
@@ -23,7 +24,13 @@ def test_the_numbers_that_carry_the_answer_are_measured(name, quick_outcome):
     assert rows[0][0].replace(" ", "_") in question.answers
 
 
-def test_a_range_stands_beside_its_number_and_what_is_not_finite_is_left_out():
+def test_of_a_single_repeat_no_interval_is_shown():
+    for repeats, shown in (([0.4], ""), ([0.4, 0.4, 0.4, 0.5], "0.4 to 0.5 m")):
+        row = carried(("forward",), estimated("forward", np.array(repeats), "m"))
+        assert row == [("forward", "0.4 m", shown)]
+
+
+def test_an_interval_stands_beside_its_number_and_what_is_not_finite_is_left_out():
     question = EXPERIMENTS["displacement"]
     measures = {
         "forward_coordinated": Measure(0.7, "m"),

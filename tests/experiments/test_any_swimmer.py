@@ -6,12 +6,14 @@ from math import isfinite
 import pytest
 
 from body_files import eight, giant, hatchling, imported_quadruped, six
+from suchus.control import LoadRule, PatternGenerator
 from suchus.design import check_needs, lacking
 from suchus.errors import UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _motions, _steered
-from suchus.gaits import GAITS
-from suchus.motion import check_speeds, still, suits
+from suchus.gaits import GAITS, own_gait
+from suchus.land import Lake, Run, simulate
+from suchus.motion import START, check_speeds, still, suits
 from suchus.robots import ROBOTS
 from suchus.water import swim_of
 
@@ -64,6 +66,23 @@ def test_the_shore_takes_every_walker_in_a_gait_that_can_be_steered():
     assert shore.on(ROBOTS["strider"]).gait == GAITS["tripod"]
     with pytest.raises(UnsuitedRobot, match="shore needs limbs to walk on; robot 'swimmer' lacks that"):
         check_needs(ROBOTS["swimmer"], EXPERIMENTS["shore"].needs, "shore")
+
+
+@pytest.mark.parametrize(("name", "walks"), [("swimmer", False), ("salamander", True)])
+def test_the_pattern_generator_swims_whoever_bends_and_by_the_felt_load_whoever_walks(name, walks):
+    """At the drive for walking a body with limbs gets nowhere in deep water unless it feels that nothing carries it."""
+    robot = ROBOTS[name]
+    gait, lake = own_gait(robot), Lake(level=2 * robot.length)
+    controls = [PatternGenerator(drive=4.0)]
+    controls += [PatternGenerator(drive=2.0, load=rule) for rule in (None, LoadRule())] if walks else []
+    runs = [Run(robot=robot, gait=gait, lake=lake, control=control) for control in controls]
+    record = simulate(runs, duration=START + 3 * gait.period)
+    late = record.sel(time=slice(START + gait.period, None)).centre_of_mass.sel(xyz="x").values
+    ways = (late[:, -1] - late[:, 0]) / robot.length / 2  # in lengths a period
+    assert ways[0] > 0.3
+    if walks:
+        assert ways[1] < 0.2
+        assert ways[2] > 0.3
 
 
 @pytest.mark.slow("whole swims of other bodies")

@@ -60,15 +60,20 @@ def page(browser, address):
 
 
 def fits_a_phone(browser, address):
-    """The page asks for no more than a phone's width; its controls and what it explains are all in sight."""
-    shown = browser.new_page(viewport={"width": 390, "height": 760})
+    """The page asks for no more than a phone's width, upright or on its side; what it shows is explained in sight."""
+    return all(fits(browser, address, wide, high) for wide, high in ((390, 760), (844, 390)))
+
+
+def fits(browser, address, wide, high):
+    shown = browser.new_page(viewport={"width": wide, "height": high})
     shown.goto(address + "#t=0")
     until(shown, "window.suchus")
-    wide = shown.evaluate("document.documentElement.scrollWidth")
+    taken = shown.evaluate("document.documentElement.scrollWidth")
     ends = shown.evaluate("[...document.querySelectorAll('footer *')].map((one) => one.getBoundingClientRect().right)")
-    explained = shown.get_by_text("What is seen.").is_visible()
+    explained = shown.get_by_text("What is seen.")
+    seen = explained.is_visible() and explained.bounding_box()["y"] < high / 2
     shown.close()
-    return wide <= 390 and max(ends) <= 390 and explained
+    return taken <= wide and max(ends) <= wide and seen
 
 
 def until(shown, condition):

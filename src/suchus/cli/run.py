@@ -97,7 +97,7 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     for line in moves(question):
         console.print(escape(line))
     console.print(escape(answer(done.outcome.decides)))
-    numbers = Table("measure", "value", "range", box=None, padding=(0, 2, 0, 0))
+    numbers = Table("measure", "value", "interval", box=None, padding=(0, 2, 0, 0))
     for row in carried(question.answers, done.outcome.measures):
         numbers.add_row(*map(escape, row))
     console.print(numbers)

@@ -84,7 +84,7 @@ def told(result: Result) -> Iterator[dict[str, Any]]:
 
 
 def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
-    """Return name, value and range of the measures that carry an answer, in words.
+    """Return name, value and interval of the measures that carry an answer, in words.
 
     A measure that a run has not, as one of another gait, or that is no finite number is left out.
 
@@ -98,7 +98,9 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
     for name in [one for one in answers if one in finite] or [one for one in finite if not one.endswith(ends)][:MOST]:
         low, high = (measures.get(name + end) for end in ends)
         unit = measures[name].unit
-        spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}" if low and high else ""
+        spread = ""
+        if low is not None and high is not None and low.value < high.value:  # of a single repeat it is not known
+            spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}"
         rows.append((name.replace("_", " "), quantity(measures[name].value, unit, 3), spread))
     return rows
 
