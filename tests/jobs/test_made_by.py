@@ -8,8 +8,15 @@ from suchus.optimise.conduct import ROOMS
 from suchus.record import code_digest
 from suchus.record.provenance import deciding_source
 
-HARMLESS = ("suchus.errors", "suchus.threads", "suchus.progress", "suchus.kernel_cache", "suchus.writing")
-"""Words, how many threads, how far something is, and where and how things are kept, which change no byte."""
+HARMLESS = (
+    "suchus.errors",
+    "suchus.machine",
+    "suchus.threads",
+    "suchus.progress",
+    "suchus.kernel_cache",
+    "suchus.writing",
+)
+"""Words, how this machine computes, how many threads, how far something is, and where and how things are kept."""
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,7 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from suchus import threads
+from suchus import machine, threads
 from suchus.cli.entry import BadCommand
 from suchus.errors import SuchusError
 
@@ -83,7 +83,17 @@ def doctor(words: Sequence[str]) -> int:
     if words:
         raise BadCommand(f"suchus doctor takes no {words[0]!r}.")
     walk, swim, draw = tried("walk", "swim", "draw")
-    findings = [packages(), cores(), walking(walk), compiled(swim), places(), opengl(draw), browsing(), extras()]
+    findings = [
+        packages(),
+        cores(),
+        bits(),
+        walking(walk),
+        compiled(swim),
+        places(),
+        opengl(draw),
+        browsing(),
+        extras(),
+    ]
     print(page(findings))
     if wrong := [finding.wrong for finding in findings if finding.wrong]:
         raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
@@ -140,6 +150,15 @@ def cores() -> Finding:
         return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
     except SuchusError as error:
         return Finding(heading="threads", lines=(said,), wrong=str(error).rstrip("."))
+
+
+def bits() -> Finding:
+    """Tell what decides the last bits of numbers on this machine."""
+    told = machine.described()
+    names = ("processor", "vector instructions", "linear algebra", "C library")
+    digests = ", ".join(f"{part} {digest}" for part, digest in machine.arithmetic().items())
+    portable = f"portable ({machine.WANTED}): {told['portable']}"
+    return Finding(heading="last bits", lines=("; ".join(told[name] for name in names), f"{digests}; {portable}"))
 
 
 def walking(trial: Trial) -> Finding:

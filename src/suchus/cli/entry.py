@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass
 from pkgutil import resolve_name
 from shutil import get_terminal_size
@@ -19,6 +19,10 @@ PROJECT = "--project"
 """Option of every command: the project folder, see ``suchus.sources``."""
 REPLACE = "--replace"
 """Option of every command: what a user wrote or changed may be replaced, see ``suchus.writing``."""
+MIXED = "--mixed"
+"""Option of every command: what another arithmetic began may be continued, see ``suchus.machine``."""
+PORTABLE = "SUCHUS_PORTABLE"
+"""Environment variable that asks for portable arithmetic, see ``suchus.machine``."""
 
 
 class BadCommand(SuchusError):
@@ -136,13 +140,16 @@ def main(words: Sequence[str] | None = None) -> int:
     Args:
         words: what follows ``suchus``; by default those of this process.
     """
+    of_this_process = words is None
     words = list(sys.argv[1:] if words is None else words)
     _prepare_streams()
     try:
+        if of_this_process and PORTABLE in os.environ:
+            _begin_portable()
         words, folder = _apart(words)
-        replace = REPLACE in words
-        words = [word for word in words if word != REPLACE]
-        with stopping(), plain_warnings(), within(folder), replacing(replace):
+        replace, mixed = REPLACE in words, MIXED in words
+        words = [word for word in words if word not in (REPLACE, MIXED)]
+        with stopping(), plain_warnings(), within(folder), replacing(replace), _mixing(mixed):
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
@@ -156,6 +163,27 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         _drop_output()
         return 0
+
+
+def _begin_portable() -> None:
+    """Begin this process anew where it asks for portable arithmetic and its libraries do not know of it.
+
+    Raises:
+        OutsideLimits: this machine has no such arithmetic.
+    """
+    from suchus.machine import begun_portable  # noqa: PLC0415  NumPy takes a tenth of a second, needed here only
+
+    environment = begun_portable(os.environ)
+    if environment is not None:
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
+def _mixing(asked: bool) -> AbstractContextManager[None]:
+    if not asked:
+        return nullcontext()
+    from suchus.machine import mixing  # noqa: PLC0415  as above
+
+    return mixing()
 
 
 def _apart(words: list[str]) -> tuple[list[str], str | None]:
@@ -235,6 +263,8 @@ def _help() -> str:
             "the working folder, if that has a suchus.toml.",
             f"suchus COMMAND ... {REPLACE} replaces files that you wrote or changed too, and keeps a backup; without",
             "it they are never touched.",
+            f"suchus COMMAND ... {MIXED} goes on with a study that a machine with other last bits began; the results",
+            "then tell so. SUCHUS_PORTABLE=1 in the environment computes the same bits on every x86-64 with Linux.",
         )
     )
 

@@ -1,6 +1,7 @@
 """Pieces of work on many machines, through Dask; the extra ``cluster`` installs it."""
 
 import logging
+import platform
 import re
 import socket
 import ssl
@@ -10,6 +11,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pickle import PickleError
 from typing import Any, TypeVar
 
+from suchus import machine
 from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.jobs.made_by import deciding
 from suchus.sources import Carried
@@ -115,7 +117,7 @@ def spread(
             [Carried(item) for item in items],
             work=Carried(work),
             versions=versions,
-            wanted=dict(versions()),
+            wanted=dict(versions()) | ({} if machine.asked_to_mix() else machine.arithmetic()),
             pure=False,
             retries=retries,
             key=f"suchus-{name}",
@@ -229,11 +231,16 @@ def _piece(
     found = versions()
     other = [
         f"{name} {found.get(name)} (not {wanted.get(name)})"
-        for name in dict.fromkeys((*found, *wanted))
+        for name in dict.fromkeys((*found, *(name for name in wanted if name not in machine.arithmetic())))
         if found.get(name) != wanted.get(name)
     ]
     if other:
         raise IncompatibleRecord(
             f"a worker has {', '.join(other)}; its bytes could differ: install the same versions everywhere."
+        )
+    if parts := [part for part, digest in machine.arithmetic().items() if wanted.get(part, digest) != digest]:
+        raise IncompatibleRecord(
+            f"on the worker {platform.node()} the {' and '.join(parts)} give other last bits than here; start all "
+            f"processes with {machine.WANTED}=1, take machines of one kind, or say --mixed."
         )
     return number, work(item)

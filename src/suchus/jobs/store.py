@@ -16,6 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
+from suchus import machine
 from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
 from suchus.jobs.made_by import deciding
 from suchus.record import check_writable, load, read_json, save, there
@@ -25,7 +26,7 @@ from suchus.writing import keep, write
 _NUMBERS, _COLUMN, _ABOUT, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed
 MARK = "study.json"
 RESULTS, TABLE = "results.nc", "results.csv"
-_FORMAT = 3
+_FORMAT = 4
 _LOG = logging.getLogger(__name__)
 
 
@@ -159,9 +160,16 @@ class Store:
                 )
             tables.append(self.get(number))
         whole = together(tables).assign_attrs(study=self.study.name, settings=self._origin()["fields"])
+        if len(machines := self.machines()) > 1:
+            whole.attrs["machines"] = json.dumps(machines)
         write(self.folder / RESULTS, packed_record(whole))
         write(self.folder / TABLE, whole.to_dataframe().to_csv(lineterminator="\n"))
         return whole
+
+    def machines(self) -> list[dict[str, Any]]:
+        """Return what the store says of the machines that wrote its parts; several only where somebody asked to mix."""
+        mark = self.folder / self._mark
+        return list(read_json(mark).get("machines", ())) if mark.is_file() else []
 
     def _origin(self) -> dict[str, Any]:
         held = {f.name: repr(getattr(self.study, f.name)) for f in fields(self.study)}  # type: ignore[arg-type]
@@ -171,6 +179,7 @@ class Store:
             "hash": hashlib.sha256(repr(self.study).encode()).hexdigest(),
             "fields": held,
             "versions": dict(self._versions()),
+            "machines": [machine.provenance()],
         }
 
     def _check(self, mark: Path) -> None:
@@ -178,6 +187,7 @@ class Store:
         try:
             said = read_json(mark)
             name, held, theirs = said["name"], dict(said["fields"]), dict(said["versions"])
+            machines = [dict(one["arithmetic"]) for one in said.get("machines", ())]
         except (UnreadableFile, ValueError, KeyError, TypeError) as error:
             raise IncompatibleRecord(f"{mark} is no description of a {self.kind}; choose another place.") from error
         ours = self._origin()
@@ -198,6 +208,22 @@ class Store:
                 f"{self.folder} was written by {by}; mixed results would not be the same to the byte: choose another "
                 "place, or install those versions to finish it."
             )
+        self._check_machine(mark, said, machines)
+
+    def _check_machine(self, mark: Path, said: dict[str, Any], machines: list[dict[str, str]]) -> None:
+        """Refuse what a machine with another arithmetic began, or note that this one goes on with it."""
+        if any(not machine.differences(one) for one in machines):
+            return
+        if not machine.asked_to_mix():
+            parts = " and ".join(machine.differences(machines[0] if machines else {}))
+            raise IncompatibleRecord(
+                f"{self.folder} was begun on a machine whose {parts} give other last bits ({_named(said)}; here "
+                f"{_named({'machines': [machine.provenance()]})}): mixed results would not be the same to the byte. "
+                "Finish it there, choose another place, or say --mixed, which the results then tell; begun with "
+                f"{machine.WANTED}=1 a {self.kind} gives the same bytes on both."
+            )
+        said["machines"] = [*said.get("machines", ()), machine.provenance()]
+        keep(mark, (json.dumps(said, indent=1, sort_keys=True) + "\n").encode())
 
     def _foreign(self) -> Iterator[Path]:
         """Everything in the folder but drafts that a kill left behind before the study was described."""
@@ -210,6 +236,13 @@ class Store:
             for draft in place.glob(".*.*-*"):
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
+
+
+def _named(said: Mapping[str, Any]) -> str:
+    """Return what a store says of the machines that wrote it, for a message."""
+    names = ("processor", "vector instructions", "linear algebra", "C library")
+    told = ["; ".join(one["described"][name] for name in names) for one in said.get("machines", ())]
+    return " and ".join(told) or "a machine that is not named"
 
 
 @contextmanager

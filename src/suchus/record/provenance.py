@@ -1,4 +1,4 @@
-"""Where a result comes from: what was asked, with which software, how long it took. No dates."""
+"""Where a result comes from: what was asked, with which software, on what machine, how long it took. No dates."""
 
 import ast
 import hashlib
@@ -11,6 +11,8 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path, PurePath
 from typing import Any
+
+from suchus import machine
 
 _PACKAGE = Path(__file__).parent.parent
 _PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
@@ -26,6 +28,7 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
     return {
         "config_hash": digest(settings),
         "versions": versions(),
+        "machine": machine.provenance(),
         "code": package_digest(),
         "seed": plain(settings.get("seed")),
         "seconds": round(seconds, 3),
@@ -97,14 +100,15 @@ def package_digest() -> str:
 
 
 def made_alike(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
-    """Return whether a result has these settings, this code and these versions, so that a run would repeat it.
+    """Return whether a result has these settings, code, versions and arithmetic, so that a run would repeat it.
 
     Args:
         stored: what ``provenance`` returned for it.
         settings: the fields of the experiment.
     """
-    now = provenance(settings, seconds=0.0)
-    return all(stored.get(name) == now[name] for name in ("config_hash", "versions", "code"))
+    now, there = provenance(settings, seconds=0.0), stored.get("machine")
+    same_arithmetic = isinstance(there, dict) and there.get("arithmetic") == now["machine"]["arithmetic"]
+    return same_arithmetic and all(stored.get(name) == now[name] for name in ("config_hash", "versions", "code"))
 
 
 def plain(value: Any) -> Any:
