@@ -95,8 +95,7 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
             yield f"{rule.claim}: {rung.model} heard", replace(rule, rungs=heard), 1.0
     for factor in (1.0 - _OFF, 1.0 + _OFF) if rule.rungs else ():
         yield f"{rule.claim}: settled x {factor}", replace(rule, settled=factor * rule.settled), 1.0
-    decisive = {rule.measure} if numeric else set()
-    decisive |= {clause.measure for clause in rule.holds} | {str(clause.bound) for clause in rule.holds}
+    decisive = {clause.measure for clause in rule.holds} | {str(clause.bound) for clause in rule.holds}
     for name in decisive & set(rule.spread):
         rest = tuple(other for other in rule.spread if other != name)
         yield f"{rule.claim}: without the interval of {name}", replace(rule, spread=rest), 1.0

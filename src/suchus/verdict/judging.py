@@ -78,8 +78,8 @@ Word = Literal[
     "reproduced", "same sense", "contradicted", "undecided", "models disagree", "not testable", "by construction",
     "fitted",
 ]  # fmt: skip
-"""``reproduced``: it came out, within the printed digits and the interval of ours. ``same sense``: another number, but
-the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
+"""``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
+but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
 ``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
 carry the claim say different words. ``not testable``: nothing was measured that could decide. ``by construction``:
 an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
@@ -120,9 +120,13 @@ class Verdict:
 
     @property
     def fragile(self) -> bool:
-        """Whether other plausible designs give another answer too often to rely on this one."""
-        judged = self.verdict in ("reproduced", "same sense", "contradicted", "fitted")
-        return judged and self.share is not None and not self.share.robust(self.held)
+        """Whether other plausible designs give another answer too often to rely on this one.
+
+        What was chosen for one design, or follows from how it was made, is no answer that others could shake.
+        """
+        judged = self.verdict in ("reproduced", "same sense", "contradicted")
+        asked = judged and self.rule.kind in ("measured", "animals")
+        return asked and self.share is not None and not self.share.robust(self.held)
 
 
 def judge(

@@ -101,8 +101,6 @@ _CRAWL = {
     "distance_high_crawl": 0.3,
     "hip_height": 0.09,
 }
-_LOW = _CRAWL | {"reach_crawl": 0.13, "reach_crawl_low": 0.13}
-_HIGH = _CRAWL | {"reach_crawl": 0.18, "reach_crawl_high": 0.18}
 _STAND = {
     "reach_standing": 0.68,
     "reach_standing_low": 0.68,
@@ -114,8 +112,6 @@ _STAND = {
     "held": 60.0,
     "stretched_length": 0.68,
 }
-_STOOPED = _STAND | {"reach_standing": 0.65, "reach_standing_low": 0.65}
-_TALL = _STAND | {"reach_standing": 0.70, "reach_standing_high": 0.70}
 _RATIO = {
     "reach_ratio": 4.25,
     "reach_ratio_low": 4.25,
@@ -123,8 +119,6 @@ _RATIO = {
     "reach_crawl": 0.16,
     "hips_at_printed_height": 0.119,
 }
-_SMALL = _RATIO | {"reach_ratio": 2.5, "reach_ratio_low": 2.5}
-_LARGE = _RATIO | {"reach_ratio": 5.3, "reach_ratio_high": 5.4}
 _LEGS = {"gain_leg_crawling": 0.5, "gain_others_crawling": 0.02}
 _ALL = {
     "gain_least_standing": 0.8,
@@ -136,20 +130,22 @@ _ALL = {
 EXAMPLES: Examples = {
     "height_crawl": [
         (_CRAWL, "reproduced"),
-        (_LOW | {"reach_crawl_high": 0.156}, "reproduced"),
-        (_LOW | {"reach_crawl_high": 0.154}, "same sense"),
-        (_HIGH | {"reach_crawl_low": 0.164}, "reproduced"),
-        (_HIGH | {"reach_crawl_low": 0.166}, "same sense"),
+        (_CRAWL | between("reach_crawl", 0.1551, 0.1551), "reproduced"),
+        (_CRAWL | between("reach_crawl", 0.1549, 0.1549), "same sense"),
+        (_CRAWL | between("reach_crawl", 0.1649, 0.1649), "reproduced"),
+        (_CRAWL | between("reach_crawl", 0.1651, 0.1651), "same sense"),
+        (_CRAWL | between("reach_crawl", 0.10, 0.18), "same sense"),
         (_CRAWL | {"hips_at_printed_height": 0.121}, "contradicted"),
         (_CRAWL | {"distance_high_crawl": 0.01}, "reproduced"),
         (_CRAWL | {"distance_high_crawl": -0.01}, "contradicted"),
     ],
     "height_standing": [
         (_STAND, "fitted"),
-        (_STOOPED | {"reach_standing_high": 0.676}, "fitted"),
-        (_STOOPED | {"reach_standing_high": 0.674}, "same sense"),
-        (_TALL | {"reach_standing_low": 0.684}, "fitted"),
-        (_TALL | {"reach_standing_low": 0.686}, "same sense"),
+        (_STAND | between("reach_standing", 0.6751, 0.6751), "fitted"),
+        (_STAND | between("reach_standing", 0.6749, 0.6749), "same sense"),
+        (_STAND | between("reach_standing", 0.6849, 0.6849), "fitted"),
+        (_STAND | between("reach_standing", 0.6851, 0.6851), "same sense"),
+        (_STAND | between("reach_standing", 0.60, 0.70), "same sense"),
         (_STAND | between("reach_ratio", 1.01, 4.0), "fitted"),
         (_STAND | between("reach_ratio", 0.99, 4.0), "undecided"),
         (_STAND | between("reach_ratio", 0.9, 0.99), "contradicted"),
@@ -159,13 +155,15 @@ EXAMPLES: Examples = {
     ],
     "height_ratio": [
         (_RATIO, "fitted"),
-        (_SMALL | {"reach_ratio_high": 4.246}, "fitted"),
-        (_SMALL | {"reach_ratio_high": 4.244}, "same sense"),
-        (_LARGE | {"reach_ratio_low": 4.254}, "fitted"),
-        (_LARGE | {"reach_ratio_low": 4.256}, "same sense"),
-        (_SMALL | between("reach_ratio", 2.02, 4.25), "fitted"),
-        (_SMALL | between("reach_ratio", 1.98, 4.25), "undecided"),
-        (_SMALL | between("reach_ratio", 1.9, 1.98), "contradicted"),
+        (_RATIO | between("reach_ratio", 4.2451, 4.2451), "fitted"),
+        (_RATIO | between("reach_ratio", 4.2449, 4.2449), "same sense"),
+        (_RATIO | between("reach_ratio", 4.2549, 4.2549), "fitted"),
+        (_RATIO | between("reach_ratio", 4.2551, 4.2551), "same sense"),
+        (_RATIO | between("reach_ratio", 2.02, 4.26), "same sense"),
+        (_RATIO | between("reach_ratio", 1.98, 4.26), "undecided"),
+        (_RATIO | between("reach_ratio", 2.02, 6.48), "fitted"),
+        (_RATIO | between("reach_ratio", 1.98, 6.52), "undecided"),
+        (_RATIO | between("reach_ratio", 1.9, 1.98), "contradicted"),
     ],
     "height_from_legs": [
         (_LEGS, "by construction"),

@@ -97,7 +97,7 @@ _COORDINATED = {
     "forward_over_tail_pitch_high": 0.7,
 }
 _LIMBS = {
-    "forward_limbs_only": 0.166,
+    "forward_limbs_only": 0.164,
     "forward_limbs_only_low": 0.160,
     "forward_limbs_only_high": 0.185,
     **between("hind_duty_limbs_only", 0.80, 0.84),
@@ -106,8 +106,6 @@ _LIMBS = {
     "forward_limbs_tail_lifted": 0.158,
     "hind_duty_limbs_tail_lifted": 1.0,
 }
-_SHORT = _COORDINATED | {"forward_coordinated": 0.70, "forward_coordinated_low": 0.70}
-_LIMBS_SHORT = _LIMBS | {"forward_limbs_only": 0.15, "forward_limbs_only_low": 0.15}
 _RATIO = {
     "forward_ratio": 4.39,
     "forward_ratio_low": 4.0,
@@ -127,10 +125,10 @@ _TAIL = {
 EXAMPLES: Examples = {
     "displacement_coordinated": [
         (_COORDINATED, "fitted"),
-        (_SHORT | {"forward_coordinated_high": 0.726}, "fitted"),  # the least that rounds to 0.73 is 0.725
-        (_SHORT | {"forward_coordinated_high": 0.724}, "same sense"),
-        (_COORDINATED | {"forward_coordinated": 0.74, "forward_coordinated_low": 0.734}, "fitted"),
-        (_COORDINATED | {"forward_coordinated": 0.74, "forward_coordinated_low": 0.736}, "same sense"),
+        (_COORDINATED | {"forward_coordinated": 0.7251}, "fitted"),  # the least that rounds to 0.73 is 0.725
+        (_COORDINATED | {"forward_coordinated": 0.7249}, "same sense"),
+        (_COORDINATED | {"forward_coordinated": 0.7349}, "fitted"),
+        (_COORDINATED | {"forward_coordinated": 0.7351}, "same sense"),
         (_COORDINATED | {"forward_coordinated_low": 0.001}, "fitted"),
         (_COORDINATED | {"forward_coordinated_low": -0.001}, "undecided"),
         (_COORDINATED | between("forward_coordinated", -0.1, -0.001), "contradicted"),
@@ -138,10 +136,10 @@ EXAMPLES: Examples = {
     ],
     "displacement_limbs_only": [
         (_LIMBS, "fitted"),
-        (_LIMBS | {"forward_limbs_only_low": 0.164}, "fitted"),
-        (_LIMBS | {"forward_limbs_only_low": 0.1655}, "same sense"),
-        (_LIMBS_SHORT | {"forward_limbs_only_high": 0.154}, "same sense"),
-        (_LIMBS_SHORT | {"forward_limbs_only_high": 0.156}, "fitted"),
+        (_LIMBS | {"forward_limbs_only": 0.1551}, "fitted"),
+        (_LIMBS | {"forward_limbs_only": 0.1549}, "same sense"),
+        (_LIMBS | {"forward_limbs_only": 0.1649}, "fitted"),
+        (_LIMBS | {"forward_limbs_only": 0.1651}, "same sense"),
         (_LIMBS | {"forward_limbs_only_low": 0.001}, "fitted"),
         (_LIMBS | {"forward_limbs_only_low": -0.001}, "undecided"),
         (_LIMBS | between("forward_limbs_only", -0.1, -0.001), "contradicted"),
@@ -158,10 +156,10 @@ EXAMPLES: Examples = {
     ],
     "displacement_ratio": [
         (_RATIO, "fitted"),
-        (_RATIO | {"forward_ratio": 4.2, "forward_ratio_high": 4.39}, "fitted"),  # rounding reaches down to 4.383
-        (_RATIO | {"forward_ratio": 4.2, "forward_ratio_high": 4.37}, "same sense"),
-        (_RATIO | {"forward_ratio": 4.9, "forward_ratio_low": 4.73}, "fitted"),
-        (_RATIO | {"forward_ratio": 4.9, "forward_ratio_low": 4.75}, "same sense"),
+        (_RATIO | {"forward_ratio": 4.39}, "fitted"),  # rounding reaches down to 4.383
+        (_RATIO | {"forward_ratio": 4.38}, "same sense"),
+        (_RATIO | {"forward_ratio": 4.73}, "fitted"),
+        (_RATIO | {"forward_ratio": 4.75}, "same sense"),
         (_RATIO | {"forward_ratio_low": 1.01}, "fitted"),
         (_RATIO | {"forward_ratio_low": 0.99}, "undecided"),
         (_RATIO | between("forward_ratio", 0.9, 0.99), "contradicted"),
