@@ -1,11 +1,11 @@
 """Ask the article's comparisons of the design that ``suchus optimise lifted`` found, whose control group walks.
 
 Usage: python tools/lifted_design.py: reads the kept outcome of the search, asks ``crawl_stability`` and
-``displacement``
-of its robot and legs, keeps what they measured, and writes the pages that state it anew.
+``displacement`` of its robot and legs, keeps what they measured, and writes the pages that state it anew.
 """
 
 from dataclasses import replace
+from string import Formatter
 from typing import Any
 
 from pages import stated
@@ -14,11 +14,14 @@ from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
+from suchus.verdict import RULES
 
 NAME, SEARCH = "lifted_design", "optimise_lifted"
 ASKED = ("com_height_pp_change_tail_lifted", "com_height_pp_change", "forward_ratio_tail_lifted", "forward_ratio",
          "hind_duty_limbs_tail_lifted", "hind_clearance_limbs_tail_lifted")  # fmt: skip
-"""Measures that are kept, with their intervals."""
+"""Measures that the page of the search states."""
+CONTROL = "limbs_tail_lifted"
+"""The control group that walks there; claims that speak of it are judged there too."""
 
 
 def design() -> tuple[Robot, Gait]:
@@ -37,7 +40,11 @@ def judged() -> dict[str, float]:
     one_point = {"strokes": (1.0,), "bends": (1.0,), "pitches": (0.2,), "phases": (0.0,)}  # its maps are not asked
     far: Any = replace(EXPERIMENTS["displacement"], robot=robot, gait=gait, **one_point)  # type: ignore[type-var]
     found = {**far.run().measures, **stability.run().measures}
-    wanted = {f"{name}{end}" for name in ASKED for end in ("", "_low", "_high")}
+    names = set(ASKED)
+    for rule in RULES.values():
+        if rule.control and rule.control.group == CONTROL:
+            names |= rule.needs | {name for _, name, _, _ in Formatter().parse(rule.why) if name}
+    wanted = {f"{name}{end}" for name in names for end in ("", "_low", "_high")}
     return {name: float(measure.value) for name, measure in sorted(found.items()) if name in wanted}
 
 

@@ -1,7 +1,7 @@
 """Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
-and the summary into the README.
+and the summary into the README. With ``--part`` OUT may hold some experiments only: the rows of the others stay.
 """
 
 import json
@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pages.stated import kept, templates, wrapped
+from pages.stated import elsewhere, kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
 from suchus.verdict import RULES, counted
 
@@ -19,20 +19,24 @@ README = ROOT / "README.md"
 _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models")
 
 
-def collected(out: Path) -> dict[str, dict[str, Any]]:
+def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
     """Return what became of each claim, from a folder that ``suchus reproduce`` made, in the order of the table before.
 
+    Args:
+        out: the folder.
+        part: whether claims without an outcome there keep the row that they have.
+
     Raises:
-        IncompatibleRecord: a claim has no verdict there.
+        IncompatibleRecord: a claim has no verdict.
     """
-    found: dict[str, dict[str, Any]] = {}
+    before = json.loads(TABLE.read_text(encoding="utf-8")) if TABLE.is_file() else {}
+    found: dict[str, dict[str, Any]] = dict(before) if part else {}
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
             found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
     missing = [claim for claim in RULES if claim not in found]
     if missing:
         raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce in full first.")
-    before = json.loads(TABLE.read_text(encoding="utf-8")) if TABLE.is_file() else {}
     return {claim: found[claim] for claim in dict.fromkeys([*before, *RULES]) if claim in RULES}
 
 
@@ -41,12 +45,10 @@ def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
     count = counted(
         {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
     )
+    told: dict[str, Any] = {name: kept(name) for name in ("crawl_stability", "servo_loads")}
+    told["elsewhere"] = elsewhere()
     for name in ("verdicts", "result", "questions"):
-        text = (
-            templates()
-            .get_template(f"readme/{name}.md")
-            .render(verdicts=table, count=count, crawl_stability=kept("crawl_stability"))
-        )
+        text = templates().get_template(f"readme/{name}.md").render(verdicts=table, count=count, **told)
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"
         readme = _between(readme, start, end, wrapped(text, width=len(text)).rstrip("\n"))
     return readme
@@ -57,12 +59,12 @@ def _between(text: str, start: str, end: str, middle: str) -> str:
     return f"{before}{start}\n{middle}\n{end}{rest.partition(end)[2]}"
 
 
-def main(out: Path) -> None:
+def main(out: Path, *, part: bool) -> None:
     """Write table and README."""
-    table = collected(out)
+    table = collected(out, part=part)
     TABLE.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     README.write_text(written(README.read_text(encoding="utf-8"), table), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), part="--part" in sys.argv[2:])

@@ -11,7 +11,7 @@ import pytest
 
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS
-from suchus.verdict import Clause, Kind, Rule, examples_of, judge, judging, rules_of
+from suchus.verdict import Clause, Control, Kind, Rule, examples_of, judge, judging, rules_of
 
 ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}
 ROWS = [(claim, measures, word) for name in EXPERIMENTS for claim, rows in examples_of(name).items()
@@ -44,6 +44,15 @@ def test_a_rule_is_of_a_claim_and_of_the_experiment_beside_which_it_stands(claim
     assert claim in CLAIMS
     assert rule.holds or (rule.kind == "construction" and CLAIMS[claim].value is not None)
     assert all(clause.why for clause in rule.holds)
+
+
+@pytest.mark.parametrize("claim", [claim for claim, (_, rule) in ALL.items() if rule.control])
+def test_a_control_group_says_why_it_is_the_one_of_the_claim(claim):
+    _, rule = ALL[claim]
+    assert rule.control.group
+    assert len(rule.control.why) > 20
+    assert all(need.why for need in rule.control.needs)
+    assert not rule.rungs or not rule.control.needs  # a rung has no control group of its own to ask
 
 
 def test_no_claim_has_two_rules():
@@ -80,6 +89,8 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
             for sign in (-1, 1):
                 moved = clause.bound + sign * _OFF * (abs(clause.bound) or 1.0)
                 yield f"{name} moved to {moved:.4g}", _with(rule, i, (replace(clause, bound=moved),)), 1.0
+    for what, control in _without_control(rule):
+        yield f"{rule.claim}: {what}", replace(rule, control=control), 1.0
     for kind in _KINDS:
         if kind != rule.kind:
             yield f"{rule.claim}: {kind} instead of {rule.kind}", replace(rule, kind=kind), 1.0
@@ -95,10 +106,23 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
             yield f"{rule.claim}: {rung.model} heard", replace(rule, rungs=heard), 1.0
     for factor in (1.0 - _OFF, 1.0 + _OFF) if rule.rungs else ():
         yield f"{rule.claim}: settled x {factor}", replace(rule, settled=factor * rule.settled), 1.0
-    decisive = {clause.measure for clause in rule.holds} | {str(clause.bound) for clause in rule.holds}
+    clauses = (*rule.holds, *(rule.control.needs if rule.control else ()))
+    decisive = {clause.measure for clause in clauses} | {str(clause.bound) for clause in clauses}
     for name in decisive & set(rule.spread):
         rest = tuple(other for other in rule.spread if other != name)
         yield f"{rule.claim}: without the interval of {name}", replace(rule, spread=rest), 1.0
+
+
+def _without_control(rule: Rule) -> Iterator[tuple[str, Control]]:
+    """Yield what was done to what a control group needs, and what is left of it."""
+    needs = rule.control.needs if rule.control else ()
+    for i, need in enumerate(needs):
+        moved = [replace(need, bound=factor * float(need.bound)) for factor in (1.0 - _OFF, 1.0 + _OFF)]
+        ways = {"dropped": (), "reversed": (replace(need, relation=_REVERSED[need.relation]),)}
+        ways |= {f"moved to {one.bound:.4g}": (one,) for one in moved}
+        for what, instead in ways.items():
+            left = (*needs[:i], *instead, *needs[i + 1 :])
+            yield f"{need.measure} of the control group {what}", replace(rule.control, needs=left)
 
 
 def _with(rule: Rule, at: int, clauses: tuple[Clause, ...]) -> Rule:

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 import suchus.experiments
 from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.experiment import estimated
-from suchus.verdict import RULES, Clause, Share, between, examples_of, judge, rules_of
-from suchus.verdict.judging import ROBUST, WORDS
+from suchus.paper import CLAIMS
+from suchus.verdict import RULES, UNRULED, Clause, Share, between, examples_of, judge, rules_of
+from suchus.verdict.judging import ROBUST
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
@@ -169,6 +170,12 @@ def test_a_rule_beside_another_experiment_is_refused(tmp_path, monkeypatch):
     assert examples_of("whole") == {"joint_pid": [({"x": 1.0}, "reproduced")]}
     for name in ("strange", "whole"):
         monkeypatch.delitem(sys.modules, f"suchus.experiments.{name}")
+
+
+def test_every_statement_of_the_article_has_a_rule_or_a_reason_why_there_is_none():
+    assert set(RULES) | set(UNRULED) == set(CLAIMS)
+    assert not set(RULES) & set(UNRULED)
+    assert all(len(why) > 40 for why in UNRULED.values())
 
 
 def test_an_experiment_without_rules_has_none():

@@ -141,7 +141,8 @@ def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray
 def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Return the number of a claim in every sample, NaN where it is not judged, and whether its statement holds.
 
-    A sample whose intervals leave the statement undecided is not judged.
+    A sample whose intervals leave the statement undecided is not judged, nor one whose control group does not do what
+    the claim needs.
 
     Args:
         rule: the claim's.
@@ -149,7 +150,7 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
     """
     needed = once(rule, measures)
     number = np.asarray(needed[rule.measure], dtype=float)
-    rows = zip(*(values.tolist() for values in needed.values()), strict=True)
-    answers = [rule.held(dict(zip(needed, row, strict=True))) for row in rows]
+    rows = [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]
+    answers = [rule.held(row) if rule.testable(row) else None for row in rows]
     number = np.where([answer is None for answer in answers], np.nan, number)
     return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)

@@ -2,13 +2,15 @@
 
 from suchus.verdict.counting import EvidenceCount, Standing, counted, standings
 from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
-from suchus.verdict.rule import Clause, Kind, Reading, Rule, Rung, Varied, between, compared, interval, listed
-from suchus.verdict.table import RULES, examples_of, rules_of, varied_of
+from suchus.verdict.rule import Clause, Control, Kind, Reading, Rule, Rung, Varied, between, compared, interval, listed
+from suchus.verdict.table import RULES, UNRULED, examples_of, rules_of, varied_of
 
 __all__ = [
     "RULES",
     "SHARES",
+    "UNRULED",
     "Clause",
+    "Control",
     "EvidenceCount",
     "Examples",
     "Kind",

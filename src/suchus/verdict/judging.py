@@ -81,7 +81,8 @@ Word = Literal[
 """``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
 but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
 ``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
-carry the claim say different words. ``not testable``: nothing was measured that could decide. ``by construction``:
+carry the claim say different words. ``not testable``: nothing was measured that could decide, or the control group
+does not do what the claim needs. ``by construction``:
 an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
 chosen so that it comes out.
 """
@@ -153,7 +154,8 @@ def judge(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
         )
     said = ladder.voices(rule, measures, unable)
-    value, low, high, why = nan, None, None, rule.reason(measures)
+    value, low, high = nan, None, None
+    why = " ".join(part for part in (rule.reason(measures), rule.unable(measures)) if part)
     if said:
         value, least, greatest = ladder.spread(said)
         low, high = (least, greatest) if isfinite(value) else (None, None)
@@ -176,12 +178,13 @@ def judge(
 
 
 def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:
-    if not isfinite(value):
+    testable = rule.testable(measures)
+    if not isfinite(value) or testable is False:
         return "not testable"
     if ladder.disagree(said):
         return "models disagree"
     held = ladder.agreed(said) if said else rule.held(measures)
-    if held is None:
+    if held is None or testable is None:
         return "undecided"
     if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
         return "same sense" if held else "not testable"

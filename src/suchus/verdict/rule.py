@@ -112,6 +112,18 @@ def between(name: str, low: float, high: float) -> dict[str, float]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Control:
+    """The control group that a claim speaks of: with what it compares, or who alone does what it says."""
+
+    group: str
+    """Name of its runs, as in the record."""
+    why: str
+    """Where the article says so, or why another group than its own stands for it."""
+    needs: tuple[Clause, ...] = ()
+    """What the group must do for the claim to be testable; none where it need only be there."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Rung:
     """One of several models that a claim is asked of, see ``Rule.rungs``."""
 
@@ -139,6 +151,8 @@ class Rule:
     """Kind of evidence for the claim."""
     holds: tuple[Clause, ...] = ()
     """The statement apart from its number: all of these. None only where a printed number alone is read back."""
+    control: Control | None = None
+    """The control group; None where the claim speaks of none."""
     spread: tuple[str, ...] = ()
     """Which of the measures it reads have an interval, ``NAME_low`` to ``NAME_high``."""
     of: str = ""
@@ -158,8 +172,9 @@ class Rule:
     @property
     def needs(self) -> set[str]:
         """Names of the measures that decide, those of the sentence not counted."""
-        needed = {self.measure, *(clause.measure for clause in self.holds)}
-        bounds = {clause.bound for clause in self.holds if isinstance(clause.bound, str)}
+        clauses = (*self.holds, *self._able)
+        needed = {self.measure, *(clause.measure for clause in clauses)}
+        bounds = {clause.bound for clause in clauses if isinstance(clause.bound, str)}
         if self.rungs:
             ends, carrying = ("", "_low", "_high", "_apart"), [rung.name for rung in self.rungs if rung.carries]
             spread = {f"{name}_{rung}{end}" for name in needed for rung in carrying for end in ends}
@@ -189,7 +204,23 @@ class Rule:
 
         It fails if one clause fails for sure; None where none does and intervals leave some undecided.
         """
-        answers = [clause.holds(measures, self.spread) for clause in self.holds]
+        return self._all(self.holds, measures)
+
+    def testable(self, measures: Mapping[str, float]) -> bool | None:
+        """Return whether the control group does what the claim needs; None where intervals leave that undecided."""
+        return self._all(self._able, measures)
+
+    def unable(self, measures: Mapping[str, float]) -> str:
+        """Return in a sentence what of it the control group does not, or not for sure; empty where it does all."""
+        lacking = [str(one) for one in self._able if one.holds(measures, self.spread) is not True]
+        return f"The control group, {self.control.group}, lacks {listed(lacking)}." if self.control and lacking else ""
+
+    @property
+    def _able(self) -> tuple[Clause, ...]:
+        return self.control.needs if self.control else ()
+
+    def _all(self, clauses: Sequence[Clause], measures: Mapping[str, float]) -> bool | None:
+        answers = [clause.holds(measures, self.spread) for clause in clauses]
         return False if False in answers else None if None in answers else True
 
 

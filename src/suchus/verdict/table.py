@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from types import MappingProxyType
 
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
@@ -57,3 +58,19 @@ class ClaimRules(Mapping[str, Rule]):
 
 RULES = ClaimRules()
 """By claim."""
+_OF_ANIMALS = "A number of the animals' own body: no robot, of whatever size and toes, confirms or contradicts it."
+_LOOKED_AT = (
+    "When a picture was taken, which says nothing of what it shows: crawl_stability looks at its runs at this time."
+)
+_PUT_IN = (
+    "It is put in, not found: swimming commands the wave (20) with this number, in the one reading of its units that "
+    "makes a swim, and whether the body follows that wave is the claim swim_body_wave."
+)
+UNRULED: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys(("species_count", "largest_length", "smallest_length", "front_toes", "hind_toes"), _OF_ANIMALS),
+        **dict.fromkeys(("snapshot_time_1", "snapshot_time_2", "snapshot_time_3"), _LOOKED_AT),
+        **dict.fromkeys(("wave_c1", "wave_c2", "wave_k"), _PUT_IN),
+    }
+)
+"""Statements of the article that no rule judges, and why not, by key."""

@@ -16,6 +16,7 @@ from suchus.gaits import conditions_of
 from suchus.land import Run, simulate
 from suchus.metrics import (
     displacement,
+    duty_factor,
     height_peak_to_peak,
     height_std,
     line_distance,
@@ -61,6 +62,7 @@ class CrawlStability(TwoGroups):
     title = "Does it crawl more steadily with spine and tail than without?"
     shows = "Section IV.A, Figs 13 to 15"
     answers = (
+        "com_height_pp_change_tail_lifted",
         "com_height_pp_change",
         "com_height_pp_coordinated",
         "com_height_pp_limbs_only",
@@ -154,7 +156,10 @@ class CrawlStability(TwoGroups):
         return {name: arms.index(name) for name in _SHOWN if name in arms}
 
 
-_UNITS = {"com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-"}
+_UNITS = {
+    "com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-",
+    "hind_duty": "-",
+}  # fmt: skip
 """Numbers of every condition, and their units."""
 _AT = {"support_distance": "m", "line_distance": "m", "standing_feet": "-", "lean": "rad", "lean_on_two_feet": "rad"}
 """Numbers of each of the article's three snapshots, and their units."""
@@ -174,6 +179,7 @@ def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
         "roll_pp": roll_peak_to_peak(record),
         "forward": displacement(record).sel(xyz="x"),
         "tail_load_share": tail_load_share(record),
+        "hind_duty": duty_factor(record).sel(leg=record.leg.values[-2:]).max("leg"),
         "line_distance_max": line_distance_max(record),
         "two_feet_alone_share": two_feet_alone_share(record),
     }

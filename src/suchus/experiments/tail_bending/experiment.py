@@ -85,17 +85,24 @@ class TailBending(Experiment):
     def _crawls(self, progress: Any) -> xr.Dataset:
         """Return the angles of the cable joints over time in both crawls, not a number if the legs cannot follow."""
         runs = [Run(robot=self.robot, gait=gait) for gait in (self.gait, self.straight)]
-        end, joints = START + self.cycles * self.gait.period, list(cable_joints(self.robot))
+        end = START + self.cycles * self.gait.period
+        joints, passive = list(cable_joints(self.robot)), list(self.robot.tail.passive[::2])  # of pairs, yaw first
         try:
             record = between(whole(simulate(runs, duration=end, progress=progress)))
         except OutsideLimits:  # the formulas hold for robots with any legs
             time, angles = np.array([START, end]), np.full((len(runs), 2, len(joints)), np.nan)
+            bend = np.full((len(runs), 2), np.nan)
         else:
             time = record.time.values
             angles = record.joint_angle.sel(joint=joints).transpose("run", "time", "joint").values
+            bend = record.joint_angle.sel(joint=passive).sum("joint").transpose("run", "time").values
         about = {"units": "rad", "long_name": "angle of a tail joint, tip right positive"}
+        behind = {"units": "rad", "long_name": "bend of the tail's passive end, tip right positive"}
         return xr.Dataset(
-            {"crawl_angle": (("crawl", "time", "joint"), angles, about)},
+            {
+                "crawl_angle": (("crawl", "time", "joint"), angles, about),
+                "end_bend": (("crawl", "time"), bend, behind),
+            },
             coords={"crawl": ["gait", "straight"], "time": ("time", time, {"units": "s"}), "joint": joints},
         )
 
@@ -130,6 +137,7 @@ class TailBending(Experiment):
             "bend_limit_of_gaps": Measure(facts["bend_limit_of_gaps"], "rad"),
             "servo_at_bend_limit": Measure(facts["servo_at_bend_limit"], "rad"),
             **{name: Measure(float(facts[name]), "-") for name in ("tail_joints", "tail_actuators", "tail_share")},
+            "end_bend": Measure(float(np.ptp(record.end_bend.sel(crawl="gait").values)), "rad"),
         }
         for degrees in record.at.values:
             at_bend = record.sel(at=degrees)
