@@ -1,7 +1,8 @@
 """Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
-and the summary into the README. With ``--part`` OUT may hold some experiments only: the rows of the others stay.
+and the summary into the README. With ``--part`` OUT may hold some experiments only: of the others what the documentation
+keeps is judged by the rules of today, and the other rows stay.
 """
 
 import json
@@ -9,9 +10,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pages.stated import elsewhere, kept, templates, wrapped
+from pages.stated import KEPT, elsewhere, kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
-from suchus.verdict import RULES, counted
+from suchus.verdict import RULES, counted, judge, ladder
 
 ROOT = Path(__file__).parents[1]
 TABLE = ROOT / "docs" / "verdicts.json"
@@ -24,13 +25,13 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
 
     Args:
         out: the folder.
-        part: whether claims without an outcome there keep the row that they have.
+        part: whether claims without an outcome there are judged by what is kept, or else keep the row that they have.
 
     Raises:
         IncompatibleRecord: a claim has no verdict.
     """
     before = json.loads(TABLE.read_text(encoding="utf-8")) if TABLE.is_file() else {}
-    found: dict[str, dict[str, Any]] = dict(before) if part else {}
+    found: dict[str, dict[str, Any]] = before | judged_again() if part else {}
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
             found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
@@ -38,6 +39,19 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
     if missing:
         raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce in full first.")
     return {claim: found[claim] for claim in dict.fromkeys([*before, *RULES]) if claim in RULES}
+
+
+def judged_again() -> dict[str, dict[str, Any]]:
+    """Return what the rules of today say of the measures that the documentation keeps."""
+    found = {}
+    for rule in RULES.values():
+        if (KEPT / f"{rule.experiment}.json").is_file():
+            verdict = judge(rule, kept(rule.experiment))
+            row = {"verdict": verdict.verdict, "measured": verdict.measured, "low": verdict.low, "high": verdict.high}
+            models = ladder.rows(verdict.voices, rule.form)
+            row |= {"unit": verdict.claim.unit, "fragile": verdict.fragile}
+            found[rule.claim] = row | ({"models": models} if models else {})
+    return found
 
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
