@@ -1,8 +1,8 @@
 """Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
-and the summary into the README. With ``--part`` OUT may hold some experiments only: of the others what the documentation
-keeps is judged by the rules of today, and the other rows stay.
+and the summary into the README. With ``--part`` OUT may hold some experiments only: of the others what the
+documentation keeps is judged by the rules of today, and the other rows stay.
 """
 
 import json
