@@ -39,6 +39,7 @@ SHELVES: Mapping[str, str] = {
     "experiments": "suchus.experiments",
     "controllers": "suchus.control",
     "measures": "suchus.metrics",
+    "contestants": "suchus.contestants",
 }
 """The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")

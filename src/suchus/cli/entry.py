@@ -112,6 +112,12 @@ COMMANDS = (
         "compute published flows and draw ours beside theirs",
         "suchus.cli.flow_atlas:flow_atlas",
     ),
+    Subcommand(
+        "league",
+        "[NAME ...] [--out DIR]",
+        "predict real machines and animals, sealed before what was measured is opened",
+        "suchus.cli.league:league",
+    ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.cli.doctor:doctor"),
     Subcommand(
         "list", "", "show what stands on the shelves: robots, gaits, faults and so on", "suchus.cli.shelves:show"

@@ -19,6 +19,7 @@ _LISTED = {
     "experiments": "suchus.experiments:EXPERIMENTS",
     "controllers": "suchus.control:CONTROLLERS",
     "measures": "suchus.study:MEASURES",
+    "contestants": "suchus.contestants:CONTESTANTS",
 }
 """Where each shelf is, by its name."""
 _SCATTERED = ("controllers", "measures")

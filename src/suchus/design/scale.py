@@ -7,7 +7,7 @@ coefficients are those of the article's robot. A salamander of 3 g and a body of
 import re
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass, replace
-from math import floor, log10, sqrt
+from math import floor, log10, sqrt, tau
 from typing import Any, TypeVar
 
 from suchus.design.body import Robot
@@ -95,6 +95,46 @@ def servo_for(mass: float, length: float) -> Servo:
         armature=1.4e-3 * mass * length**2,
         friction=8e-4 * torque,
         damping=0.0046 * torque * time,
+    )
+
+
+SWIM = 8.0
+"""Natural frequency of a joint with half of the body and its water behind it, over that of the swim, at which a servo
+does not swing with the water [-]."""
+_WATER = 2.0
+"""Inertia of a swimming body together with the water beside it, over its own [-]; a round section has 2."""
+
+
+def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Servo:
+    """Return the servo that holds a limbless body of a size in the water, at whatever phase.
+
+    A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
+    frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
+    inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
+    the beat, with a damping of 0.7 of the critical one; torque and speed suffice for bends of one radian at the beat.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+        beat: frequency of the swim [Hz]; that of a wave as long as the body that runs at 1.5 m/s to the root of its
+            length over 1 m (dynamic similarity) if None.
+    """
+    require("swim_servo_for", "mass", mass, 1e-6, 1e5, "kg")
+    require("swim_servo_for", "length", length, 1e-3, 100.0, "m")
+    often = 1.5 / sqrt(length) if beat is None else beat
+    require("swim_servo_for", "beat", often, 0.01, 100.0, "Hz")
+    inertia, omega = _WATER * mass * length**2 / 24.0, tau * often
+    stiffness = inertia * (SWIM * omega) ** 2
+    return Servo(
+        kp=stiffness,
+        ki=0.0,
+        kd=1.4 * inertia * SWIM * omega,
+        integral_limit=0.0,
+        torque=stiffness * 0.5,
+        speed=4.0 * omega,
+        armature=1.4e-3 * mass * length**2,
+        friction=0.0,
+        damping=0.02 * inertia * omega,
     )
 
 

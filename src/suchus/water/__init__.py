@@ -11,7 +11,7 @@ from suchus.water.passive import sprung
 from suchus.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
 from suchus.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
 from suchus.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
-from suchus.water.waves import BodyWave, EelWave, PrintedWave, printed_wave
+from suchus.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
 
 __all__ = [
     "MODELS",
@@ -22,6 +22,7 @@ __all__ = [
     "EelWave",
     "Effort",
     "ExactWave",
+    "FilmedWave",
     "Fit",
     "MidlineCurve",
     "Motion",

@@ -87,6 +87,48 @@ class EelWave:
         return np.asarray(0.125 / 1.03125 * (np.sin(phase) + grown))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilmedWave:
+    """A wave of which a film gave the amplitudes of snout and tail, and its length: ``A(x) sin 2 pi (x / wave - f t)``.
+
+    In between the amplitude follows a parabola that is level at the snout; that is what a film says of it that gives
+    its ends only, and how swimmers of the eel's and of the carp's kind look (Di Santo et al. 2021, PNAS 118,
+    e2113206118).
+    """
+
+    length: float
+    """Length of the body [m]."""
+    frequency: float
+    """[Hz]."""
+    wavelength: float
+    """Length of one whole wave [body length]."""
+    head: float
+    """Amplitude of the snout, half of its way from side to side [body length]."""
+    tail: float
+    """Amplitude of the tail's tip, half of its way from side to side [body length]."""
+
+    @property
+    def period(self) -> float:
+        """Of one cycle [s]."""
+        return 1.0 / self.frequency
+
+    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return how far the midline lies off the axis [m]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
+        return np.asarray(self.length * self._amplitude(part) * np.sin(phase))
+
+    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return dy/dx [-]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
+        grows = 2 * part * (self.tail - self.head)
+        return np.asarray(grows * np.sin(phase) + self._amplitude(part) * 2 * np.pi / self.wavelength * np.cos(phase))
+
+    def _amplitude(self, part: np.ndarray) -> np.ndarray:
+        return self.head + (self.tail - self.head) * part**2
+
+
 def printed_wave(
     robot: Robot, reading: str = "I", *, frequency: float = 1.0, sign: int = -1, waves_per_body: float = 1.0
 ) -> PrintedWave:

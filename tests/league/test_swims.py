@@ -1,0 +1,96 @@
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from suchus.contestants import CONTESTANTS
+from suchus.design.drawing import Drawing
+from suchus.design.pieces import volumes
+from suchus.design.water import Water
+from suchus.errors import InvalidDesign
+from suchus.league import find
+from suchus.league.swims import Swimmer, _coasting, _from_rest, _held, theory
+from suchus.motion.swim import still, swimming_gait
+from suchus.water import Outline, reactive, resistive, undulation
+from suchus.water.slender import Effort
+
+ROW = Drawing(
+    name="rod",
+    length=0.6,
+    mass=1.0,
+    density=990.0,
+    places=(0.0, 0.05, 0.95, 1.0),
+    half_width=(0.02, 0.035, 0.035, 0.03),
+    half_height=(0.02, 0.04, 0.04, 0.04),
+    joints=(0.25, 0.5, 0.75),
+)
+
+
+@pytest.mark.parametrize(("length", "mass", "density"), [(0.05, 4e-4, 900.0), (0.6, 1.0, 990.0), (3.0, 100.0, 1050.0)])
+def test_a_drawing_gets_its_length_mass_and_volume_at_any_size(length, mass, density):
+    robot = replace(ROW, length=length, mass=mass, density=density).robot()
+    assert robot.length == pytest.approx(length)
+    assert robot.mass == pytest.approx(mass)
+    assert sum(volumes(robot).values()) == pytest.approx(mass / density)
+    outline = Outline(robot, 257)
+    high, wide = outline.silhouette.half_height, outline.silhouette.half_width
+    assert high[-1] / high[128] == pytest.approx(1.0, abs=0.06)  # the trailing edge is as high as it is drawn
+    np.testing.assert_allclose(high[20:-20], 0.04 / 0.035 * wide[20:-20], rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    "change", [{"places": (0.0, 1.0)}, {"half_width": (0.02,) * 3 + (0.6,)}, {"joints": (0.7, 0.5)}]
+)
+def test_a_drawing_that_cannot_be_is_refused(change):
+    with pytest.raises(InvalidDesign):
+        replace(ROW, **change)
+
+
+def test_from_rest_follows_the_exact_solution_of_square_drag():
+    """Constant thrust T and drag c U^2: U = sqrt(T / c) tanh(t sqrt(T c) / m), its mean over time a logarithm."""
+    robot = ROW.robot()
+    swimmer = Swimmer(robot=robot, gait=still(robot, frequency=1.0))
+    push, rub = 0.5, 2.0
+    last, rate = (push / rub) ** 0.5, (push * rub) ** 0.5 / robot.mass
+
+    def model(outline, curve, speed, water):
+        return Effort(push - rub * speed * abs(speed), 0.0)
+
+    outline = Outline(robot, 33)
+    found = _from_rest(outline, undulation(outline, swimmer.gait), model, swimmer, last, periods=4)
+    ends = np.arange(5)
+    exact = last / rate * np.diff(np.log(np.cosh(rate * ends)))
+    np.testing.assert_allclose(found, exact, rtol=0.03)
+
+
+def test_a_straight_body_coasts_as_its_friction_says_and_a_bent_one_stops_sooner():
+    robot, speed = ROW.robot(), 0.5
+    straight = Swimmer(robot=robot, gait=still(robot, frequency=2.0), water=Water(), ramp=0.0)
+    (found,) = _coasting([straight], [speed], lambda *_: None)
+    outline = Outline(robot, 257)
+    wide, high = outline.silhouette
+    girth = np.pi * (3 * (wide + high) - np.sqrt((3 * wide + high) * (wide + 3 * high)))
+    nose = 0.1 * np.pi * wide.max() * high.max()
+    ends = [
+        0.5 * Water().density * (Water().friction(u, robot.length) * np.trapezoid(girth, outline.s) + nose) / robot.mass
+        for u in (speed, 0.3 * speed)
+    ]
+    assert 0.95 * ends[0] < found < 1.05 * ends[1]
+    bent = replace(straight, gait=_waving(robot))
+    (stops,) = _coasting([bent], [speed], lambda *_: None)
+    assert stops > 1.5 * found
+    assert theory(resistive, bent, coasts=True).coast > 1.5 * theory(reactive, bent, coasts=True).coast
+
+
+def _waving(robot):
+    return swimming_gait(robot, name="wave", frequency=2.0, amplitude=[0.5] * 3, lag=[0.0, 0.2, 0.4])
+
+
+def test_a_frequency_is_found_that_holds_a_speed():
+    one = find(CONTESTANTS, "catshark_2")
+    asked = one.rungs["resistive"].work.args[1]
+    _, swum = _held(asked, one.likely, partial(theory, resistive))
+    assert swum.speed == pytest.approx(2.0 * one.likely["length"])
+    again = theory(resistive, asked.build(one.likely, swum.frequency))
+    assert again.speed == pytest.approx(swum.speed, rel=0.02)

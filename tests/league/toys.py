@@ -1,0 +1,50 @@
+"""A contestant whose answers are known: a stone that falls."""
+
+from functools import partial
+
+from suchus.league import Contestant, Given, Quantity, Rung
+
+GRAVITY = 9.81
+
+
+def fell(choices, progress):
+    progress("falling", 1.0)
+    return [
+        {"speed": (2.0 * GRAVITY * one["height"]) ** 0.5, "times": (one["height"], 2.0 * one["height"])}
+        for one in choices
+    ]
+
+
+def slow(choices, progress):
+    return [{"speed": 3.0}, {"speed": 2.0}]
+
+
+def broken(error, choices, progress):
+    raise error
+
+
+def stone(name="stone", height=(1.0, 0.5, 1.5), source="a ruler", rungs=None) -> Contestant:
+    return Contestant(
+        name=name,
+        title="A stone falls",
+        about="From a table.",
+        given={"height": Given(value=height[0], low=height[1], high=height[2], unit="m", source=source)},
+        predicts={
+            "speed": Quantity(unit="m/s", words="speed at the ground"),
+            "times": Quantity(unit="m", words="heights"),
+        },
+        rungs=rungs
+        or {
+            "formula": Rung(words="a formula", work=fell, draws=200),
+            "film": Rung(words="a film", work=slow, draws=0, like="formula"),
+        },
+    )
+
+
+def failing(error) -> Contestant:
+    return stone(
+        rungs={
+            "formula": Rung(words="a formula", work=fell, draws=20),
+            "other": Rung(words="breaks", work=partial(broken, error), draws=2),
+        }
+    )
