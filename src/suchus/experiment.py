@@ -21,7 +21,7 @@ from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, control_period, scaled_fields
 from suchus.errors import BrokenFile, InvalidDesign
 from suchus.gaits import in_size, own_gait
-from suchus.motion import Gait, suits
+from suchus.motion import Gait, check_limits, suits
 from suchus.progress import Progress, silent, staged
 from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
 
@@ -183,9 +183,12 @@ class Experiment(ABC):
 
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs.
+            OutsideLimits: the gait is one for other limbs, or asks its joints for more than they can.
         """
         if hasattr(self, "robot"):
             check_needs(self.robot, self.needs, self.name())
+            for gait in (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None))):
+                check_limits(self.robot, gait)  # by the name that the user knows, before what is derived from it
         with stopwatch() as seconds:
             simulated = self.simulate(progress)
             measures = self.measure(simulated.record)

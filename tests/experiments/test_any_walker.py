@@ -215,6 +215,9 @@ def test_a_gait_that_was_asked_for_is_not_replaced():
     assert wrong.gait == GAITS["belly_crawl"]
     with pytest.raises(OutsideLimits, match="choose a gait made for it"):
         wrong.run()
+    asked = EXPERIMENTS["displacement"].quick()
+    with pytest.raises(OutsideLimits, match="gait 'belly_crawl' has phases for 4 limbs; robot 'strider' has 6"):
+        replace(asked, robot=ROBOTS["strider"]).run()  # by its own name, not as the control group made of it
 
 
 @pytest.mark.parametrize("name", list(EXPERIMENTS))
