@@ -2,15 +2,16 @@
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from suchus.cli.entry import main
-from suchus.cli.run import answer
+from suchus.cli.run import Performed, answer, show_outcome
 from suchus.experiment import Measure, estimated
 from suchus.experiments import EXPERIMENTS
-from suchus.report import carried
+from suchus.report import carried, quantity
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
@@ -68,3 +69,13 @@ def test_a_run_says_its_answer_and_for_programs_its_outcome(tmp_path, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told["measures"] == outcome["measures"]
     assert told["decides"] == outcome["decides"]
+
+
+def test_statements_show_what_was_measured_as_printed_numbers_do(quick_outcome, capsys):
+    outcome = quick_outcome("gait_diagram")
+    show_outcome(EXPERIMENTS["gait_diagram"], Performed(outcome=outcome, folder=Path("out"), seconds=1.0))
+    said = capsys.readouterr().out
+    statements = [one for one in outcome.verdicts if one.claim.value is None and one.measured is not None]
+    assert statements
+    for one in statements:
+        assert quantity(one.measured, outcome.measures[one.rule.measure].unit, 3) in said

@@ -27,7 +27,7 @@ from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
 from suchus.report import OUTCOME, PAGE, carried, check_place, quantity, save_outcome
 from suchus.sources import current
-from suchus.verdict import listed
+from suchus.verdict import Verdict, listed
 
 _COLOURS = {
     "reproduced": "green",
@@ -115,13 +115,19 @@ def show_outcome(question: Experiment, done: Performed) -> None:
             table.add_row(
                 escape(f"{claim.quantity} ({claim.where})"),
                 quantity(claim.value, claim.unit, 3),
-                quantity(verdict.measured, claim.unit, 3) if claim.value is not None else "",
+                quantity(verdict.measured, _unit(verdict, done.outcome), 3),
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
             )
         console.print(table)
     if done.outcome.unjudged:
         console.print(escape(done.outcome.unjudged), soft_wrap=True)
     console.print(f"{done.seconds:.1f} s; the page with all of it: {escape(str(done.folder / PAGE))}", soft_wrap=True)
+
+
+def _unit(verdict: Verdict, outcome: Outcome) -> str:
+    """Return the unit of what was measured: of a statement, which prints no number, that of the rule's measure."""
+    measure = outcome.measures.get(verdict.rule.measure)
+    return verdict.claim.unit if verdict.claim.value is not None or measure is None else measure.unit
 
 
 def moves(question: Experiment) -> list[str]:
