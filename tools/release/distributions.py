@@ -1,13 +1,14 @@
 """Wheel and sdist: built from the checkout, and what is in them."""
 
+import hashlib
 import tarfile
 import tomllib
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from release.environment import ROOT, Environment, run
+from release.environment import PINNED, ROOT, Environment, clean, run
 
 PACKAGE = "src/suchus"
 _BESIDE = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md")
@@ -43,13 +44,33 @@ def build(tools: Environment, folder: Path) -> tuple[Path, Path | None]:
     folder.mkdir(exist_ok=True)
     for old in [*folder.glob("suchus-*.whl"), *folder.glob("suchus-*.tar.gz")]:
         old.unlink()
+    pinned = clean() | {"PIP_CONSTRAINT": str(PINNED)}  # of the environment in which the build back end runs
     if tools.pip_if_served("build"):
-        run([tools.bin / "python", "-m", "build", "--outdir", folder, ROOT], cwd=folder)
+        run([tools.bin / "python", "-m", "build", "--outdir", folder, ROOT], cwd=folder, env=pinned)
     else:
         print("The package build is not to be had: pip builds the wheel, and there is no sdist.")
-        run([tools.bin / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", folder, ROOT], cwd=folder)
+        words = [tools.bin / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", folder, ROOT]
+        run(words, cwd=folder, env=pinned)
     (wheel,) = folder.glob("suchus-*.whl")
     return wheel, next(iter(folder.glob("suchus-*.tar.gz")), None)
+
+
+def digests(*files: Path | None) -> dict[str, str]:
+    """Return the SHA-256 of each file by its name; None stands for one that was not built."""
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files if file is not None}
+
+
+def unlike(first: Mapping[str, str], second: Mapping[str, str]) -> str:
+    """Return in a sentence which of two builds' files differ, or nothing.
+
+    Args:
+        first: digests of the files of a build, by name.
+        second: those of another build of the same commit.
+    """
+    names = [name for name in dict.fromkeys((*first, *second)) if first.get(name) != second.get(name)]
+    return (
+        f"two builds of one commit differ in {', '.join(names)}; nobody could check what is published." if names else ""
+    )
 
 
 def tracked() -> set[str]:

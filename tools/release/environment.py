@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+PINNED = Path(__file__).with_name("constraints.txt")
+"""Versions of what builds and checks a release."""
 _OURS = ("PYTHONPATH", "PYTHONHOME", "PIP_CONSTRAINT", "VIRTUAL_ENV", "UV_CONSTRAINT", "SUCHUS_THREADS")
 
 
@@ -68,9 +70,9 @@ class Environment:
         run([self.bin / "python", "-m", "pip", "--quiet", "install", *words], cwd=self.folder.parent)
 
     def pip_if_served(self, name: str) -> bool:
-        """Install a tool and return True, or False where it is not to be had."""
+        """Install a tool in the version of ``PINNED`` and return True, or False where it is not to be had."""
         try:
-            self.pip(name)
+            self.pip("--constraint", PINNED, name)
         except Failed:
             return False
         return True
