@@ -155,11 +155,11 @@ def test_a_slice_is_divided_at_its_cuts():
     def run(cuts):
         shape = flow.Midline(spine=lambda _: spine, deforms=False, cuts=cuts)
         bodies = (flow.Body(shape=shape, motion=swing, name="foil"),)
-        sim = flow.Simulation(flow.Setup(grid=grid, viscosity=2e-3, bodies=bodies, coarse=True, step=0.01))
-        return sim, sim.run(0.05, progress=False)
+        sim = flow.Simulation(flow.Setup(grid=grid, viscosity=2e-3, bodies=bodies, coarse=True))
+        return sim, sim.run(0.03, progress=False)
 
     (_, whole), (sim, cut) = run(()), run((0.3, 0.6))
-    assert cut.force().tobytes() == whole.force().tobytes()
+    assert cut.force() == pytest.approx(whole.force(), rel=1e-9)
     assert cut.along("force_y").sum(axis=1) == pytest.approx(whole.force()[:, 1], abs=1e-5)
     assert cut.along("power").sum(axis=1) == pytest.approx(whole.column("power"), abs=1e-5)
     assert cut.along("torque_behind")[:, 0] == pytest.approx(whole.torque()[:, 0], abs=1e-4)  # about the same point

@@ -8,6 +8,7 @@ from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.limbed import Capsule, Limbed
+from suchus.flow.log import Loads
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, MidlineState, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
@@ -23,6 +24,7 @@ from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
 from suchus.flow.solid import Ellipsoid, SkinMarkers, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
+from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
 from suchus.isosurface import IsoSurface, isosurface
 
@@ -45,6 +47,7 @@ __all__ = [
     "IsoSurface",
     "Limbed",
     "Load",
+    "Loads",
     "Markers",
     "Mass",
     "Midline",
@@ -75,6 +78,7 @@ __all__ = [
     "Stream",
     "Surface",
     "Trunk",
+    "Twists",
     "Wall",
     "added_mass",
     "difference",

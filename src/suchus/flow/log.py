@@ -9,7 +9,7 @@ from suchus.errors import Diverged
 from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.midline import Midline
-from suchus.flow.momentum import Reaction, contents_of, reaction, skin
+from suchus.flow.momentum import Reaction, contents_of, reaction, skins
 from suchus.flow.pose import Pose, cross
 from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
@@ -65,12 +65,11 @@ class Log:
     def hold(self, water: Fluid, outlines: Sequence[Markers | SkinMarkers]) -> None:
         """Note what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
-        skins = [
-            0.5 ** sum(cut) * skin(part, water.offset, grid.origin, grid.cell)
-            for m, cut, rows in zip(outlines, water.cut, water.rows, strict=True)
-            for part in _parts(m, len(rows))
+        held = [
+            0.5 ** sum(cut) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
+            for outline, cut, rows in zip(outlines, water.cut, water.rows, strict=True)
         ]
-        self.held = water.contents() - np.array(skins).reshape(-1, contents_of(grid.axes))
+        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *held])
 
     def reactions(
         self, water: Fluid, outlines: Sequence[Markers | SkinMarkers], about: list[tuple[float, ...]], dt: float,
@@ -138,16 +137,6 @@ class Log:
             columns=names, parts=rows[:, HEAD + own :].reshape(len(rows), parts, len(PART_COLUMNS)),
             divided=tuple(n if n > 1 else 0 for n in counts),
         )  # fmt: skip
-
-
-def _parts(outline: Markers | SkinMarkers, count: int) -> list[SkinMarkers | Markers]:
-    """Return the skin of each part of a body, or its whole outline where there is one part."""
-    if count == 1 or outline.part is None:
-        return [outline]
-    return [
-        SkinMarkers(outline.points[:, mine], outline.share[mine], outline.velocities[:, mine])
-        for mine in (outline.part == k for k in range(count))
-    ]
 
 
 def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, error: float) -> list[float]:

@@ -144,8 +144,18 @@ def contents(sums, b, mu0, owner, component, place, near, inner):
                     sums[m, turn + 5] += part_of * z
 
 
-def skin(markers: Markers | SkinMarkers, offset: float, origin: tuple[float, ...], h: float) -> np.ndarray:
-    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, (``contents_of``,)."""
+def skins(
+    markers: Markers | SkinMarkers, offset: float, origin: tuple[float, ...], h: float, count: int
+) -> np.ndarray:  # fmt: skip
+    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, part by part.
+
+    Args:
+        markers: of one body.
+        offset: of the wall [cells].
+        origin: corner of the grid [m].
+        h: cell [m].
+        count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
+    """
     axes = len(origin)
     w = offset * markers.share / h ** (axes - 1)
     place = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
@@ -155,7 +165,9 @@ def skin(markers: Markers | SkinMarkers, offset: float, origin: tuple[float, ...
         square = square + v[2] ** 2
     around = (place[a] * v[b] - place[b] * v[a] for a, b in TURNS[axes])
     columns = (*v, *around, 0.5 * square, np.ones(w.size), *place)
-    return np.array([(w * column).sum() for column in columns])
+    if count == 1 or markers.part is None:
+        return np.array([[(w * column).sum() for column in columns]])
+    return np.stack([np.bincount(markers.part, w * column, count) for column in columns], axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,7 +14,7 @@ from suchus import threads
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
-from suchus.flow.added import added_mass, symmetric
+from suchus.flow.added import added_mass, generalised_added_mass, symmetric
 from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
@@ -323,6 +323,11 @@ class Simulation(Fields):
             raise OutsideLimits("the loads of the last step are asked for before any step was taken; call advance.")
         return self._loads[self._number(name)]
 
+    @property
+    def drift(self) -> np.ndarray:
+        """Mean velocity of the grid in the last step, shape (axis,) [m/s]."""
+        return np.zeros(self.axes) if self._taken is None else self._taken.drift
+
     def accelerate(self, more: Mapping[str, Twists]) -> None:
         """Let bodies have moved otherwise at the end of the last step, and the water with them; see ``twist``.
 
@@ -351,6 +356,20 @@ class Simulation(Fields):
         self._forget()
         self._log.rows.pop()
         self._note(self._taken)
+
+    def added_mass(self, name: str, modes: Sequence[Twists]) -> np.ndarray:
+        """Return the added mass of a body for motions of its parts, the sides held, shape (mode, mode).
+
+        See ``added.generalised_added_mass``; the other bodies stay still.
+
+        Raises:
+            UnknownName: there is no such body.
+            NotConverged: the pressure solver got stuck.
+        """
+        number = self._number(name)
+        still = [none(len(rows), self.axes) for rows in self.water.rows]
+        whole = [joined([*still[:number], mode, *still[number + 1 :]]) for mode in modes]
+        return generalised_added_mass(self.water, self._outlines, whole, self.setup.density)
 
     def _number(self, name: str) -> int:
         names = [b.name for b in self._bodies]

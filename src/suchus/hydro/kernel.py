@@ -10,7 +10,7 @@ from numba import carray
 from suchus.hydro import lanes, memory
 from suchus.hydro.forces import added_mass, flow, meet, place, press, rub
 from suchus.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, WaterProperties
-from suchus.hydro.memory import Bodies, Motion, pointer, read_bodies, read_motion, read_water
+from suchus.hydro.memory import Bodies, Motion, pointer, read_bodies, read_given, read_motion, read_water
 from suchus.hydro.table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
 from suchus.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
 
@@ -34,6 +34,9 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
     numbers = carray(pointer(whole[at[memory.NUMERIC] // 8]), (whole[count],), np.float64)
     if numbers[0] != MAGIC or whole[at[memory.NUSER] // 8] < NUMBERS:
         return False
+    if whole[at[memory.NUSER] // 8] > NUMBERS:
+        _add_given(model, data, at)
+        return True
     motion = read_motion(model, data, at)
     user, water = motion.user, read_water(model, motion.user, at, numbers[2])
     blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
@@ -52,6 +55,15 @@ def wet(model: int, data: int, at: np.ndarray) -> bool:
         return False
     _burden(sums, bodies, motion)
     return True
+
+
+@part
+def _add_given(model: int, data: int, at: np.ndarray) -> None:
+    """Add to the matrix the added mass that stands behind the numbers of the water."""
+    bodies, motion = read_bodies(model, at), read_motion(model, data, at)
+    given = read_given(model, data, at)
+    for n in range(len(bodies.column)):
+        motion.mass[n] += given[n]
 
 
 @part

@@ -131,6 +131,14 @@ def read_motion(model: int, data: int, at: np.ndarray) -> Motion:
 
 
 @part
+def read_given(model: int, data: int, at: np.ndarray) -> np.ndarray:
+    """Return what stands behind the numbers of the water."""
+    whole, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
+    first = 8 * NUMBERS
+    return carray(pointer(state[at[_USER] // 8] + first), (whole[at[NUSER] // 8] - NUMBERS,), np.float64)
+
+
+@part
 def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> WaterProperties:
     """Return what the water is."""
     down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)

@@ -77,7 +77,9 @@ POWER = 21
 UNDER = 22
 """Place where it leaves the volume under water [m3]."""
 NUMBERS = 23
-"""Length of the row [-]."""
+"""Length of the row [-]. Where it is longer the water is solved elsewhere: from this place on stands the added mass
+that the kernel adds to MuJoCo's matrix, number by number in the order of that matrix [kg, kg m, kg m2]; it does nothing
+else."""
 
 
 def column(table: Float[np.ndarray, "piece column"], name: str) -> Float[np.ndarray, "piece part"]:

@@ -91,11 +91,12 @@ class SimulationBatch:
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
         bodies = [(run.robot, run.ground.relief) for run in runs]
-        wet = any(run.lake is not None for run in runs)
+        wet = any(run.lake is not None or run.solved is not None for run in runs)
         if wet:
             wetting.install()
         room = max(len(pieces(run.robot)) for run in runs) if wet else 0
-        models = {body: _model(body[0], timestep, body[1], room) for body in dict.fromkeys(bodies)}
+        solved = runs[0].solved is not None
+        models = {body: _model(body[0], timestep, body[1], room, solved=solved) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
@@ -166,6 +167,14 @@ class SimulationBatch:
                 self.supply(sim, run.supply)
             if run.afloat is not None:
                 self._cast_off(sim, run.afloat)
+            if run.solved is not None:
+                self._lift(sim)
+
+    def _lift(self, sim: int) -> None:
+        """Take weight and contact from a run: it hovers in deep water."""
+        self.field("opt.gravity", sim)[:] = 0.0
+        no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
 
     def _cast_off(self, sim: int, afloat: Afloat) -> None:
         self.field("opt.gravity", sim)[:] = 0.0
@@ -381,12 +390,15 @@ class SimulationBatch:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: Robot, timestep: float, relief: Relief | None, room: int) -> Any:
+def _model(robot: Robot, timestep: float, relief: Relief | None, room: int, *, solved: bool = False) -> Any:
     """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """
-    made = wet_model(robot, timestep, relief, room, acting=True) if room else compile_model(robot, timestep, relief)
+    if room:
+        made = wet_model(robot, timestep, relief, room, acting=True, solved=solved)
+    else:
+        made = compile_model(robot, timestep, relief)
     model = copy.copy(made)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model

@@ -12,6 +12,7 @@ from suchus.fault import Fault
 from suchus.gaits import gait_of
 from suchus.kinds import show
 from suchus.land.lake import Lake
+from suchus.land.waters import FORMS, AnyWater, Form, Sections, Slice, Space
 from suchus.model import compile_model
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
@@ -85,7 +86,11 @@ class Run:
     afloat: Afloat | None = None
     """Fluid in which it floats, far from any surface; None where it stands on the ground."""
     lake: Lake | None = None
-    """The water that it walks and swims in; None on dry land."""
+    """The water that it walks and swims in, section by section; None on dry land."""
+    water: AnyWater | Form | None = None
+    """The water, rung by rung: ``Sections`` of a lake, which is then ``lake``; or a ``Slice`` or a ``Space``, a flow
+    that ``suchus.coupling.simulate`` solves together with the robot. Short forms: "sections", two body lengths deep,
+    "slice" and "space"."""
     faults: tuple[Fault, ...] = ()
     """Faults, each with the time at which it begins; none by default."""
     pushes: tuple[Push, ...] = ()
@@ -112,6 +117,7 @@ class Run:
     def __post_init__(self) -> None:
         object.__setattr__(self, "robot", ROBOTS.resolve(self.robot))
         object.__setattr__(self, "gait", gait_of(self.robot, self.gait))
+        self._take_water()
         with Checks("run", self) as check:
             check.number("supply", 0.01, 2.0, "")
             check.number("noise", 0.0, 1.0, "rad")
@@ -131,6 +137,30 @@ class Run:
                 self.lake is None or self.afloat is None,
                 "a run floats in a lake or in a vacuum without gravity, not in both: leave out lake or afloat",
             )
+            dry = self.lake is None and self.afloat is None and self.ground == Ground()
+            check.that(
+                self.solved is None or dry,
+                "a flow that is solved together with the robot has neither surface nor ground, and the robot no weight "
+                'in it: leave out lake, afloat and ground, or take water="sections"',
+            )
+
+    def _take_water(self) -> None:
+        """Put the objects in the place of short forms, and the lake of sections where runs look for it."""
+        if self.water == "sections":
+            object.__setattr__(self, "water", Sections(lake=self.lake or Lake(level=2 * self.robot.length)))
+        elif isinstance(self.water, str):
+            if self.water not in FORMS:
+                raise UnknownName("water", self.water, ("sections", *FORMS))
+            object.__setattr__(self, "water", FORMS[self.water]())
+        if isinstance(self.water, Sections):
+            if self.lake not in (None, self.water.lake):
+                raise InvalidDesign("run.lake and run.water are two different lakes; give one of the two.")
+            object.__setattr__(self, "lake", self.water.lake)
+
+    @property
+    def solved(self) -> Slice | Space | None:
+        """The flow that is solved together with the robot, if any is."""
+        return self.water if isinstance(self.water, Slice | Space) else None
 
 
 def check_pushes(pushes: Sequence[Push], robot: Robot, duration: float) -> None:

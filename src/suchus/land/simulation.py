@@ -98,6 +98,11 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
     for pair in {(run.robot, run.gait) for run in runs}:
         check_limits(*pair)
     for run in runs:
+        if run.solved is not None:
+            raise InvalidDesign(
+                f"the water of run {run.label or run.gait.name!r} is a flow that is solved together with the robot; "
+                "give the runs to suchus.coupling.simulate."
+            )
         check_faults(run.faults, run.robot, duration)
         check_pushes(run.pushes, run.robot, duration)
         if run.lake is not None:

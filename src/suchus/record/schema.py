@@ -59,6 +59,21 @@ HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Further variables of runs whose robots have servos that warm up, as in ``VARIABLES``."""
 
+COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "link_force": (("time", "link", "xyz"), "N", "of the water on each link between two lateral joints, in the world"),
+    "link_torque": (("time", "link"), "N m", "of the water on each link about the vertical through its middle"),
+    "joint_water_torque": (("time", "joint"), "N m", "of the water on each lateral joint, NaN for the others"),
+    "coupling_residual": (("time",), "1", "force left over by the step, over the greatest so far"),
+    "coupling_first": (("time",), "1", "the same before the step was corrected"),
+    "coupling_iterations": (("time",), "1", "corrections of the step"),
+    "energy_error": (("time",), "1", "what is missing in the robot's balance of energy so far, over its servos' work"),
+    "power_error": (("time",), "1", "work of the water by force and way, less that by the flow's own account, over it"),
+}
+"""Further variables of runs whose water is a flow that is solved together with the robot, as in ``VARIABLES``.
+
+Forces and torques are means over the control period before each sample; the rest is of the step that holds the sample.
+"""
+
 PER_RUN: Mapping[str, tuple[str, str]] = {
     "mass": ("kg", "of the robot"),
     "period": ("s", "of the gait"),

@@ -1,0 +1,6 @@
+"""Robot and water solved together: one ladder of runs, from forces section by section to a flow in space."""
+
+from suchus.coupling.simulation import simulate
+from suchus.coupling.swim import Swim
+
+__all__ = ["Swim", "simulate"]

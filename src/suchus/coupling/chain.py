@@ -1,0 +1,243 @@
+"""The midline of a robot as its joints bend it: where it is, how it moves, and what a force on it asks of the joints.
+
+Coordinates are those of the root in its plane and the lateral joints (``land.stepper``). The flow sees the robot from
+above with its head at the origin and its tail towards +x, its y to the robot's right: the world, turned by half a turn.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus import flow
+from suchus.design.profile import stations
+from suchus.flow.twist import Twists
+from suchus.water.outline import Outline
+
+
+class Posture(NamedTuple):
+    """Coordinates and rates of a chain in the frame of the flow."""
+
+    place: Float[np.ndarray, " coordinate"]
+    """Root (x, y, angle) and joints [m, rad]."""
+    rate: Float[np.ndarray, " coordinate"]
+    """Their rates [m/s, rad/s]."""
+
+
+Seen = tuple[flow.MidlineState, flow.Pose]
+"""A midline about its centre, and where that is."""
+
+
+class Points(NamedTuple):
+    """The midline at some arc lengths; ``along`` its derivatives by the coordinates."""
+
+    place: Float[np.ndarray, "2 point"]
+    """Where they are [m]."""
+    heading: Float[np.ndarray, " point"]
+    """Direction from head to tail [rad]."""
+    along: Float[np.ndarray, "2 point coordinate"]
+    """Derivative of the places [-, m]."""
+    turning: Float[np.ndarray, "point coordinate"]
+    """Derivative of the headings [1/m, -]."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A robot's midline over its joints, divided into parts none of which reaches over a joint."""
+
+    outline: Outline
+    """The robot and its stations."""
+    parts: int
+    """Parts, at least [-]."""
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints that bend it."""
+        return self.outline.joints
+
+    @property
+    def size(self) -> int:
+        """Coordinates [-]."""
+        return 3 + len(self.joints)
+
+    @cached_property
+    def root(self) -> float:
+        """Where the root's origin is, from the snout [m]."""
+        robot = self.outline.robot
+        number = [segment.name for segment in robot.axis].index(robot.root)
+        return stations(robot)[number][0] + robot.axis[number].front
+
+    @cached_property
+    def ends(self) -> Float[np.ndarray, " end"]:
+        """Arc lengths between which the parts lie, the first and the last those of the body [m]."""
+        places, length = np.sort(self.outline.places), self.outline.robot.length
+        coarse, each = [0.0, *places.tolist(), length], length / self.parts
+        fine = [np.linspace(a, b, max(int((b - a) / each), 1), endpoint=False) for a, b in pairwise(coarse)]
+        return np.array([*np.concatenate(fine), length])
+
+    @property
+    def cuts(self) -> tuple[float, ...]:
+        """Arc lengths at which the body is divided [m]."""
+        return tuple(self.ends[1:-1].tolist())
+
+    @cached_property
+    def links(self) -> Float[np.ndarray, " part"]:
+        """Which link between two joints each part belongs to, from the head on [-]."""
+        middle = 0.5 * (self.ends[1:] + self.ends[:-1])
+        return np.searchsorted(np.sort(self.outline.places), middle)
+
+    @cached_property
+    def _shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """How headings depend on the joints: between stations, at stations, and at the root."""
+        s = self.outline.s
+        at_root = self.outline.joints_at(np.array([self.root]))
+        return self.outline.joints_at(0.5 * (s[1:] + s[:-1])), self.outline.joints_at(s), at_root[0]
+
+    def midline(self, place: np.ndarray) -> Points:
+        """Return the stations in a posture; places and their derivatives follow by summing tangents from the root."""
+        middle, station, at_root = self._shares
+        step, joints = self.outline.robot.length / (self.outline.stations - 1), place[3:]
+        bend, heading = (place[2] + (share - at_root) @ joints for share in (middle, station))
+        tangent = step * np.stack([np.cos(bend), np.sin(bend)])
+        normal = np.stack([-tangent[1], tangent[0]])
+        turns = np.column_stack([np.ones(bend.size), middle - at_root])
+        summed = [_summed(line) for line in tangent]
+        swept = np.stack([_summed(line[:, None] * turns) for line in normal])
+        s = self.outline.s
+        where = np.stack([line - np.interp(self.root, s, line) for line in summed])
+        away = np.stack([[column - np.interp(self.root, s, column) for column in line.T] for line in swept])
+        along = np.zeros((2, s.size, self.size))
+        along[0, :, 0] = along[1, :, 1] = 1.0
+        along[:, :, 2:] = away.swapaxes(1, 2)
+        turning = np.zeros((s.size, self.size))
+        turning[:, 2], turning[:, 3:] = 1.0, station - at_root
+        return Points(where + place[:2, None], heading, along, turning)
+
+    def centres(self, place: np.ndarray) -> Points:
+        """Return the middles of the parts in a posture."""
+        line, s = self.midline(place), self.outline.s
+        at = 0.5 * (self.ends[1:] + self.ends[:-1])
+
+        def between(values: np.ndarray) -> np.ndarray:
+            """Return values at the middles of values at the stations, along the axis before the last."""
+            k = np.clip(np.searchsorted(s, at) - 1, 0, s.size - 2)
+            share = ((at - s[k]) / (s[k + 1] - s[k]))[:, None]
+            return (1 - share) * values[..., k, :] + share * values[..., k + 1, :]
+
+        where = between(line.place[..., None])[..., 0]
+        return Points(where, between(line.heading[:, None])[:, 0], between(line.along), between(line.turning))
+
+    @cached_property
+    def _weights(self) -> np.ndarray:
+        """Share of the body's volume at each station, which a centre that the grid follows is made with [-]."""
+        wide, high = self.outline.silhouette
+        return np.asarray(wide * high / (wide * high).sum())
+
+    def state(self, posture: Posture, least: float) -> Seen:
+        """Return the midline about its centre, and where the centre is and how it moves, in the frame of the flow.
+
+        Args:
+            posture: of the chain.
+            least: half-width below which the body is thickened [m].
+        """
+        line = self.midline(posture.place)
+        rate, turn = line.along @ posture.rate, line.turning @ posture.rate
+        centre, drift = line.place @ self._weights, rate @ self._weights
+        (x, y), (u, v) = line.place - centre[:, None], rate - drift[:, None]
+        bare = flow.MidlineState(
+            x=x, y=y, heading=line.heading, half_width=self.outline.silhouette.half_width, x_rate=u, y_rate=v,
+            heading_rate=turn,
+        )  # fmt: skip
+        pose = flow.Pose(position=(centre[0], centre[1]), velocity=(drift[0], drift[1]))
+        return (bare.thickened(least) if least > 0.0 else bare), pose
+
+    def force(self, place: np.ndarray, loads: flow.Loads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
+        """Return the generalised force of what acts on the parts [N, N m; in the plane per metre of depth].
+
+        Args:
+            place: posture at the end of the step.
+            loads: on the parts; torques about ``loads.about``.
+            origin: of the grid's frame in the world of the flow [m].
+        """
+        points = self.centres(place)
+        pull, turn = loads.forces[:, :2], loads.torques[:, -1]
+        off = points.place.T - origin - loads.about[:2]
+        own = turn - (off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0])
+        return np.einsum("cpk,pc->k", points.along, pull) + own @ points.turning
+
+    def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:
+        """Return the motion of the parts as rigid pieces.
+
+        Args:
+            place: posture.
+            rate: of the coordinates [m/s, rad/s].
+            origin: of the grid's frame in the world of the flow [m].
+            axes: of the flow [-].
+        """
+        points = self.centres(place)
+        about, linear = points.place.T - origin, (points.along @ rate).T
+        turn = (points.turning @ rate)[:, None]
+        if axes == 3:
+            about, linear = (np.column_stack([part, np.zeros(len(part))]) for part in (about, linear))
+            turn = np.column_stack([np.zeros((len(turn), 2)), turn])
+        return Twists(about=about, linear=linear, angular=turn)
+
+    def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
+        """Return the motions of the parts for a unit rate of each coordinate; see ``twists``."""
+        return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
+
+    def body(self, path: "Path", axes: int, least: float, half_height: np.ndarray) -> flow.Midline | flow.Trunk:
+        """Return the robot as a body of the flow that goes along a path."""
+
+        def spine(time: float) -> flow.MidlineState:
+            return path.seen(time, lambda posture: self.state(posture, least))[0]
+
+        if axes == 2:
+            return flow.Midline(spine=spine, cuts=self.cuts)
+        return flow.Trunk(spine=spine, half_height=half_height, cuts=self.cuts)
+
+    def motion(self, path: "Path", axes: int, least: float) -> Callable[[float], flow.Pose]:
+        """Return where the centre of the same body is along a path."""
+        return lambda time: path.seen(time, lambda posture: self.state(posture, least))[1].along(axes)
+
+
+def _summed(steps: np.ndarray) -> np.ndarray:
+    """Return where steps along the first axis lead from nothing."""
+    return np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
+
+
+class Path:
+    """A chain's way through one step: the cubic that has its places and rates at both ends."""
+
+    def __init__(self, time: float, posture: Posture) -> None:
+        self._start, self._end, self._times = posture, posture, (time, time)
+        self._known: dict[float, Seen] = {}
+
+    def seen(self, time: float, state: Callable[[Posture], Seen]) -> Seen:
+        """Return what a function makes of the posture at a time [s], made once a step; always ask for the same one."""
+        if time not in self._known:
+            self._known[time] = state(self.at(time))
+        return self._known[time]
+
+    def go(self, time: float, posture: Posture, end: float, then: Posture) -> None:
+        """Go from a posture at a time to another [s]."""
+        self._times, self._start, self._end = (time, end), posture, then
+        self._known.clear()
+
+    def at(self, time: float) -> Posture:
+        """Return the posture at a time [s]; beyond the ends it goes on at their rates."""
+        (first, last), (p, v), (q, w) = self._times, self._start, self._end
+        if time <= first or last == first:
+            return Posture(p + (time - first) * v, v)
+        if time >= last:
+            return Posture(q + (time - last) * w, w)
+        h = last - first
+        t = (time - first) / h
+        place = (1 + 2 * t) * (1 - t) ** 2 * p + h * t * (1 - t) ** 2 * v
+        place = place + t * t * (3 - 2 * t) * q + h * t * t * (t - 1) * w
+        rate = 6 * t * (1 - t) * (q - p) / h + (1 - t) * (1 - 3 * t) * v + t * (3 * t - 2) * w
+        return Posture(place, rate)

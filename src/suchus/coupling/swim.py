@@ -1,0 +1,385 @@
+"""Robot and flow solved together, step by step.
+
+In each step of the flow the robot goes first, under the force of the last step and the added mass; the flow follows;
+then the robot goes through the same time again under the force that the flow found, and the water gets what that
+changes by one solve of the pressure equation (``flow.twist``). With F the generalised force of the water, A the added
+mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
+were found last. What the robot was told in its last go, less what the flow says then, is the residual.
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+from math import prod
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from suchus import flow
+from suchus.coupling.chain import Chain, Path, Posture
+from suchus.coupling.recorded import Series, recorded
+from suchus.design import layout
+from suchus.design.scale import control_period, physics_step
+from suchus.design.water import Water
+from suchus.errors import Diverged, InvalidDesign, OutsideLimits
+from suchus.fault import check_faults
+from suchus.flow.progress import Bar
+from suchus.land.run import Run, check_pushes
+from suchus.land.stepper import PlaneState, Stepper, Stretch
+from suchus.land.waters import Slice
+from suchus.motion import check_limits, cycle_targets
+from suchus.progress import Progress
+from suchus.water import Outline, cycle, displaced, recoil
+from suchus.water.immersed import folded, half_heights
+from suchus.water.setting import DENSITY, SwimSetting
+
+OFF_PLANE = 0.12
+"""Angle by which a joint may leave the plane that the flow takes the body to stay in [rad]."""
+LOST = 1.0
+"""Residual from which a step counts as one that does not converge [-]: the force that is left over is as large as the
+greatest so far."""
+PATIENCE = 5
+"""Steps in a row that may do so [-]: at the start there is hardly any force to compare with."""
+LONGEST = 1.25
+"""Step of the flow over the time in which a cycle's waves go on by a cell, at most [-]: at rest it has no bound of its
+own, and while the robot swims it takes some 0.9."""
+FINER = 5
+"""Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
+_ROUNDS, _SETTLED = 10, 1e-4
+"""Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
+and the change of the acceleration, over its size, at which they have [-]."""
+_WIDER = 1.25
+"""Swing that the box has room for, over that of the commanded midline [-]."""
+
+
+class Swim:
+    """One run whose water is a flow, from rest.
+
+    Args:
+        run: with a ``Slice`` or a ``Space``.
+        duration: [s].
+        timestep: of the physics [s]; None for the largest that the robot's size and ``FINER`` allow.
+        thread_count: of the flow.
+
+    Raises:
+        InvalidDesign: a gait or a controller that leaves the plane, a robot that sinks, or a grid that cannot carry it.
+        OutsideLimits: a gait that the robot's joints cannot follow.
+    """
+
+    def __init__(
+        self, run: Run, duration: float, *, timestep: float | None = None, thread_count: int | None = None
+    ) -> None:
+        water = run.solved
+        assert water is not None
+        self.run, self.water = run, water
+        self._check(duration)
+        self.chain = Chain(Outline(run.robot, water.cells + 1), water.parts)
+        self._axes = 2 if isinstance(water, Slice) else 3
+        self._times = self.depth if isinstance(water, Slice) else 1.0
+        self._swing = self._expected_swing()
+        self.timestep = self._physics_step() if timestep is None else timestep
+        self.ticks = round(duration / control_period(run.robot))
+        self.stepper = Stepper(run, self.chain.joints, self.timestep, self.ticks)
+        self._signs = np.ones(self.chain.size)
+        self._signs[:2] = -1.0
+        start = self.stepper.state.place
+        self._corner = np.array([self.chain.root + start[0], start[1]])
+        self.path = Path(0.0, self._seen(self.stepper.state))
+        self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
+        self.series = Series()
+        self._force = np.zeros(self.chain.size)
+        self._push = np.zeros(self.chain.size)
+        self._added = np.zeros((self.chain.size, self.chain.size))
+        self._kept = self._added
+        self._computed: np.ndarray | None = None
+        self._greatest, self._strikes = 0.0, 0
+        self._renew()
+        self._start_added = self._added
+
+    # --- what is set up ----------------------------------------------------------------------------------------
+
+    def _check(self, duration: float) -> None:
+        run = self.run
+        check_limits(run.robot, run.gait)
+        check_faults(run.faults, run.robot, duration)
+        check_pushes(run.pushes, run.robot, duration)
+        if not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
+            raise InvalidDesign(
+                f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
+                'that does; take water="sections".'
+            )
+        self._check_plane()
+        for name in ("depth", "pitch"):
+            if getattr(run.control, name, None) is not None:
+                raise InvalidDesign(
+                    f"the control holds the {name}, and in a {type(self.water).__name__.lower()} the body stays in its "
+                    f'plane: leave out {name}, or take water="sections".'
+                )
+
+    def _check_plane(self) -> None:
+        """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
+
+        Raises:
+            InvalidDesign: naming the servo.
+        """
+        robot, gait, place = self.run.robot, self.run.gait, layout(self.run.robot)
+        angles = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 24, endpoint=False))
+        lateral = {servo.name for servo in Outline(robot, 33).servos}
+        axis = {hinge.name for hinge in robot.axis_hinges} | {cable.name for cable in robot.cables}
+        for number, name in enumerate(place.servos):
+            swing, far = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
+            if name not in lateral and (swing > OFF_PLANE or (name in axis and far > OFF_PLANE)):
+                what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
+                raise InvalidDesign(
+                    f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
+                    f"rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
+                    'does, say motion.swimming_gait, or water="sections".'
+                )
+
+    @property
+    def depth(self) -> float:
+        """Depth of the water of a slice [m]."""
+        given = getattr(self.water, "depth", None)
+        if given is not None:
+            return float(given)
+        outline = self.chain.outline
+        wide, _ = outline.silhouette
+        return displaced(outline, 1.0) / float(np.trapezoid(2 * wide, outline.s))
+
+    @property
+    def viscosity(self) -> float:
+        """Kinematic viscosity of the water [m2/s]."""
+        return self.run.robot.length**2 / (self.run.gait.period * self.water.reynolds)
+
+    def _expected_swing(self) -> float:
+        """Return how far the commanded midline swings to a side [m]."""
+        outline = Outline(self.run.robot, 65)
+        return float(np.abs(cycle(outline, self.run.gait, *recoil(outline, self.run.gait, 0.0, Water())).y).max())
+
+    def _physics_step(self) -> float:
+        """Return the largest step of the physics that divides a control period often enough [s]."""
+        period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
+        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, cell)
+        most = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
+        return float(period / np.ceil(period / most * (1 - 1e-9)))
+
+    @cached_property
+    def half_height(self) -> Float[np.ndarray, " station"]:
+        """Half of the body's height at the stations [m]."""
+        return half_heights(self.chain.outline, self.water.tail_height)
+
+    @property
+    def _least(self) -> float:
+        blunt = self.water.blunt if isinstance(self.water, Slice) else 0.0
+        return blunt * self.run.robot.length / self.water.cells
+
+    def _setup(self) -> flow.Setup:
+        robot, axes = self.run.robot, self._axes
+        setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
+        grid = setting.grid(robot.length, _WIDER * self._swing, float(self.half_height.max()))
+        shape = self.chain.body(self.path, axes, self._least, self.half_height)
+        if self.water.limbs:
+            assert isinstance(shape, flow.Trunk)
+            shape = flow.Limbed(
+                spine=shape.spine, half_height=shape.half_height, cuts=shape.cuts, limbs=folded(robot)
+            )  # fmt: skip
+        body = flow.Body(shape=shape, motion=self.chain.motion(self.path, axes, self._least), name=robot.name)
+        sides = flow.Sides(low=flow.Mirror()) if axes == 3 else flow.Sides()
+        return flow.Setup(
+            grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
+            tolerance=setting.largest_divergence(),
+        )  # fmt: skip
+
+    # --- between the robot's world and the flow's --------------------------------------------------------------
+
+    def _seen(self, state: PlaneState) -> Posture:
+        """Return a state of the robot in the frame of the flow."""
+        place, rate = self._signs * state.place, self._signs * state.rate
+        place[:2] += self._corner
+        return Posture(place, rate)
+
+    @property
+    def _origin(self) -> np.ndarray:
+        return np.array(self.sim.frame[0, :2])
+
+    def _found(self, posture: Posture) -> np.ndarray:
+        """Return the generalised force of the water in the last step, along the robot's own coordinates."""
+        loads = self.sim.last(self.run.robot.name)
+        return self._times * self._signs * self.chain.force(posture.place, loads, self._origin)
+
+    # --- going on ----------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """How far it has come [s]."""
+        return self.stepper.time
+
+    def _renew(self) -> None:
+        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin."""
+        posture = self.path.at(self.time)
+        settled = len(self.series.time) == 1
+        if self._computed is not None and not settled:
+            bent = np.abs(posture.place[2:] - self._computed[2:]).max()
+            if bent < self.water.renewed:
+                return
+        self._computed = posture.place
+        before = self._added
+        modes = self.chain.modes(posture.place, self._origin, self._axes)
+        found = self.sim.added_mass(self.run.robot.name, modes)
+        self._added = self._times * self._signs[:, None] * found * self._signs
+        if len(self.series.time):
+            inertia = self.stepper.mass() + before
+            apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
+            self.series.radius.append((self.time, float(np.abs(apart).max())))
+        self._kept = self.stepper.burden(self._added)
+
+    def _gone(self, count: int, force: np.ndarray, push: np.ndarray) -> tuple[Stretch, np.ndarray]:
+        """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
+
+        Returns the stretch, and the mean acceleration in it.
+        """
+        h, before = count * self.timestep, self.stepper.state_at_begin.rate
+        left = self._added - self._kept
+        inertia = self.stepper.mass() + self._kept
+        guess = push
+        newton = np.eye(len(force)) + np.linalg.solve(inertia, left)  # servos make it another; Broyden finds which
+        missing = change = np.zeros_like(push)
+        for round_ in range(_ROUNDS):
+            stretch = self.stepper.go(count, force + self._added @ push - left @ guess)
+            found = (stretch.end.rate - before) / h
+            last, missing = missing, found - guess
+            if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
+                break
+            if round_:
+                newton += np.outer(last - missing - newton @ change, change) / (change @ change)
+            change = np.linalg.solve(newton, missing)
+            guess = guess + change
+        return stretch, found
+
+    def _size(self, force: np.ndarray) -> float:
+        """Return the size of a generalised force, each coordinate's over the root of its inertia."""
+        return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added)).sum()))
+
+    def step(self, until: float) -> None:
+        """Take one step of the flow and of the robot that does not go beyond a time [s].
+
+        Raises:
+            Diverged: robot or flow did, or the two do not come to terms; with the record so far.
+            OutsideLimits: the water is so fast that the flow's step falls below the physics'.
+            InvalidDesign: the robot leaves the plane, or the box.
+        """
+        stepper, sim, name = self.stepper, self.sim, self.run.robot.name
+        allowed = sim.next_step()
+        if allowed < self.timestep:
+            raise OutsideLimits(
+                f"at t = {self.time:.4g} s the flow allows a step of {allowed:.3g} s, less than the "
+                f"{self.timestep:.3g} s of the robot's physics; take a timestep of at most {0.5 * allowed:.2g} s, or "
+                "coarser cells."
+            )
+        allowed = min(allowed, LONGEST * self.run.gait.period / self.water.cells)
+        count = stepper.until(until, max(int(allowed / self.timestep), 1))
+        h, start, began = count * self.timestep, self.time, self._seen(stepper.state)
+        stepper.begin()
+        stretch, push = self._gone(count, self._force, self._push)
+        told = self._force - self._added @ (push - self._push)
+        posture = self._seen(stretch.end)
+        self.path.go(start, began, start + h, posture)
+        sim.advance(h)
+        found = self._found(posture)
+        self._greatest = max(self._greatest, self._size(found))
+        left = first = self._size(found - told) / max(self._greatest, 1e-300)
+        made = 0
+        while made < self.water.corrections and left > self.water.tolerance:
+            asked, at = found, push
+            stretch, push = self._gone(count, asked, at)
+            told = asked - self._added @ (push - at)
+            other = self._seen(stretch.end)
+            more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
+            posture = other
+            self.path.go(start, began, start + h, posture)
+            sim.accelerate({name: more})
+            found = self._found(posture)
+            left, made = self._size(found - told) / self._greatest, made + 1
+        self._note(stretch, found, began, posture, (first, left), made)
+        self._force, self._push = found, push
+        self._watch(left)
+        self._renew()
+
+    def _note(
+        self, stretch: Stretch, found: np.ndarray, began: Posture, posture: Posture, residual: tuple[float, float],
+        made: int,
+    ) -> None:  # fmt: skip
+        series = self.series
+        loads = self.sim.last(self.run.robot.name)
+        h = self.time - (series.time[-1] if series.time else 0.0)
+        way = self._signs * (posture.place - began.place)
+        power = self._times * loads.whole.power - float(self._times * np.dot(loads.whole.force, self._drift()))
+        series.time.append(self.time)
+        series.force.append(found)
+        series.links.append(self._links(posture, loads))
+        series.residual.append(residual)
+        series.corrections.append(made)
+        series.worked.append((stretch.worked, stretch.yielded, float(found @ way), -power * h))
+        series.energy.append(stretch.energy)
+
+    def _drift(self) -> np.ndarray:
+        return np.asarray(self.sim.drift)
+
+    def _links(self, posture: Posture, loads: flow.Loads) -> np.ndarray:
+        """Return what acts on each link, the torque about its middle, in the world."""
+        links, count = self.chain.links, int(self.chain.links.max()) + 1
+        points = self.chain.centres(posture.place).place.T - self._origin
+        pull, turn = loads.forces[:, :2], loads.torques[:, -1]
+        out = np.zeros((count, 3))
+        for link in range(count):
+            mine = links == link
+            middle = points[mine].mean(axis=0) - loads.about[:2]
+            total = pull[mine].sum(axis=0)
+            out[link] = -total[0], -total[1], turn[mine].sum() - (middle[0] * total[1] - middle[1] * total[0])
+        return self._times * out
+
+    def _watch(self, left: float) -> None:
+        """Refuse what has left the plane, or does not converge."""
+        name, bend = self.stepper.off_plane
+        if abs(bend) > OFF_PLANE:
+            raise InvalidDesign(
+                f"at t = {self.time:.4g} s joint {name} is bent by {bend:.3g} rad out of the plane that the flow takes "
+                f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, or "
+                'water="sections".'
+            )
+        self._strikes = self._strikes + 1 if left > LOST or not np.isfinite(left) else 0
+        if self._strikes >= PATIENCE or not np.isfinite(left):
+            raise Diverged(
+                f"at t = {self.time:.4g} s robot and flow do not come to terms: a force of {left:.3g} times the "
+                f"greatest so far is left over after {self.water.corrections} corrections; allow more corrections "
+                f"(now {self.water.corrections}), or take more cells.", time=self.time,
+            )  # fmt: skip
+
+    def go(
+        self, until: float, *, progress: Progress | None = None, watch: Callable[["Swim"], None] | None = None
+    ) -> None:  # fmt: skip
+        """Go on until a time, a whole number of control periods [s].
+
+        Raises:
+            Diverged: see ``step``; with the record so far.
+        """
+        cells = prod(self.sim.setup.grid.cells)
+        with Bar(self.time, until, cells, show=progress is None) as bar:
+            while self.time < until - 0.5 * self.timestep:
+                try:
+                    self.step(until)
+                except Diverged as error:
+                    self.stepper.end(self.time, str(error))
+                    raise Diverged(str(error), time=self.time, record=self.record()) from error
+                if watch is not None:
+                    watch(self)
+                bar.move(self.time)
+                if progress is not None:
+                    progress("swimming", self.time / until)
+        self.stepper.finish()
+
+    # --- what is kept ------------------------------------------------------------------------------------------
+
+    def record(self) -> xr.Dataset:
+        """Return the record so far, in the schema of a run with ``record.WATER`` and ``record.COUPLED``; NaN beyond."""
+        return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)

@@ -1,0 +1,269 @@
+"""One robot with its servos, springs, controller and troubles, stepped by whoever knows what the water does to it.
+
+Time goes on in stretches of whole physics steps. A stretch can be gone through as often as it takes until force and
+motion agree: it begins each time in the same state, and what the controller commanded the first time is kept.
+
+The root moves in its plane, along, to the left and about the vertical; the others of its coordinates are as good as
+locked, by an inertia that ``LOCKED`` times exceeds the robot's.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import mujoco
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+from mujoco.batch import SimulationError
+
+from suchus import hydro
+from suchus.control import Command
+from suchus.design import layout
+from suchus.errors import Diverged
+from suchus.land.loop import Loop
+from suchus.land.readings import Recorder
+from suchus.land.run import Run
+from suchus.model import joint_addresses
+
+LOCKED = 1e7
+"""Inertia of the root against heave, roll and pitch, over the robot's own [-]."""
+_PLANE, _ACROSS = (0, 1, 5), (2, 3, 4)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneState:
+    """Where the root and some joints are in the plane, and how fast they move; shapes (coordinate,)."""
+
+    place: Float[np.ndarray, " coordinate"]
+    """Root along, to the left and its yaw, then the joints [m, rad]."""
+    rate: Float[np.ndarray, " coordinate"]
+    """Their rates [m/s, rad/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """What became of the robot in a stretch of time."""
+
+    end: PlaneState
+    """State at its end."""
+    worked: float
+    """Work of the servos on the joints [J]."""
+    yielded: float
+    """Work of springs, dampers, friction and joint limits on the joints [J]."""
+    energy: float
+    """Kinetic energy at its end, the water's not counted [J]."""
+
+
+@dataclass(slots=True)
+class _Saved:
+    """A state to begin from."""
+
+    state: np.ndarray
+    step: int
+    last: Command | None
+    commands: dict[int, Command] = field(default_factory=dict)
+
+
+class Stepper:
+    """A run whose water is solved elsewhere.
+
+    Args:
+        run: of one robot.
+        joints: names of those that the water feels beside the root.
+        timestep: of the physics [s], a whole part of the control period.
+        ticks: control periods for which controller, noise and record are prepared.
+    """
+
+    def __init__(self, run: Run, joints: tuple[str, ...], timestep: float, ticks: int) -> None:
+        self._loop = loop = Loop([run], timestep, ticks=ticks + 1)
+        self.timestep, self.period = timestep, loop.period
+        self._per_tick = round(loop.period / timestep)
+        self._batch, self._physics = loop.batch, loop.batch.physics
+        self.model: Any = loop.batch.model
+        self._recorder: Recorder = loop.recorder(ticks + 1)
+        self._ticks = ticks
+        self._places = joint_addresses(self.model, joints)
+        self.dofs = np.array([*_PLANE, *(int(self.model.joint(name).dofadr[0]) for name in joints)])
+        self._other_hinges = [
+            name for name in layout(run.robot).hinges
+            if name not in joints and name in {hinge.name for hinge in run.robot.axis_hinges}
+        ]  # fmt: skip
+        self._data = mujoco.MjData(self.model)
+        self._applied = self._physics.bind("qfrc_applied")
+        self._user = self._physics.bind("userdata")
+        self._works = [self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")]
+        self._whole = np.zeros((self.model.nv, self.model.nv))
+        self.steps = 0
+        self.state_at_begin: PlaneState = self.state
+        """State in which the present stretch began."""
+        self._saved: _Saved | None = None
+        self._last: Command | None = None
+        self.burden(np.zeros((len(self.dofs), len(self.dofs))))
+        self._physics.forward()
+        self._batch.read(slice(None))
+
+    # --- where it is -------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Time since the beginning [s]."""
+        return self.steps * self.timestep
+
+    @property
+    def state(self) -> PlaneState:
+        """Root and joints now."""
+        qpos, qvel = self._batch.qpos[0], self._batch.qvel[0]
+        w, x, y, z = qpos[3:7]
+        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        return PlaneState(
+            place=np.array([qpos[0], qpos[1], yaw, *qpos[self._places]]), rate=np.array(qvel[self.dofs])
+        )  # fmt: skip
+
+    @property
+    def off_plane(self) -> tuple[str, float]:
+        """Joint of the axis that is bent out of the plane the most, and by how much [rad]; an empty name for none."""
+        bends = {
+            name: float(self._batch.qpos[0, int(self.model.joint(name).qposadr[0])]) for name in self._other_hinges
+        }
+        worst = max(bends, key=lambda name: abs(bends[name]), default="")
+        return worst, bends.get(worst, 0.0)
+
+    def mass(self) -> Float[np.ndarray, "coordinate coordinate"]:
+        """Return the mass matrix of the coordinates as they are now, without the water's [kg, kg m, kg m2]."""
+        self._look()
+        return np.array(self._whole[np.ix_(self.dofs, self.dofs)])
+
+    def centre(self) -> Float[np.ndarray, "3"]:
+        """Return the centre of mass in the world [m]."""
+        self._look()
+        return np.array(self._data.subtree_com[1])
+
+    def _look(self) -> None:
+        data, model = self._data, self.model
+        data.qpos[:], data.qvel[:] = self._batch.qpos[0], self._batch.qvel[0]
+        data.userdata[:] = 0.0
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_crb(model, data)
+        mujoco.mj_fullM(model, data, self._whole)
+
+    # --- what the water does -----------------------------------------------------------------------------------
+
+    def burden(self, added: Float[np.ndarray, "coordinate coordinate"]) -> Float[np.ndarray, "coordinate coordinate"]:
+        """Let joints and root have an added mass from now on; return how much of it MuJoCo's matrix has room for.
+
+        It has none between joints on different branches of the tree, as trunk and tail. What it takes in the place of
+        these is never too little in any motion, so that the matrix stays positive definite.
+        """
+        model = self.model
+        whole = np.zeros((model.nv, model.nv))
+        whole[np.ix_(self.dofs, self.dofs)] = added
+        heavy = LOCKED * float(model.body_mass.sum())
+        for dof in _ACROSS:
+            whole[dof, dof] = heavy
+        rows = np.repeat(np.arange(model.nv), model.M_rownnz)
+        columns = np.array(model.M_colind)[: len(rows)]
+        room = np.zeros(whole.shape, bool)
+        room[rows, columns] = room[columns, rows] = True
+        whole = np.where(room, whole, 0.0) + _above(np.where(room, 0.0, whole), room)
+        self._user[0, hydro.NUMBERS :] = 0.0
+        self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)] = whole[rows, columns]
+        return np.array(whole[np.ix_(self.dofs, self.dofs)])
+
+    # --- going on ----------------------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """Begin a stretch here."""
+        self.state_at_begin = self.state
+        self._saved = _Saved(self._physics.state[0].copy(), self.steps, self._last)
+
+    def until(self, time: float, most: int) -> int:
+        """Return how many physics steps the next stretch may have, so that none goes beyond a time [s]."""
+        return max(min(most, round(time / self.timestep) - self.steps), 1)
+
+    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> Stretch:
+        """Go through the stretch that was begun, in so many steps, under a constant force of the water.
+
+        Args:
+            count: physics steps.
+            force: along the coordinates, that on a body that does not accelerate; the added mass comes on top [N, N m].
+
+        Raises:
+            Diverged: the physics did.
+        """
+        saved = self._saved
+        assert saved is not None
+        kept = self._user[0].copy()
+        self._physics.state[0] = saved.state
+        self._user[0] = kept
+        self.steps, self._last = saved.step, saved.last
+        self._applied[0] = 0.0
+        self._applied[0, self.dofs] = force
+        worked = yielded = 0.0
+        for _ in range(count):
+            if self.steps % self._per_tick == 0:
+                self._decide(saved)
+            assert self._last is not None
+            self._batch.ctrl[0] = self._last.targets[0]
+            before = self._batch.qvel[0].copy()
+            try:
+                self._physics.step(None, 1, int(mujoco.mjtStage.mjSTAGE_VEL))
+            except SimulationError as error:
+                raise Diverged(
+                    f"at t = {self.time:.4g} s the robot in the flow diverged: {self._physics.error(0)}; take a "
+                    f"shorter timestep than {self.timestep:g} s.", time=self.time,
+                ) from error  # fmt: skip
+            way = 0.5 * self.timestep * (before + self._batch.qvel[0])
+            own, passive, held = (float(part[0] @ way) for part in self._works)
+            worked, yielded = worked + own, yielded + passive + held
+            self.steps += 1
+        self._look()
+        rate = self._batch.qvel[0]
+        return Stretch(
+            end=self.state, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate)
+        )  # fmt: skip
+
+    def _decide(self, saved: _Saved) -> None:
+        """Take the command of a control period, which is thought of once, and keep a sample."""
+        tick = self.steps // self._per_tick
+        again = tick in saved.commands
+        if not (again and self.steps == saved.step):  # then the sensors are those of the end of the last go
+            self._batch.read(slice(None))
+        if not again:
+            self._loop.tick = self._loop.clocks[:] = tick
+            self._loop.decide()
+            saved.commands[tick] = self._loop.command
+        self._last = saved.commands[tick]
+        if not (again and self.steps == saved.step):
+            self._store(tick)
+
+    def _store(self, tick: int) -> None:
+        assert self._last is not None
+        if tick <= self._ticks:
+            self._recorder.store(tick, self._last.phase, self._last.targets)
+
+    def finish(self) -> None:
+        """Keep the last sample, if the run has come to the end of a control period."""
+        if self.steps % self._per_tick == 0:
+            self._batch.read(slice(None))
+            self._store(self.steps // self._per_tick)
+
+    def end(self, time: float, cause: str) -> None:
+        """Let the run have ended at a time [s], with the last samples that were taken until then."""
+        self._batch.alive[0], self._batch.ended[0], self._batch.cause[0] = False, time, cause
+
+    def record(self) -> xr.Dataset:
+        """Return what was read, in the schema of a run; NaN where nothing has been yet."""
+        return self._recorder.record(np.arange(self._ticks + 1) * self.period)
+
+
+def _above(left: Float[np.ndarray, "n n"], room: Bool[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
+    """Return a matrix that is nowhere smaller than another one, as quadratic forms, with entries where there is room.
+
+    Between two branches it is the absolute value, else a diagonal of sums.
+    """
+    values, vectors = np.linalg.eigh(left)
+    size = (vectors * np.abs(values)) @ vectors.T
+    if np.abs(np.where(room, 0.0, size)).max() <= 1e-9 * np.abs(size).max(initial=1e-300):
+        return np.where(room, size, 0.0)
+    return np.diag(np.abs(left).sum(axis=1))

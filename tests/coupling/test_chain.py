@@ -1,0 +1,80 @@
+"""The midline over a robot's joints: where its ends are, its derivatives, and what a force asks of the joints."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from suchus import flow
+from suchus.coupling.chain import Chain, Path, Posture
+from suchus.flow.momentum import Reaction
+from suchus.model import compile_model, joint_addresses
+from suchus.robots import ROBOTS
+from suchus.water import Outline
+
+NAMES = ("floating_caiman", "swimmer", "salamander")
+
+
+def chain(name, cells=80):
+    return Chain(Outline(ROBOTS[name], cells + 1), 45)
+
+
+def bent(one, size=0.15):
+    rng = np.random.default_rng(3)
+    return np.array([0.3, -0.2, 0.4, *size * rng.uniform(-1, 1, len(one.joints))])
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("size", "off"), [(0.0, 1e-9), (0.1, 0.03)])  # bends are smeared, and so cut corners
+def test_the_ends_of_the_midline_are_where_the_robot_has_them(name, size, off):
+    one = chain(name)
+    model = compile_model(one.outline.robot)
+    data = mujoco.MjData(model)
+    place = bent(one, size)
+    data.qpos[:3], data.qpos[3], data.qpos[6] = (-place[0], -place[1], 0.0), np.cos(place[2] / 2), np.sin(place[2] / 2)
+    data.qpos[joint_addresses(model, one.joints)] = place[3:]
+    mujoco.mj_kinematics(model, data)
+    line = one.midline(place).place
+    for end, site in ((0, "snout"), (-1, "tail_tip")):
+        assert line[:, end] == pytest.approx(-data.site(site).xpos[:2], abs=off * one.outline.robot.length)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_derivatives_are_those_of_the_places(name):
+    one = chain(name)
+    place, step = bent(one), 1e-6
+    for points in (one.midline, one.centres):
+        here = points(place)
+        for k, unit in enumerate(np.eye(one.size)):
+            ahead, behind = points(place + step * unit), points(place - step * unit)
+            assert here.along[:, :, k] == pytest.approx((ahead.place - behind.place) / (2 * step), abs=1e-8)
+            assert here.turning[:, k] == pytest.approx((ahead.heading - behind.heading) / (2 * step), abs=1e-8)
+
+
+def test_the_work_of_a_force_is_that_of_its_parts():
+    one, rng = chain("floating_caiman"), np.random.default_rng(1)
+    place, rate = bent(one), rng.normal(size=one.size)
+    origin, about = np.array([0.1, -0.3]), np.array([0.4, 0.2])
+    count = len(one.ends) - 1
+    pull, own = rng.normal(size=(count, 2)), rng.normal(size=count)
+    points = one.centres(place)
+    off = points.place.T - origin - about
+    moments = own + off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0]
+    parts = tuple(Reaction(force=(*f,), moment=(m,), power=0.0) for f, m in zip(pull.tolist(), moments, strict=True))
+    loads = flow.Loads(about=about, whole=parts[0], parts=parts)
+    moved = one.twists(place, rate, origin, 2)
+    work = (pull * moved.linear).sum() + (own * moved.angular[:, 0]).sum()
+    assert one.force(place, loads, origin) @ rate == pytest.approx(work, rel=1e-12)
+
+
+def test_a_path_has_the_places_and_rates_of_both_ends():
+    start, end = (
+        Posture(np.array([0.0, 1.0]), np.array([2.0, -1.0])),
+        Posture(np.array([0.3, 0.7]), np.array([1.0, 0.5])),
+    )
+    path = Path(0.0, start)
+    path.go(1.0, start, 1.2, end)
+    for time, posture in ((1.0, start), (1.2, end)):
+        assert path.at(time).place == pytest.approx(posture.place)
+        assert path.at(time).rate == pytest.approx(posture.rate)
+    ahead, behind = path.at(1.07 + 1e-6), path.at(1.07 - 1e-6)
+    assert path.at(1.07).rate == pytest.approx((ahead.place - behind.place) / 2e-6, abs=1e-6)
