@@ -77,6 +77,12 @@ def test_bad_places_are_one_sentence(tmp_path, capsys):
         ("grip.toml --out /dev/null/here", "cannot be written"),
         ("grip.toml --out .", "holds no study"),
         ("grip.toml --finished", "--finished is for claims only"),
+        ("grip.toml --only terrain", "--only is for claims only"),
+        (
+            "claims --only terain --out nowhere",
+            "terain cannot be asked again; those that can are bipedal_reach, ",
+        ),
+        ("claims --finished --only terrain --out nowhere", "nowhere holds too few points"),
         ("claims --finished --out nowhere", "nowhere/compared_2ms holds no study; start it first"),
     ):
         assert main(["study", *words.split()]) == 2

@@ -17,6 +17,7 @@ from suchus.study.claim_measures import RUNS, asked_rules
 from suchus.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
 from suchus.study.claims_table import claim_row, deciders, turned
 from suchus.study.claims_table import shares as shares_of
+from suchus.verdict import RULES
 from suchus.verdict.judging import Share, digest
 
 EVERY = Catalog.beside
@@ -84,9 +85,11 @@ def test_the_shares_are_written_as_the_verdicts_read_them(conducted):
     assert written["source"]["runs"] == deciding()["source"]
     for claim, row in written["claims"].items():
         share = Share(claim=claim, **row)
+        assert (share.of, share.rule) == ("", RULES[claim].asked)
         one = record.sel(claim=claim)
-        assert share.share == float(one.holds.mean())
-        assert share.designs == 2
+        judged = np.isfinite(one.number.values)  # of a claim of a control group those designs on which it walks
+        assert share.share == float(one.holds.values[judged].mean())
+        assert share.designs == judged.sum() > 0
         assert share.low < share.share or share.share == 0.0
 
 
@@ -125,7 +128,7 @@ def test_what_turns_a_claim_is_told_where_designs_disagree():
     assert turned([row | {"true": 0.6}]) == {"tail_swing": "lift (gait) below 0.03 m"}
     assert turned([row | {"true": 0.91}]) == turned([row | {"true": 0.09}]) == {}
     assert turned([row | {"true": 0.6, "border": None}]) == {}
-    assert shares_of([row | {"true": 0.6, "samples": 0}]) == {}
+    assert shares_of([row | {"true": 0.6, "samples": 0}], {}) == {}
 
 
 def test_a_parameter_that_goes_with_a_stronger_one_is_not_named_beside_it():

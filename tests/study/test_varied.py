@@ -9,16 +9,17 @@ import pytest
 import xarray as xr
 
 from suchus.design import Robot, value_at
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.record import read_json
 from suchus.robots import ROBOTS
 from suchus.study.answers import share_interval
 from suchus.study.claim_measures import asked_rules, claims_varied
-from suchus.study.claims_table import claim_row
+from suchus.study.claims_table import claim_row, renewed
 from suchus.study.study import Vary
 from suchus.study.varied import LEAST, VariedStudy, conduct_varied, varied_finished, varied_study
 from suchus.verdict import RULES, Varied, varied_of
+from suchus.verdict.judging import digest
 
 CLAIM = "tail_quadratic_small"
 DECLARED = {name: varied_of(name) for name in EXPERIMENTS if varied_of(name) is not None}
@@ -100,6 +101,32 @@ def test_a_study_goes_on_where_it_was_stopped_and_answers_from_what_is_there(tmp
         there.drop_attrs().number, whole.drop_attrs().number.isel(sample=slice(0, there.sizes["sample"]))
     )
     assert json.loads(whole.attrs["made_by"]) == read_json(tmp_path / "gap" / "study.json")["versions"]
+
+
+def test_rows_of_one_experiment_are_put_into_the_table_and_those_of_another_rule_leave_it(tmp_path):
+    record = conduct_varied(study(), tmp_path)
+    row = {"share": 0.5, "low": 0.4, "high": 0.6, "designs": 9, "turned_by": "", "at": None, "above": False, "of": ""}
+    rows = {"tail_swing": row | {"rule": RULES["tail_swing"].asked}, "spine_swing": row | {"rule": "another"},
+            CLAIM: row | {"rule": RULES[CLAIM].asked}}  # fmt: skip
+    before = json.dumps({"claims": rows, "samples": 2048, "varied": {"terrain": {"samples": 8}}})
+    table = json.loads(renewed(before, [claim_row(record, CLAIM)], {"gap": record}))
+    assert set(table["claims"]) == {"tail_swing", CLAIM}
+    assert table["claims"]["tail_swing"] == rows["tail_swing"]
+    assert table["claims"][CLAIM]["designs"] == 32
+    assert (table["claims"][CLAIM]["of"], table["claims"][CLAIM]["rule"]) == ("gap", RULES[CLAIM].asked)
+    assert table["digest"] == digest(table["claims"])
+    assert table["samples"] == 2048
+    assert set(table["varied"]) == {"terrain", "gap"}
+    assert table["varied"]["gap"]["samples"] == 32
+
+
+def test_points_of_another_plan_are_refused_with_what_renews_them(tmp_path):
+    conduct_varied(study(samples=8), tmp_path)
+    assert varied_finished(study(samples=8), tmp_path) is not None
+    wider = (Vary(field="robot.tail.gap", low=0.01, high=0.03), study().vary[1])
+    for other in ({"vary": wider}, {"seed": 1}):
+        with pytest.raises(IncompatibleRecord, match=r"another plan.*suchus study claims --only gap"):
+            varied_finished(study(samples=8, **other), tmp_path)
 
 
 def test_a_study_that_varies_nothing_is_refused():

@@ -112,7 +112,7 @@ def test_what_became_of_an_animals_or_a_built_in_claim():
 
 def test_models_that_disagree_confirm_nothing():
     verdict = judge(RULE, said(theory=0.1, slice=-0.2))
-    assert not verdict.held
+    assert verdict.verdict == "models disagree"
     assert not verdict.fragile
 
 

@@ -11,13 +11,15 @@ import xarray as xr
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.cli.terminal import working
+from suchus.errors import UnreadableFile
 from suchus.experiments import EXPERIMENTS
 from suchus.jobs import at_scheduler
 from suchus.jobs.store import RESULTS, TABLE
 from suchus.record import check_name, there, write_tables
 from suchus.study import Claims, answer_finished, conduct, conduct_claims, read_study
-from suchus.study.claims_page import write_claims
+from suchus.study.claims_page import SHARES, write_claims, write_renewed
 from suchus.study.varied import conduct_varied, varied_finished, varied_study
+from suchus.verdict import listed
 
 CLAIMS = "claims"
 
@@ -38,6 +40,9 @@ class StudyOptions:
     """Folder of the store; by default out/studies/NAME. A store of the same study is continued, any other refused."""
     finished: bool = False
     """Only for ``claims``: run nothing, and answer from the samples in the store, the largest power of two of them."""
+    only: tuple[str, ...] = ()
+    """Only for ``claims``: these experiments alone are asked again, without the walks, and their rows are put into the
+    table of shares that ships. With ``--finished`` from what the store holds of them."""
     csv: CSV = False
     """Write the results as CSV files with units in the header too, into the folder csv in the store."""
 
@@ -57,6 +62,8 @@ def study(words: Sequence[str]) -> int:
     if str(options.file) == CLAIMS and not there(options.file):
         return _claims(options)
     spec = read_study(options.file)
+    if options.only:
+        raise BadCommand("--only is for claims only; another study has nothing but its own runs.")
     if options.finished:
         raise BadCommand("--finished is for claims only; other studies write their results when they are complete.")
     if options.samples is not None:
@@ -80,12 +87,19 @@ def _claims(options: StudyOptions) -> int:
     claims = Claims() if options.samples is None else Claims(samples=options.samples)
     folder = options.out or Path("out") / "studies" / CLAIMS
     asked = [study for one in EXPERIMENTS.values() if (study := varied_study(one)) is not None]
+    unknown = [name for name in options.only if name not in {one.name for one in asked}]
+    if unknown:
+        able = listed([one.name for one in asked])
+        raise BadCommand(f"--only {', '.join(unknown)} cannot be asked again; those that can are {able}.")
+    asked = [one for one in asked if not options.only or one.name in options.only]
     if options.finished:
-        record = answer_finished(claims, folder)
+        record = None if options.only else answer_finished(claims, folder)
         answered = {one.name: found for one in asked if (found := varied_finished(one, folder)) is not None}
         return _answered(record, answered, folder)
     with at_scheduler(options.scheduler) as client, working() as bars:
-        record = conduct_claims(claims, folder, progress=bars.reporter(CLAIMS), client=client, jobs=options.jobs)
+        record = None
+        if not options.only:
+            record = conduct_claims(claims, folder, progress=bars.reporter(CLAIMS), client=client, jobs=options.jobs)
         answered = {
             one.name: conduct_varied(one, folder, progress=bars.reporter(one.name), client=client, jobs=options.jobs)
             for one in asked
@@ -93,8 +107,14 @@ def _claims(options: StudyOptions) -> int:
         return _answered(record, answered, folder)
 
 
-def _answered(record: xr.Dataset, varied: Mapping[str, xr.Dataset], folder: Path) -> int:
-    """Write what became of the claims, say where, and return 0."""
+def _answered(record: xr.Dataset | None, varied: Mapping[str, xr.Dataset], folder: Path) -> int:
+    """Write what became of the claims, say where, and return 0.
+
+    Raises:
+        UnreadableFile: there is nothing to answer from.
+    """
+    if record is None:
+        return _renewed(varied, folder)
     result = write_claims(record, folder / "result", varied)
     walked = int((record.status == "walked").sum())
     again = sum(one.sizes["sample"] for one in varied.values())
@@ -102,4 +122,16 @@ def _answered(record: xr.Dataset, varied: Mapping[str, xr.Dataset], folder: Path
         f"{record.sizes['sample']} designs and gaits, {walked} walked, and {again} designs and settings of "
         f"{len(varied)} other experiments; the page is {result / 'index.html'}"
     )
+    return 0
+
+
+def _renewed(varied: Mapping[str, xr.Dataset], folder: Path) -> int:
+    if not varied:
+        raise UnreadableFile(
+            f"{folder} holds too few points of what was asked; leave out --finished, and they are made."
+        )
+    result = write_renewed(varied, folder / "renewed")
+    rows = sum(one.sizes["claim"] for one in varied.values())
+    told = listed([f"{name} ({one.sizes['sample']} designs)" for name, one in varied.items()])
+    print(f"{rows} rows of {told} are renewed in the table of shares, {result / SHARES}; other rows are as they ship")
     return 0

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -11,7 +12,7 @@ import xarray as xr
 from suchus import record as records
 from suchus.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.paper import CLAIMS
-from suchus.study.claims_table import became, claim_row, finite, shipped, table, turned
+from suchus.study.claims_table import became, claim_row, finite, renewed, shipped, table, turned
 from suchus.study.result_table import ResultTable, Section, write_tables
 from suchus.verdict import listed
 
@@ -43,6 +44,26 @@ def write_claims(record: xr.Dataset, folder: Path, varied: Mapping[str, xr.Datas
         write_tables(draft, "The article's claims over plausible designs", _lead(record, varied), sections, pictures)
         text = json.dumps(outcome(record, rows, varied), indent=2, ensure_ascii=False, allow_nan=False)
         (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
+    return folder
+
+
+def write_renewed(varied: Mapping[str, xr.Dataset], folder: Path) -> Path:
+    """Write the table of shares that ships with the rows of some experiments anew, and their records, and return where.
+
+    Args:
+        varied: of ``varied.conduct_varied``, by experiment.
+        folder: where, complete or not at all.
+
+    Raises:
+        Unwritable: the place cannot be written to, or is taken.
+    """
+    rows = [claim_row(one, str(claim)) for one in varied.values() for claim in one.claim.values]
+    before = (resources.files("suchus.verdict") / SHARES).read_text(encoding="utf-8")
+    with records.new_folder(folder, lasting=True) as draft:
+        (draft / TABLE).write_text(table(rows), encoding="utf-8")
+        (draft / SHARES).write_text(renewed(before, rows, varied), encoding="utf-8")
+        for name, one in varied.items():
+            records.save(one, draft / f"claims_{name}.nc")
     return folder
 
 

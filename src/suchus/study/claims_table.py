@@ -13,6 +13,7 @@ import xarray as xr
 from suchus.figures.sensitivity import spoken
 from suchus.record import code_digest
 from suchus.study.answers import Index, first_order, share_interval
+from suchus.verdict import RULES
 from suchus.verdict.judging import ROBUST, digest
 
 _NAMED = 3  # parameters that a row names
@@ -121,8 +122,14 @@ def turned(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     return found
 
 
-def shares(rows: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Return the rows in the form of ``verdict.Share``, by claim; a claim that no design could judge has none."""
+def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
+    """Return the rows in the form of ``verdict.Share``, by claim; a claim that no design could judge has none.
+
+    Args:
+        rows: of ``claim_row``.
+        varied: of ``varied.conduct_varied``, by experiment.
+    """
+    of = {str(claim): name for name, one in varied.items() for claim in one.claim.values}
     found = {}
     for row in rows:
         if row["samples"]:
@@ -135,6 +142,8 @@ def shares(rows: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
                 "turned_by": edge["parameter"] if edge else "",
                 "at": float(f"{edge['at']:.6g}") if edge else None,
                 "above": bool(edge and edge["true"] == "above"),
+                "of": of.get(row["claim"], ""),
+                "rule": RULES[row["claim"]].asked,
             }
     return found
 
@@ -152,17 +161,12 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], varied: Mappi
         rows: of ``claim_row``, of this record and of those that follow.
         varied: of ``varied.conduct_varied``, by experiment.
     """
-    claims = shares(rows)
+    claims = shares(rows, varied)
     made_by = json.loads(record.attrs["made_by"])
     content = {
-        "claims": claims,
-        "digest": digest(claims),
         "samples": record.sizes["sample"],
         "became": became(record),
-        "varied": {
-            name: {"became": became(one), "source": json.loads(one.attrs["made_by"])["source"]}
-            for name, one in varied.items()
-        },
+        "varied": _varied(varied),
         "parameters": record.sizes["parameter"],
         "seed": int(record.attrs["seed"]),
         "cycles": int(record.attrs["cycles"]),
@@ -171,7 +175,40 @@ def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], varied: Mappi
         "versions": {name: version for name, version in made_by.items() if name != "source"},
         "source": {"runs": made_by["source"], "answers": code_digest(*_ANSWERED_BY)[:12]},
     }
-    return json.dumps(content, indent=1, sort_keys=True, allow_nan=False) + "\n"
+    return _table(content, claims)
+
+
+def renewed(before: str, rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> str:
+    """Return a table of shares with the rows of some experiments anew; all other rows that today's rules ask stay.
+
+    Args:
+        before: the table, of ``shipped``.
+        rows: of ``claim_row``, of the experiments.
+        varied: of ``varied.conduct_varied``, by experiment.
+    """
+    content = json.loads(before)
+    claims = {key: row for key, row in content["claims"].items() if key in RULES and row["rule"] == RULES[key].asked}
+    answered = {claim for one in varied.values() for claim in one.claim.values.tolist()}
+    claims = {key: row for key, row in claims.items() if key not in answered} | shares(rows, varied)
+    content["varied"] = content.get("varied", {}) | _varied(varied)
+    return _table(content, claims)
+
+
+def _varied(varied: Mapping[str, xr.Dataset]) -> dict[str, Any]:
+    """Return by experiment how many designs became what, which source asked them, and which made the rows."""
+    return {
+        name: {
+            "became": became(one),
+            "samples": one.sizes["sample"],
+            "source": {"runs": json.loads(one.attrs["made_by"])["source"], "answers": code_digest(*_ANSWERED_BY)[:12]},
+        }
+        for name, one in varied.items()
+    }
+
+
+def _table(content: Mapping[str, Any], claims: Mapping[str, Mapping[str, object]]) -> str:
+    whole = {**content, "claims": claims, "digest": digest(claims)}
+    return json.dumps(whole, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:

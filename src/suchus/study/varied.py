@@ -12,17 +12,17 @@ import xarray as xr
 
 from suchus.design import Robot, unit_at, value_at, with_values
 from suchus.design.checks import Checks
-from suchus.errors import SuchusError
+from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.gaits import GAITS
 from suchus.jobs import Job, Store, finish, place_for
-from suchus.jobs.store import made_by, together
+from suchus.jobs.store import MARK, made_by, together
 from suchus.progress import Progress, silent
 from suchus.robots import ROBOTS
 from suchus.study.answers import answered
 from suchus.study.claim_measures import held
 from suchus.study.plan import evenly, value_of
 from suchus.study.study import Vary
-from suchus.verdict import RULES, Rule, varied_of
+from suchus.verdict import RULES, Rule, listed, varied_of
 
 LEAST = 8
 """Fewer points than these make no share: its interval would be half of the whole [-]."""
@@ -151,8 +151,18 @@ def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
     Args:
         study: what is asked.
         folder: of the stores.
+
+    Raises:
+        IncompatibleRecord: they are points of another plan, so that nobody knows any more what varied.
     """
     store = Store(folder / study.name, study)
+    said = made_by(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
+    other = [name for name in ("vary", "seed") if said and said.get(name) != repr(getattr(study, name))]
+    if other:
+        raise IncompatibleRecord(
+            f"{folder / study.name} holds points of another plan, which differs in {listed(other)}: numbers were added "
+            f"or have other ranges since. Renew it: suchus study claims --only {study.name} --out FOLDER"
+        )
     done = [store.get(sample) for sample in range(study.samples) if store.has(sample)]
     return _made_by(answer_varied(study, together(done)), folder / study.name) if len(done) >= LEAST else None
 

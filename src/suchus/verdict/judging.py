@@ -46,6 +46,10 @@ class Share:
     """Its value there, in its own unit."""
     above: bool
     """Whether the statement rather holds above that value."""
+    of: str = ""
+    """The experiment that was asked again for it; empty where the walks of the study answer."""
+    rule: str = ""
+    """Digest of the rule that judged the designs, ``Rule.asked``."""
 
     def robust(self, held: bool) -> bool:
         """Return whether enough designs agree with a verdict.
@@ -115,19 +119,26 @@ class Verdict:
     """What each model says; none where one measure decides."""
 
     @property
-    def held(self) -> bool:
-        """Whether the statement, apart from its number, was found to hold."""
-        return self.verdict in ("reproduced", "same sense", "by construction", "fitted")
-
-    @property
     def fragile(self) -> bool:
         """Whether other plausible designs give another answer too often to rely on this one.
 
         What was chosen for one design, or follows from how it was made, is no answer that others could shake.
         """
-        judged = self.verdict in ("reproduced", "same sense", "contradicted")
-        asked = judged and self.rule.kind in ("measured", "animals")
-        return asked and self.share is not None and not self.share.robust(self.held)
+        return fragile(self.rule, self.verdict, self.share)
+
+
+def fragile(rule: Rule, word: str, share: Share | None) -> bool:
+    """Return whether other plausible designs give another answer too often to rely on a word.
+
+    Args:
+        rule: the claim's.
+        word: of its verdict.
+        share: in how many designs the statement holds; None where that is not known.
+    """
+    if rule.kind not in ("measured", "animals") or share is None or share.rule not in ("", rule.asked):
+        return False
+    held = {"reproduced": True, "same sense": True, "contradicted": False}.get(word)
+    return held is not None and not share.robust(held)
 
 
 def judge(
@@ -172,9 +183,14 @@ def judge(
         high=high,
         verdict=_word(rule, claim, value, measures, said),
         why=why,
-        share=shares.get(rule.claim),
+        share=_of_this(rule, shares.get(rule.claim)),
         voices=said,
     )
+
+
+def _of_this(rule: Rule, share: Share | None) -> Share | None:
+    """Return a share if it is of this rule; one that another rule made says nothing of it."""
+    return None if share is None or share.rule not in ("", rule.asked) else share
 
 
 def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:

@@ -6,6 +6,7 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 import operator
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from hashlib import sha256
 from math import degrees, isfinite
 from types import MappingProxyType
 from typing import Any, Literal
@@ -168,6 +169,14 @@ class Rule:
     """How the rungs' numbers are written, see ``Reading``."""
     unswept: str = ""
     """Why no share of plausible designs is known; empty where ``suchus study claims`` answers the claim."""
+
+    @property
+    def asked(self) -> str:
+        """Digest of what decides whether the statement holds: a share of designs is of this rule or of another."""
+        clauses = [f"{one.measure} {one.relation} {one.bound}" for one in (*self.holds, *self._able)]
+        rungs = [f"{one.name} {one.carries}" for one in self.rungs]
+        text = "\n".join([self.experiment, self.measure, *clauses, *rungs, f"{self.settled}" * bool(rungs)])
+        return sha256(text.encode()).hexdigest()[:12]
 
     @property
     def needs(self) -> set[str]:
