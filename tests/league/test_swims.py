@@ -4,9 +4,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from suchus.contestants import CONTESTANTS
+from suchus.contestants import CONTESTANTS, alligator_slope, salamander, swimming_law
 from suchus.design.drawing import Drawing
-from suchus.design.pieces import volumes
+from suchus.design.pieces import masses, volumes
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
 from suchus.league import find
@@ -94,3 +94,28 @@ def test_a_frequency_is_found_that_holds_a_speed():
     assert swum.speed == pytest.approx(2.0 * one.likely["length"])
     again = theory(resistive, asked.build(one.likely, swum.frequency))
     assert again.speed == pytest.approx(swum.speed, rel=0.02)
+
+
+def test_a_salamander_has_its_own_length_mass_and_volume_and_its_parts_float_alike():
+    robot = salamander.animal(0.176, 0.0163, 900.0, 0.25)
+    assert robot.length == pytest.approx(0.176)
+    assert robot.mass == pytest.approx(0.0163)
+    volume, weight = volumes(robot), masses(robot)
+    assert robot.mass / sum(volume.values()) == pytest.approx(900.0, rel=1e-6)
+    for segment in robot.axis:
+        assert weight[segment.name] / volume[segment.name] == pytest.approx(900.0, rel=0.35)
+
+
+def test_on_a_slope_the_ground_pushes_with_the_part_of_the_weight_that_lies_along_it():
+    """Whatever the gait: a steady walk is not accelerated."""
+    found = alligator_slope._walk("high_walk", {"length": 1.0, "friction": 0.8}, lambda *_: None)
+    assert found["push_up"] == pytest.approx(np.sin(np.radians(15.0)), rel=0.05)
+    assert found["push_down"] == pytest.approx(-np.sin(np.radians(15.0)), rel=0.05)
+    assert found["speed_up"] < 1.0 < found["speed_down"]
+
+
+def test_in_thin_water_drag_with_the_square_gives_the_turbulent_exponent():
+    """Without friction that depends on the Reynolds number all forces go with the square: Re is proportional to Sw."""
+    numbers = {"cross_drag": 1.1, "thickening": 1e-6, "thick": 1e-4, "thin": 1e-7}
+    (found,) = swimming_law.law(resistive, [numbers], lambda *_: None)
+    assert found["turbulent"] == pytest.approx(found["laminar"], abs=1e-3)

@@ -33,7 +33,10 @@ def drawn(contestant: Contestant, count: int) -> list[Numbers]:
     shares = qmc.LatinHypercube(d=len(unknown), rng=np.random.default_rng(_SEED)).random(count)
     for row in shares:
         ranges = [(contestant.given[name].low, contestant.given[name].high) for name in unknown]
-        some = {name: low + share * (high - low) for name, share, (low, high) in zip(unknown, row, ranges, strict=True)}
+        some = {
+            name: float(low + share * (high - low))
+            for name, share, (low, high) in zip(unknown, row, ranges, strict=True)
+        }
         choices.append(contestant.likely | some)
     return choices
 

@@ -6,7 +6,7 @@ A swim is asked at a frequency, or at the speed that it is to hold; then its fre
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import hypot, isfinite, pi, sqrt
+from math import hypot, isfinite, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -28,11 +28,11 @@ from suchus.water.undulation import still
 
 STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""
-THEORY_DRAWS, SECTION_DRAWS = 48, 24
+THEORY_DRAWS, SECTION_DRAWS = 32, 24
 """Choices of the numbers in a theory and in sections [-]."""
 LAST = 3
 """Cycles at the end of a swim over which speed and power are means [-]."""
-SLICE_CELLS, SPACE_CELLS = 96, (56, 72)
+SLICE_CELLS, SPACE_CELLS = 80, (56, 72)
 """Cells per body length of the slice, and of the grids in space [-]."""
 _COASTS = 4
 """Postures of a cycle in which a body coasts [-]."""
@@ -430,24 +430,29 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
     brought = []
     for model in (resistive, reactive):
         real, slow = theory(model, swimmer), theory(model, thick)
+        if not (real.speed > 0.0 and slow.speed > 0.0):  # a tail that ends in a point sheds nothing there
+            continue
         factor, effort = real.speed / slow.speed, real.power / slow.power
         brought.append(
             finest._replace(
-                speed=factor * finest.speed, power=effort * finest.power,
+                speed=factor * finest.speed,
+                power=effort * finest.power,
                 periods=tuple(factor * speed for speed in finest.periods),
             )
-        )  # fmt: skip
+        )
+    if not brought:
+        raise NotConverged("no theory swims forward in thick and in real water, to bring the flow there.")
     middle = finest._replace(
-        speed=_mean(*(one.speed for one in brought)),
-        power=_mean(*(one.power for one in brought)),
-        periods=tuple(_mean(*pair) for pair in zip(*(one.periods for one in brought), strict=True)),
+        speed=_mean([one.speed for one in brought]),
+        power=_mean([one.power for one in brought]),
+        periods=tuple(_mean(row) for row in zip(*(one.periods for one in brought), strict=True)),
     )
     return [_answer(asked, numbers, swimmer, one) for one in (middle, *brought, *grids)]
 
 
-def _mean(one: float, other: float) -> float:
-    """Return the geometric mean of two numbers of one sign, else the arithmetic one."""
-    return float(np.copysign(sqrt(one * other), one)) if one * other > 0.0 else 0.5 * (one + other)
+def _mean(numbers: Sequence[float]) -> float:
+    """Return the geometric mean of positive numbers, else the arithmetic one."""
+    return float(np.exp(np.mean(np.log(numbers)))) if min(numbers) > 0.0 else float(np.mean(numbers))
 
 
 def _answer(asked: Asked, numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
