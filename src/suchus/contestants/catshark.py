@@ -1,6 +1,7 @@
 """Small-spotted catsharks that hold a speed: with which tail beat, Strouhal number and power."""
 
 import csv
+from collections.abc import Sequence
 from functools import lru_cache, partial
 from importlib import resources
 
@@ -10,8 +11,9 @@ from suchus.contestants._water import fresh
 from suchus.design import Robot
 from suchus.design.drawing import Drawing
 from suchus.design.scale import swim_servo_for
-from suchus.league import Contestant, Family, Found, Given, Numbers, Quantity, known
+from suchus.league import Contestant, Family, Found, Given, Numbers, Quantity, Rung, known
 from suchus.league.swims import Asked, Swimmer, Swum, rungs, waters
+from suchus.progress import Progress
 from suchus.water import FilmedWave, fit
 
 _FILM = "catshark_midlines.csv"
@@ -89,6 +91,15 @@ def read(numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
     return {"tailbeat": swum.frequency, "strouhal": swum.frequency * swing / swum.speed, "power": swum.power}
 
 
+def by_law(choices: Sequence[Numbers], progress: Progress) -> list[Found]:
+    """Return the tail beat by the Strouhal number of animals that cruise, with the amplitude of the film."""
+    progress("the law", 1.0)
+    return [
+        {"tailbeat": one["cruising_strouhal"] * one["speed"] / one["tail"], "strouhal": one["cruising_strouhal"]}
+        for one in choices
+    ]
+
+
 def at(speed: float) -> Contestant:
     """Return the animal that holds a speed.
 
@@ -114,6 +125,10 @@ def at(speed: float) -> Contestant:
         "tail_height": Given(value=1.0, low=0.7, high=1.5, unit="-", source=f"factor on the caudal fin's "
                                                                             f"height: {_FAO}"),
     }  # fmt: skip
+    given["cruising_strouhal"] = Given(
+        value=0.3, low=0.2, high=0.4, unit="-",
+        source="of cruising fish, cetaceans, birds and bats (Taylor, Nudds and Thomas 2003, Nature 425, 707)",
+    )  # fmt: skip
     given |= fresh(
         drag=(1.1, 0.8, 1.8),
         rub=(1.5, 1.0, 3.0),
@@ -140,8 +155,12 @@ def at(speed: float) -> Contestant:
             "strouhal": Quantity(unit="-", words="frequency times the tail's way from side to side over the speed"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
-        rungs=rungs(Asked(build=build, read=read, cycles=12, resolved_cycles=6, held=held, start=_start(speed))),
+        rungs={"law": _LAW}
+        | rungs(Asked(build=build, read=read, cycles=12, resolved_cycles=6, held=held, start=_start(speed))),
     )
+
+
+_LAW = Rung(words="the Strouhal number of animals that cruise", work=by_law, draws=200)
 
 
 def _start(speed: float) -> float:

@@ -18,6 +18,7 @@ from suchus.league.swims import Asked, Swimmer, Swum, rungs, sections, theory, w
 from suchus.motion import Curve, Gait, servo_parts
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
+from suchus.water import resistive
 from suchus.water.slender import Model
 
 FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
@@ -168,9 +169,7 @@ contestant = Single(
         },
         rungs=_ASKED
         | {
-            "resistive": replace(
-                _ASKED["resistive"], work=partial(by_theory, _ASKED["resistive"].work.args[0]), draws=16
-            ),
+            "resistive": replace(_ASKED["resistive"], work=partial(by_theory, resistive), draws=16),
             "sections": replace(_ASKED["sections"], work=by_sections, draws=12),
         },
         left_out={"reactive": "the model's tail ends in a point, at which nothing is shed"},

@@ -42,7 +42,7 @@ def swimmers() -> tuple[tuple[Robot, Gait], ...]:
 
 def law(model: Model, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     """Return exponents and prefactor of the law by a theory; laminar in thick water, turbulent in thin."""
-    found = []
+    found: list[Found] = []
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
         water = Water(cross_drag=numbers["cross_drag"], thickening=numbers["thickening"])

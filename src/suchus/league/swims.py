@@ -15,7 +15,7 @@ from suchus import rotation
 from suchus.control import Swimming
 from suchus.design import WATER_DENSITY, Robot, layout
 from suchus.design.water import Water
-from suchus.errors import NotConverged
+from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.flow.setup import LAYER_CELLS
 from suchus.land import Lake, Run, simulate
 from suchus.league.contestant import Found, Numbers, Rung
@@ -30,6 +30,8 @@ STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""
 THEORY_DRAWS, SECTION_DRAWS = 32, 24
 """Choices of the numbers in a theory and in sections [-]."""
+FASTEST = 20.0
+"""Fastest beat that is tried [Hz]."""
 LAST = 3
 """Cycles at the end of a swim over which speed and power are means [-]."""
 SLICE_CELLS, SPACE_CELLS = 80, (56, 72)
@@ -130,7 +132,7 @@ def rungs(asked: Asked, *, space: bool = True) -> dict[str, Rung]:
     )
     if space:
         found["space"] = Rung(
-            words="the flow around the body in three dimensions, in thick water, brought to real water by the theories",
+            words="the flow around the body in three dimensions, in thick water, brought to real water by theories",
             work=partial(_by_space, asked),
             draws=0,
             like="sections",
@@ -148,7 +150,7 @@ def _by_theory(model: Model, asked: Asked, choices: Sequence[Numbers], progress:
         try:
             swimmer, swum = _held(asked, numbers, partial(theory, model, coasts=asked.coasts))
             found.append(asked.read(numbers, swimmer, swum))
-        except NotConverged:
+        except (NotConverged, OutsideLimits, InvalidDesign):  # this choice: no forward speed, or no beat so fast
             found.append({})
     return found
 
@@ -266,14 +268,14 @@ def _by_sections(asked: Asked, choices: Sequence[Numbers], progress: Progress) -
     for numbers in choices:
         try:
             frequencies.append(_held(asked, numbers, partial(theory, resistive))[1].frequency)
-        except NotConverged:
+        except (NotConverged, OutsideLimits, InvalidDesign):
             frequencies.append(asked.start)
     for i in range(3):
         swimmers = [asked.build(*pair) for pair in zip(choices, frequencies, strict=True)]
         swums = sections(swimmers, cycles=asked.cycles, progress=portion(progress, i, 3))
         factors = [u / swum.speed if swum.speed > 0.0 else np.nan for u, swum in zip(wanted, swums, strict=True)]
         frequencies = [
-            f * float(np.clip(factor, 0.4, 2.5)) if isfinite(factor) else f
+            min(f * float(np.clip(factor, 0.4, 2.5)), FASTEST) if isfinite(factor) else f
             for f, factor in zip(frequencies, factors, strict=True)
         ]
     found = []
@@ -425,29 +427,43 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
                 progress=portion(progress, i, len(SPACE_CELLS)),
             )
         )  # fmt: skip
-    finest = grids[-1]
-    thick = replace(swimmer, water=replace(swimmer.water, viscosity=_viscosity(swimmer, SPACE_CELLS[-1])))
-    brought = []
+    thick = [replace(swimmer, water=replace(swimmer.water, viscosity=_viscosity(swimmer, n))) for n in SPACE_CELLS]
+    answers: list[Swum] = []
     for model in (resistive, reactive):
-        real, slow = theory(model, swimmer), theory(model, thick)
-        if not (real.speed > 0.0 and slow.speed > 0.0):  # a tail that ends in a point sheds nothing there
-            continue
-        factor, effort = real.speed / slow.speed, real.power / slow.power
-        brought.append(
-            finest._replace(
-                speed=factor * finest.speed,
-                power=effort * finest.power,
-                periods=tuple(factor * speed for speed in finest.periods),
-            )
-        )
-    if not brought:
+        real = theory(model, swimmer)
+        for grid, water in zip(grids, thick, strict=True):
+            slow = theory(model, water)
+            if real.speed > 0.0 and slow.speed > 0.0:  # a tail that ends in a point sheds nothing there
+                answers.append(_brought(grid, real, slow))
+        if real.speed > 0.0:
+            answers.append(real._replace(periods=real.periods[: len(grids[0].periods)]))
+    if not answers:
         raise NotConverged("no theory swims forward in thick and in real water, to bring the flow there.")
-    middle = finest._replace(
-        speed=_mean([one.speed for one in brought]),
-        power=_mean([one.power for one in brought]),
-        periods=tuple(_mean(row) for row in zip(*(one.periods for one in brought), strict=True)),
+    middle = answers[0]._replace(
+        speed=_mean([one.speed for one in answers]),
+        power=_mean([one.power for one in answers]),
+        periods=tuple(_mean(row) for row in zip(*(one.periods for one in answers), strict=True)),
     )
-    return [_answer(asked, numbers, swimmer, one) for one in (middle, *brought, *grids)]
+    return [_answer(asked, numbers, swimmer, one) for one in (middle, *answers)]
+
+
+def _brought(grid: Swum, real: Swum, slow: Swum) -> Swum:
+    """Return a swim in thick water as it would be in real water, were the flow then as far from the theory as it is.
+
+    It may be nearer: what a theory leaves out, the layers of thick water, is thinner there. So the theory's own answer
+    is the other end of what is plausible.
+
+    Args:
+        grid: the swim in the flow.
+        real: that of a theory in real water.
+        slow: that of the theory in the thick water.
+    """
+    factor = real.speed / slow.speed
+    return grid._replace(
+        speed=factor * grid.speed,
+        power=real.power / slow.power * grid.power,
+        periods=tuple(factor * speed for speed in grid.periods),
+    )
 
 
 def _mean(numbers: Sequence[float]) -> float:
