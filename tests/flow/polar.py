@@ -56,7 +56,7 @@ def banded(low, middle, high, first, last):
 
 
 def drag(reynolds, until, *, points=200, modes=48, end=3.2, steps=(1e-4, 5e-4, 2e-3)):
-    """Return times and drag coefficients of a cylinder that is started at once."""
+    """Return times, drag coefficients, and the part of friction in them, of a cylinder that is started at once."""
     nu, n = 2 / reynolds, np.arange(1, modes + 1)
     xi, low, high = graded(points, end)
     h, square = np.diff(xi), np.exp(2 * xi)
@@ -103,21 +103,22 @@ def drag(reynolds, until, *, points=200, modes=48, end=3.2, steps=(1e-4, 5e-4, 2
         time, before = time + dt, now
         a, b, f = h[0], h[1], omega[:, 0]
         rise = -(2 * a + b) / (a * (a + b)) * f[0] + (a + b) / (a * b) * f[1] - a / (b * (a + b)) * f[2]
-        out.append((time, 2 * np.pi / reynolds * (rise - f[0])))
+        out.append((time, 2 * np.pi / reynolds * (rise - f[0]), -2 * np.pi / reynolds * f[0]))
     return np.array(out).T
 
 
 def main():
     reynolds = int(sys.argv[1])
-    time, cd = drag(reynolds, 5.2, points=240 if reynolds > 100 else 200, modes=48 if reynolds > 100 else 20)
+    time, cd, friction = drag(reynolds, 5.2, points=240 if reynolds > 100 else 200, modes=48 if reynolds > 100 else 20)
     path = Path(__file__).resolve().parents[1] / "data" / "flow" / f"polar_cd_re{reynolds}.csv"
     at = np.concatenate([np.arange(0.1, 1.0, 0.05), np.arange(1.0, 5.15, 0.1)])
+    cd, friction = (np.interp(at, time, values) for values in (cd, friction))
     lines = [
-        f"# Drag coefficient of an impulsively started cylinder, Re = {reynolds}.",
+        f"# Drag coefficient of an impulsively started cylinder, and the part of friction in it, Re = {reynolds}.",
         "# Written by tests/flow/polar.py: vorticity and stream function in polar coordinates.",
         "# t* = t U / R (radius), Cd = F / (rho U^2 R).",
-        "t_star,cd",
-        *(f"{t:.2f},{c:.5f}" for t, c in zip(at, np.interp(at, time, cd), strict=True)),
+        "t_star,cd,friction",
+        *(f"{t:.2f},{c:.5f},{f:.5f}" for t, c, f in zip(at, cd, friction, strict=True)),
     ]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

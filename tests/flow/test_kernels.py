@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from suchus.flow import advect, immerse, multigrid, patch, poisson, stencil
 from suchus.flow.compiled import PAD, compiled
-from suchus.flow.immerse import close, wall_offset
+from suchus.flow.immerse import close
 from suchus.flow.slab import inner_strides
 
 median, limited_quick, moment0, moment1, apply_slabs, seal_slab = (
@@ -52,11 +52,6 @@ def test_moments_are_the_integrals_of_the_kernel():
         assert moment0(d) == pytest.approx(np.trapezoid(np.where(wet, kernel, 0), y), abs=1e-5)
         assert moment1(d) == pytest.approx(np.trapezoid(np.where(wet, y * kernel, 0), y), abs=1e-5)
     assert (moment0(-1.0), moment0(1.0), moment1(1.0), moment1(-1.0)) == (0, 1, 0, 0)
-
-
-def test_wall_offset_is_the_fit_it_says():
-    for spread, shift in ((0.01, 0.104), (0.1, 0.272), (0.2, 0.348)):
-        assert wall_offset(spread) == pytest.approx(shift, abs=0.012)
 
 
 def _body(cx, cy, thin):
