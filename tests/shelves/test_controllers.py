@@ -4,11 +4,29 @@ from dataclasses import FrozenInstanceError, fields, is_dataclass, replace
 
 import numpy as np
 import pytest
+from tests.felt import felt
 
-from suchus.control import CONTROLLERS, Control
+from suchus.control import (
+    CONTROLLERS,
+    LAWS,
+    SENSED,
+    Control,
+    Coordinated,
+    HeadingHold,
+    HeadingRule,
+    LoadRule,
+    OpenLoop,
+    PatternGenerator,
+    Runs,
+    Sensed,
+    Standing,
+    Swimming,
+    needs,
+)
 from suchus.land import Run, simulate
 from suchus.sources import snake
 
+DEAF = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 SHORT = 1.3
 """Duration of a walk, of which 1 s is settling [s]."""
 
@@ -54,3 +72,51 @@ def test_a_run_comes_out_the_same_alone_and_beside_others(control, robot, crawl_
     for i, single in enumerate((alone, beside)):
         for name in ("position", "servo_target", "joint_angle"):
             assert both[name].isel(run=i).values.tobytes() == single[name].isel(run=0).values.tobytes(), name
+
+
+def test_it_says_what_it_feels_and_feels_nothing_else(control, robot, crawl_gait):
+    """A robot that has only the sensors it names would do."""
+    named, read = needs(control), set()
+
+    class Watched(Sensed):
+        def __getattribute__(self, name):
+            read.add(name)
+            return object.__getattribute__(self, name)
+
+    assert bool(named) == control.feels
+    controller = control.start(Runs.alike(control, robot, crawl_gait, ticks=400), 0.01)
+    seen = felt(robot, foot_pressure=2.0)
+    for tick in range(0, 400, 3):
+        values = {f.name: getattr(seen, f.name) for f in fields(Sensed)}
+        controller.command(tick, Watched(**values | {"time": 0.01 * tick}) if control.feels else None)
+    assert read & set(SENSED) <= set(named)
+
+
+@pytest.mark.parametrize(
+    ("control", "felt_by_it"),
+    [
+        (OpenLoop(), ()),
+        (Coordinated(), ("servo_position", "servo_torque", "foot_pressure")),
+        (
+            Coordinated(limbs=LAWS["off"], spine=None, tail=None, heading=HeadingRule()),
+            ("servo_position", "orientation"),
+        ),
+        (PatternGenerator(load=LoadRule()), ("foot_pressure", "belly_pressure", "tail_pressure")),
+        (Swimming(heading=HeadingHold()), ("servo_position", "orientation")),
+        (Standing(at=0.1, hold=0.1, balance=None), ()),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_what_is_needed_follows_from_the_rules_that_are_on(control, felt_by_it):
+    assert needs(control) == felt_by_it
+
+
+def test_a_control_that_does_not_say_what_it_feels_needs_everything():
+    class Silent:
+        feels = True
+
+    class Deaf:
+        feels = False
+
+    assert needs(Silent()) == SENSED
+    assert needs(Deaf()) == ()

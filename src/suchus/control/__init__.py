@@ -3,7 +3,7 @@
 from suchus.catalog import Catalog
 from suchus.control.amphibious import Amphibious
 from suchus.control.attitude import AttitudeRule
-from suchus.control.controller import Command, Control, Controller, Runs
+from suchus.control.controller import SENSED, Command, Control, Controller, Runs, needs
 from suchus.control.coordinated import Coordinated, Kick
 from suchus.control.heading import HeadingRule
 from suchus.control.holding import DepthHold, HeadingHold
@@ -34,6 +34,7 @@ __all__ = [
     "CURVES",
     "LAWS",
     "OWNERS",
+    "SENSED",
     "Amphibious",
     "AttitudeRule",
     "Balance",
@@ -64,6 +65,7 @@ __all__ = [
     "TailRule",
     "TurningCurve",
     "Walking",
+    "needs",
     "oscillate",
     "turn",
 ]

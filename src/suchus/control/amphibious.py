@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.control.controller import Command, Controller, Runs
+from suchus.control.controller import Command, Controller, Runs, united
 from suchus.control.heading import Heading, HeadingRule
 from suchus.control.sensed import Sensed, finite, keep
 from suchus.control.swimming import Swimming
@@ -90,6 +90,15 @@ class Amphibious:
     def feels(self) -> bool:
         """It decides by what it feels."""
         return True
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Loads on the ground, and what swim and heading are held by."""
+        return united(
+            ("foot_pressure", "belly_pressure", "tail_pressure"),
+            self.swimming.needs,
+            ("orientation", "servo_position") if self.heading else (),
+        )
 
     @staticmethod
     def start(runs: Runs, period: float) -> "Amphibian":

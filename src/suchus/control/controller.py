@@ -1,5 +1,6 @@
 """The contract of a controller: a frozen setting that starts a machine for a batch."""
 
+from dataclasses import fields
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -33,6 +34,23 @@ class Controller(Protocol):
         """Answer for control period ``tick``; ``sensed`` is None where ``Control.feels`` is false."""
 
 
+SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
+"""What a robot can sense: the fields of ``Sensed``, the time aside."""
+
+
+def united(*felt: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what several rules feel together, each once, in the order of ``Sensed``."""
+    return tuple(name for name in SENSED if any(name in one for one in felt))
+
+
+def needs(control: "Control") -> tuple[str, ...]:
+    """Return what a robot must sense for a control: fields of ``Sensed``; all of them where it feels and does not say.
+
+    A simulated robot senses everything, one that is built what it has sensors for.
+    """
+    return tuple(getattr(control, "needs", SENSED if control.feels else ()))
+
+
 class Runs(NamedTuple):
     """The runs of a batch as a controller sees them, one entry for each."""
 
@@ -55,7 +73,10 @@ class Runs(NamedTuple):
 
 @runtime_checkable
 class Control(Protocol):
-    """A controller as a value on a run; the runs of a batch whose controls are of one class share a controller."""
+    """A controller as a value on a run; the runs of a batch whose controls are of one class share a controller.
+
+    One that feels may say what, in a property ``needs``; see the function of that name.
+    """
 
     @property
     def feels(self) -> bool:

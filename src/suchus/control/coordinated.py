@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command, Runs
+from suchus.control.controller import Command, Runs, united
 from suchus.control.heading import Heading, HeadingRule, Steering
 from suchus.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
 from suchus.control.open_loop import OpenLoop
@@ -70,6 +70,16 @@ class Coordinated:
     def feels(self) -> bool:
         """Whether any rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the rules that are on feel."""
+        return united(
+            self.limbs.needs,
+            ("servo_position",) if self.spine else (),
+            ("servo_torque",) if self.tail else (),
+            ("orientation", "servo_position") if self.heading else (),
+        )
 
     def suited(self, robot: Robot, gait: Gait) -> "Coordinated":
         """Return it with those of its rules that a robot's parts make possible in a gait.

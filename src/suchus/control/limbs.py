@@ -63,6 +63,11 @@ class LimbLaw:
         return any((self.own, self.diagonal, self.contralateral, self.ipsilateral, self.trunk))
 
     @property
+    def needs(self) -> tuple[str, ...]:
+        """Loads under the feet and torques of the trunk."""
+        return ("foot_pressure", "servo_torque") if self.feels else ()
+
+    @property
     def pairs(self) -> bool:
         """Whether it makes diagonal pairs, whatever the gait."""
         return any((self.diagonal, self.contralateral, self.ipsilateral, self.trunk))

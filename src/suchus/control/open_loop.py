@@ -30,6 +30,11 @@ class OpenLoop:
         """Nothing is sensed."""
         return False
 
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Nothing."""
+        return ()
+
     @staticmethod
     def start(runs: Runs, period: float) -> "GaitTable":
         """Tabulate every gait; runs with the same robot, gait and control share their rows.

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command, Runs
+from suchus.control.controller import Command, Runs, united
 from suchus.control.limbs import LAWS, LimbLaw, Loads
 from suchus.control.oscillators import Oscillators, Rhythm, couple, cut
 from suchus.control.pattern_load import FeltDrive, LoadRule
@@ -182,6 +182,15 @@ class PatternGenerator:
     def feels(self) -> bool:
         """Whether any feedback rule is on."""
         return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.load))
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the rules that are on feel."""
+        return united(
+            self.limbs.needs,
+            ("servo_position", "servo_torque") if self.spine or self.tail else (),
+            ("foot_pressure", "belly_pressure", "tail_pressure") if self.load else (),
+        )
 
     @staticmethod
     def start(runs: Runs, period: float) -> "Generator":

@@ -110,6 +110,12 @@ class Standing:
         """Whether anything is corrected."""
         return self.balance is not None
 
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What its balance is kept by."""
+        felt = ("orientation", "angular_velocity", "foot_pressure", "tail_pressure")
+        return felt if self.feels else ()
+
     def upright_from(self, robot: Robot) -> float:
         """Return when rising ends [s]."""
         return self.at + self.blend + self._rise(robot).duration

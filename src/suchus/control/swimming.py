@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from suchus.control.controller import Command, Runs
+from suchus.control.controller import Command, Runs, united
 from suchus.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.control.sensed import Sensed
 from suchus.control.trim import Pitches, PitchHold
@@ -45,6 +45,15 @@ class Swimming:
     def feels(self) -> bool:
         """Whether heading, depth or pitch are controlled."""
         return self.heading is not None or self.depth is not None
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What is held is felt."""
+        return united(
+            ("orientation", "servo_position") if self.heading else (),
+            ("depth",) if self.depth else (),
+            ("orientation", "angular_velocity", "depth") if self.pitch else (),
+        )
 
     @staticmethod
     def start(runs: Runs, period: float) -> "SwimmingController":

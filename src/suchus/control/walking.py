@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.control.attitude import Attitude, AttitudeRule
-from suchus.control.controller import Command, Runs
+from suchus.control.controller import Command, Runs, united
 from suchus.control.sensed import Sensed
 from suchus.control.switching import Switcher, SwitchRule
 from suchus.design import Robot, layout, servo_ranges
@@ -64,6 +64,14 @@ class Walking:
     def feels(self) -> bool:
         """Whether any rule is on."""
         return self.attitude is not None or self.switching is not None
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the rules that are on feel."""
+        return united(
+            ("orientation", "angular_velocity") if self.attitude else (),
+            ("foot_pressure", "belly_pressure", "tail_pressure", "orientation") if self.switching else (),
+        )
 
     @staticmethod
     def start(runs: Runs, period: float) -> "Walker":

@@ -2,13 +2,25 @@
 
 from suchus.reading import check_file, read_json, read_text, read_toml, there
 from suchus.record.provenance import code_digest, digest, made_alike, package_digest, plain, provenance, versions
-from suchus.record.schema import COUPLED, HEAT, PER_RUN, VARIABLES, WATER, check_land, dataset, ground_of, ground_text
+from suchus.record.schema import (
+    COUPLED,
+    DRIVEN,
+    HEAT,
+    PER_RUN,
+    VARIABLES,
+    WATER,
+    check_land,
+    dataset,
+    ground_of,
+    ground_text,
+)
 from suchus.record.store import load, save
 from suchus.record.tables import write_tables
 from suchus.writing import check_name, check_replaceable, check_writable, new_file, new_folder, sweep, write
 
 __all__ = [
     "COUPLED",
+    "DRIVEN",
     "HEAT",
     "PER_RUN",
     "VARIABLES",

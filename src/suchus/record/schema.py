@@ -74,6 +74,23 @@ COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 Forces and torques are means over the control period before each sample; the rest is of the step that holds the sample.
 """
 
+DRIVEN: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "tick_began": (("time",), "s", "how late the tick began against its plan"),
+    "tick_took": (("time",), "s", "from the beginning of the tick until its goals were sent"),
+    "servo_asked": (("time", "servo"), "rad", "angle that the controller asked for, before limits and steps"),
+    "servo_heard": (
+        ("time", "servo"),
+        "1",
+        "1 where the servo answered in the tick, 0 where its last reading stays",
+    ),
+    "reading_age": (("time", "servo"), "s", "age of the reading that was used"),
+    "servo_current": (("time", "servo"), "A", "of the servo, in the sense of its torque"),
+    "servo_voltage": (("time", "servo"), "V", "at the servo's plug"),
+    "servo_error": (("time", "servo"), "1", "bits of the servo's alert; 0 for none"),
+    **HEAT,
+}
+"""Further variables of runs of servos over a bus, as in ``VARIABLES``; what nobody measured is NaN there."""
+
 PER_RUN: Mapping[str, tuple[str, str]] = {
     "mass": ("kg", "of the robot"),
     "period": ("s", "of the gait"),

@@ -1,0 +1,429 @@
+"""Drive a robot of servos by any controller: soft start, ticks, limits, a safe end whatever happens, and a log."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from time import monotonic, sleep
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import Control, Controller, OpenLoop, needs
+from suchus.design import layout
+from suchus.design.checks import Checks
+from suchus.errors import BusFailure, OutsideLimits, SuchusError, UnsuitedRobot
+from suchus.hardware.guard import DriveLimits, Guard
+from suchus.hardware.log import Log
+from suchus.hardware.rig import Rig, senses
+from suchus.hardware.wiring import wiring_text
+from suchus.land import Run
+from suchus.land.loop import start
+from suchus.motion import Gait, check_limits, cycle_targets
+from suchus.progress import Progress, silent
+from suchus.record import digest, versions
+
+Stop = Literal["sag", "hold", "off"]
+_EARLY = 0.005  # [rad]; a servo so near to where it begins needs no way there
+_SAGS = 0.2  # share of the torque with which a robot sinks
+_HOLDS, _SINKS = 0.2, 0.6  # [s]; how long it is held before it is let down, and how long that lasts
+_BY_IMU = ("orientation", "angular_velocity", "acceleration")
+_PHASES = 64  # of a cycle, at which a gait is looked at before
+
+
+class Clock(Protocol):
+    """Tells a drive when its ticks are."""
+
+    def begin(self) -> None:
+        """Let tick 0 be now."""
+
+    def wait(self, tick: int) -> int:
+        """Return when a tick has come, and which it is then: a later one where time was lost."""
+
+    def late(self, tick: int) -> float:
+        """Return how long ago a tick should have begun [s]."""
+
+
+class WallClock:
+    """Ticks by the time of this computer.
+
+    Args:
+        period: of a tick [s].
+    """
+
+    def __init__(self, period: float) -> None:
+        self._period, self._begun = period, monotonic()
+
+    def begin(self) -> None:
+        """Let tick 0 be now."""
+        self._begun = monotonic()
+
+    def wait(self, tick: int) -> int:
+        """Sleep until a tick, and return the one that it is then."""
+        due = self._begun + tick * self._period
+        left = due - monotonic()
+        if left > 0.0:
+            sleep(left)
+            return tick
+        return tick + int(-left / self._period)
+
+    def late(self, tick: int) -> float:
+        """Return how long ago a tick should have begun [s]."""
+        return monotonic() - self._begun - tick * self._period
+
+
+class BusClock:
+    """Ticks that an emulator is told: it moves as long as we wait, and nothing is ever late.
+
+    Args:
+        rig: of emulated servos.
+    """
+
+    def __init__(self, rig: Rig) -> None:
+        self._bus, self._base = rig.buses[0], 0
+
+    def begin(self) -> None:
+        """Let tick 0 be now."""
+        self._base = self._bus.clock() or 0
+
+    def wait(self, tick: int) -> int:
+        """Let the emulated robot move until a tick."""
+        self._bus.pass_until(self._base + tick)
+        return tick
+
+    def late(self, tick: int) -> float:
+        """Return 0."""
+        del tick
+        return 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveSettings:
+    """How a robot is driven."""
+
+    duration: float = 30.0
+    """How long the controller acts, its first second of standing included [s]."""
+    stop: Stop = "sag"
+    """How it ends: ``sag`` lets it down with a fifth of the torque and switches it off, ``off`` switches off at once,
+    ``hold`` leaves it standing with its torque on."""
+    approach: float = 0.5
+    """Speed at which servos go to the first posture [rad/s]."""
+    limits: DriveLimits = field(default_factory=DriveLimits)
+    """When the robot is stopped."""
+
+    def __post_init__(self) -> None:
+        with Checks("drive", self) as check:
+            check.number("duration", 0.01, 86400.0, "s")
+            check.number("approach", 0.01, 10.0, "rad/s")
+
+
+def check_drive(rig: Rig, gait: Gait, control: Control) -> None:
+    """Refuse what the robot cannot do as it is wired, before anything moves.
+
+    Raises:
+        UnsuitedRobot: the control must sense what the robot has no sensor for, or moves air.
+        OutsideLimits: the gait goes beyond a joint, or beyond where a servo may be sent, or turns one too fast.
+    """
+    robot = rig.robot
+    lacking = [name for name in needs(control) if name not in senses(robot, rig.wiring.board)]
+    if lacking:
+        words = " and ".join(name.replace("_", " ") for name in lacking)
+        raise UnsuitedRobot(
+            f"control {type(control).__name__} must sense {words}, and the hardware has no board for that: add the "
+            "board to "
+            "the file, or leave out the rules that need it."
+        )
+    check_limits(robot, gait)
+    clock = np.arange(_PHASES) / _PHASES
+    angles = cycle_targets(robot, gait, clock)
+    rates = np.abs(np.roll(angles, -1, axis=0) - angles) * _PHASES / gait.period
+    for i, one in enumerate(rig.servos):
+        low, high = angles[:, i].min(), angles[:, i].max()
+        if low < one.low - 1e-9 or high > one.high + 1e-9:
+            raise OutsideLimits(
+                f"gait {gait.name!r} turns {one.name} from {low:.2f} to {high:.2f} rad, and the hardware allows "
+                f"{one.low:g} "
+                f"to {one.high:g} rad: mount its horn with another zero, or take another gait."
+            )
+        if rates[:, i].max() > rig.speed[i]:
+            least = gait.period * rates[:, i].max() / rig.speed[i]
+            raise OutsideLimits(
+                f"gait {gait.name!r} turns {one.name} at {rates[:, i].max():.3g} rad/s, and up to {rig.speed[i]:g} "
+                "rad/s is "
+                f"allowed: lengthen its period to {least:.2g} s."
+            )
+
+
+class _Stopped(Exception):
+    """The robot is to be stopped: the sentence says why."""
+
+
+def drive(
+    rig: Rig,
+    gait: Gait,
+    control: Control | None = None,
+    settings: DriveSettings | None = None,
+    *,
+    clock: Clock | None = None,
+    asked: Callable[[], str] = lambda: "",
+    say: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Drive a robot, and leave it safe, however it ends.
+
+    Time in the log is that of the controller: the way to the first posture has negative times. A tick that comes too
+    late is left out in the gait too, which is a function of time; its controller still takes all its steps.
+
+    Args:
+        rig: the open robot.
+        gait: in which it moves.
+        control: what decides; open loop if None.
+        settings: how; as by default if None.
+        clock: that of this computer if None.
+        asked: returns why to stop, where somebody asked for it.
+        say: is given sentences that people should read while it moves.
+        progress: told the share that is done.
+
+    Returns:
+        The log, a record of one run, see ``record.VARIABLES`` and ``record.DRIVEN``; ``cause`` says why it ended early.
+
+    Raises:
+        UnsuitedRobot: the control must sense what the robot cannot.
+        OutsideLimits: the gait asks more than the servos may do.
+        BusFailure: servos cannot be reached, or the robot had to be stopped; the error carries the log.
+    """
+    control, settings = control or OpenLoop(), settings or DriveSettings()
+    check_drive(rig, gait, control)
+    ticks = round(settings.duration / rig.period)
+    run = Run(robot=rig.robot, gait=gait, control=control)
+    controller = start([run], ticks + 1, rig.period)
+    for sentence in rig.check():
+        say(sentence)
+    one = _Drive(rig, gait, controller, settings, clock or WallClock(rig.period), asked, say, progress)
+    return one.run(ticks)
+
+
+class _Drive:
+    """One drive while it lasts."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        gait: Gait,
+        controller: Controller,
+        settings: DriveSettings,
+        clock: Clock,
+        asked: Callable[[], str],
+        say: Callable[[str], None],
+        progress: Progress,
+    ) -> None:
+        self._rig, self._gait, self._controller = rig, gait, controller
+        self._settings, self._clock, self._asked, self._say = settings, clock, asked, say
+        self._progress = progress
+        self._log, self._guard = Log(rig.robot, gait), Guard(rig, settings.limits)
+        self._told = 0
+        self._tick = 0
+        self._goal = np.zeros(len(rig.servos))
+        self._missed = self._clamped = 0
+        self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
+
+    def run(self, ticks: int) -> xr.Dataset:
+        """Approach, drive, and end safely."""
+        cause, failed, ended = "", None, False
+        try:
+            self._approach()
+            self._go(ticks)
+            ended = True
+        except _Stopped as stop:
+            cause = str(stop)
+        except BusFailure as error:
+            cause, failed = str(error), error
+        except KeyboardInterrupt:
+            cause = "stopped by hand."
+            self._end(self._settings.stop)
+            raise
+        except BaseException:
+            self._end("off")
+            raise
+        self._end(self._settings.stop)
+        record = self._record(cause)
+        if failed is not None or (cause and not ended and not cause.startswith(ASKED)):
+            raise BusFailure(f"{cause.rstrip('.')}; the robot was stopped.", record=record) from failed
+        return record
+
+    def _approach(self) -> None:
+        """Bring the robot from where it is to where it begins, slowly."""
+        rig = self._rig
+        rig.torque(False)
+        for _ in range(5):  # each may have holes
+            rig.read()
+            if np.isfinite(rig.now.angle[rig.asked]).all():
+                break
+        unheard = [name for name, one, yes in zip(rig.names, rig.now.angle, rig.asked, strict=True)
+                   if yes and not np.isfinite(one)]  # fmt: skip
+        if unheard:
+            raise BusFailure(f"{' and '.join(unheard[:4])} does not say where it is: the robot cannot be started.")
+        here = np.where(rig.asked, rig.now.angle, 0.0)
+        self._goal = rig.aim(np.clip(here, rig.low, rig.high))
+        rig.limit(1.0)
+        rig.torque(True)
+        rig.watch(True)
+        there = np.clip(self._controller.rest()[0], rig.low, rig.high)
+        far = float(np.abs(there - here)[rig.asked].max(initial=0.0))
+        count = int(max(far - _EARLY, 0.0) / self._settings.approach / rig.period)
+        self._clock.begin()
+        first = -count if count else 0
+        tick = first
+        while tick < 0:
+            share = (tick - first + 1) / count
+            self._one(tick, first, here + (there - here) * share)
+            tick = max(self._clock.wait(tick + 1 - first) + first, tick + 1)
+        self._offset = -first
+
+    def _go(self, ticks: int) -> None:
+        tick, stepped = 0, -1
+        while tick <= ticks:
+            command = None
+            self._rig.read()
+            while stepped < tick:  # ticks that were missed too, so that what it remembers is right
+                stepped += 1
+                command = self._controller.command(stepped, self._rig.sensed(stepped * self._rig.period))
+            assert command is not None
+            if command.air_fraction is not None and np.isfinite(command.air_fraction).any():
+                raise UnsuitedRobot("the control lets air out of the hull, and no servo of this robot moves air.")
+            self._limb = command.phase[0]
+            self._send(tick, self._offset, command.targets[0])
+            if tick % 16 == 0:
+                self._progress("driving", tick / max(ticks, 1))
+            if tick == ticks:
+                break
+            reached = max(self._clock.wait(tick + 1 + self._offset) - self._offset, tick + 1)
+            self._missed += min(reached, ticks) - tick - 1
+            tick = min(reached, ticks)
+        self._progress("driving", 1.0)
+
+    def _one(self, tick: int, first: int, wanted: np.ndarray) -> None:
+        self._rig.read()
+        self._send(tick, -first, wanted)
+
+    def _send(self, tick: int, offset: int, wanted: np.ndarray) -> None:
+        """Look whether all is well, send goals within the limits, and keep the tick."""
+        rig, now = self._rig, self._rig.now
+        late = self._clock.late(tick + offset)
+        why = self._guard.look(now)
+        for sentence in self._guard.warnings[self._told :]:
+            self._say(sentence)
+        self._told = len(self._guard.warnings)
+        step = rig.speed * rig.period * 1.0001
+        within = np.clip(wanted, rig.low, rig.high)
+        slewed = np.clip(within, self._goal - step, self._goal + step)
+        self._clamped += int((np.abs(slewed - wanted) > rig.steps.unit)[rig.asked].any())
+        if not why:
+            self._goal = np.where(np.abs(slewed - within) > 0.0, slewed, within)
+            sent = rig.aim(self._goal)
+        else:
+            sent = np.full(len(rig.servos), np.nan)
+        self._tick = tick
+        felt: dict[str, np.ndarray] = {name: now.felt[name] for name in _BY_IMU if name in now.felt}
+        if "foot_pressure" in now.felt:
+            feet = now.felt["foot_pressure"]
+            felt["foot_force"] = np.column_stack([np.full((len(feet), 2), np.nan), feet])
+        self._log.keep(
+            tick * rig.period,
+            felt
+            | {
+                "servo_angle": now.angle, "servo_velocity": now.velocity, "servo_torque": now.torque,
+                "servo_target": sent, "limb_phase": self._limb, "servo_asked": wanted, "servo_heard": now.heard,
+                "reading_age": now.age * rig.period, "servo_current": now.current, "servo_voltage": now.voltage,
+                "servo_temperature": now.temperature, "servo_error": np.maximum(now.error, 0), "tick_began": late,
+                "tick_took": self._clock.late(tick + offset) - late,
+            },
+        )  # fmt: skip
+        if why:
+            raise _Stopped(why)
+        if asked := self._asked():
+            raise _Stopped(f"{ASKED}{asked}")
+
+    def _end(self, how: Stop) -> None:
+        """Leave the robot safe; whatever fails, its torque is taken away, three times."""
+        rig = self._rig
+        try:
+            if how == "hold":
+                rig.watch(False)
+                return
+            if how == "sag":
+                self._pass(_HOLDS)
+                rig.limit(_SAGS)
+                self._pass(_SINKS)
+        except BaseException:
+            self._off()
+            raise
+        self._off()
+        with suppress(SuchusError):
+            rig.watch(False)
+            rig.limit(1.0)
+
+    def _off(self) -> None:
+        for _ in range(3):
+            with suppress(BusFailure, OSError):
+                self._rig.torque(False)
+
+    def _pass(self, seconds: float) -> None:
+        """Let time pass while the servos keep hearing from us."""
+        rig = self._rig
+        until = self._tick + round(seconds / rig.period)
+        with suppress(BusFailure):
+            while self._tick < until:
+                rig.read()
+                rig.aim(self._goal)
+                self._tick = max(self._clock.wait(self._tick + 1 + self._offset) - self._offset, self._tick + 1)
+
+    _offset = 0
+
+    def _record(self, cause: str) -> xr.Dataset:
+        rig = self._rig
+        return self._log.record(
+            cause,
+            {
+                "control_period": rig.period,
+                "missed": self._missed,
+                "clamped": self._clamped,
+                "broken": [bus.broken for bus in rig.buses],
+                "missing": [bus.counts.missing for bus in rig.buses],
+                "stale": [bus.counts.stale for bus in rig.buses],
+                "hardware": wiring_text(rig.wiring),
+                "warnings": list(self._guard.warnings),
+                "gait_digest": digest({"gait": self._gait}),
+                "robot_digest": digest({"robot": rig.robot}),
+                "versions": versions(),
+            },
+        )
+
+
+ASKED = "asked to stop: "
+"""How the cause of a drive begins that somebody ended: that is no failure."""
+
+
+def about(record: xr.Dataset) -> dict[str, Any]:
+    """Return what a log says of the wire: jitter, holes, missed ticks, heat.
+
+    Returns:
+        ``late_median``, ``late_p99``, ``late_most`` [s]; ``missed``, ``ticks``; ``holes`` and ``worst_holes`` [-], of
+        all readings and of the servo with most, ``worst_servo``; ``hottest`` [degC]; ``clamped`` [-].
+    """
+    took, heard = record.tick_began.values + record.tick_took.values, record.servo_heard.values
+    share = 1.0 - heard.mean(axis=0)
+    worst = int(np.argmax(share))
+    heat = record.servo_temperature.values
+    return {
+        "late_median": float(np.median(took)),
+        "late_p99": float(np.quantile(took, 0.99)),
+        "late_most": float(took.max()),
+        "missed": int(record.attrs.get("missed", 0)),
+        "clamped": int(record.attrs.get("clamped", 0)),
+        "ticks": int(record.sizes["time"]),
+        "holes": float(share.mean()),
+        "worst_holes": float(share[worst]),
+        "worst_servo": str(record.servo.values[worst]),
+        "hottest": float(np.nanmax(heat)) if np.isfinite(heat).any() else float("nan"),
+    }

@@ -1,0 +1,127 @@
+"""What a driven robot must not do: limits of heat, load, voltage and silence, and what follows when one is passed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from suchus.design.checks import Checks
+from suchus.hardware.rig import JUMPS, Reading, Rig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveLimits:
+    """When to warn of a servo, and when to stop; each is a state, not an instant."""
+
+    warm: float = 10.0
+    """So far below the temperature at which a servo switches itself off people are warned [K]."""
+    hot: float = 5.0
+    """So far below it the robot is stopped [K]."""
+    load: float = 0.33
+    """Share of its stall torque that a servo may give for long, root mean square over ``memory`` [-]: makers rate a
+    fifth to a third; beyond it people are warned, since heat is what stops."""
+    memory: float = 10.0
+    """Over which the load is averaged [s]."""
+    volts: float = 0.0
+    """Voltage below which the robot is stopped [V]: 3.2 V for each lithium cell; 0 leaves it to the servos."""
+    silent: int = 10
+    """Ticks after which a silent servo stops the robot [-]."""
+    holes: int = 3
+    """Servos whose silence in one and the same tick counts as a hole of the bus [-]."""
+    patience: float = 0.2
+    """Time after which such holes in a row stop the robot [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("drive_limits", self) as check:
+            check.number("warm", 0.0, 100.0, "K")
+            check.number("hot", 0.0, 100.0, "K")
+            check.number("load", 0.0, 1.0, "")
+            check.number("memory", 0.1, 600.0, "s")
+            check.number("volts", 0.0, 100.0, "V")
+            check.whole("silent", 1, 10000)
+            check.whole("holes", 1, 1000)
+            check.number("patience", 0.0, 10.0, "s")
+
+
+class Guard:
+    """Looks at every tick.
+
+    Args:
+        rig: what is driven.
+        limits: when it says something.
+    """
+
+    def __init__(self, rig: Rig, limits: DriveLimits) -> None:
+        self._rig, self._limits = rig, limits
+        self._square = np.zeros(len(rig.servos))
+        self._deaf = 0.0
+        self._warned: set[str] = set()
+        self.warnings: list[str] = []
+        """What people should know, each sentence once."""
+        self._stall = np.array([one.table.stall_torque for one in rig.servos])
+        self._limit = np.array([one.table["temperature_limit"].initial for one in rig.servos])
+
+    def look(self, now: Reading) -> str:
+        """Return why the robot must be stopped, in a sentence; empty if it need not."""
+        rig, limits, asked = self._rig, self._limits, self._rig.asked
+        silent = asked & (now.age > limits.silent)
+        if silent.any():
+            return f"{self._named(silent)} has not answered for {limits.silent} ticks."
+        deaf = int((asked & ~now.heard).sum()) >= min(limits.holes, int(asked.sum()))
+        self._deaf = self._deaf + rig.period if deaf else 0.0
+        if self._deaf > limits.patience:
+            return f"{limits.holes} servos or more were silent at once for {limits.patience:g} s: the bus is failing."
+        jumped = asked & (rig.jumps >= JUMPS)
+        if jumped.any():
+            return (
+                f"{self._named(jumped)} says that it is where it cannot have come to so fast, {JUMPS} times in a "
+                "row: its "
+                "horn is loose, or it lost count of its turns."
+            )
+        ill = asked & (now.error > 0)
+        if ill.any():
+            i = int(np.argmax(ill))
+            return f"{rig.names[i]} has switched itself off: {self._alert(i, int(now.error[i]))}."
+        hot = asked & (now.temperature >= self._limit - limits.hot)
+        if hot.any():
+            i = int(np.argmax(hot))
+            return (
+                f"{rig.names[i]} is at {now.temperature[i]:.0f} degrees Celsius; it switches off at {self._limit[i]}."
+            )
+        low = asked & (now.voltage < limits.volts)
+        if low.any():
+            i = int(np.argmax(low))
+            return f"{rig.names[i]} gets {now.voltage[i]:.1f} V; {limits.volts:g} V is the least that was allowed."
+        self._warn(now)
+        return ""
+
+    def _warn(self, now: Reading) -> None:
+        limits, names = self._limits, self._rig.names
+        keep = np.exp(-self._rig.period / limits.memory)
+        square = np.nan_to_num(now.torque) ** 2
+        self._square += (1.0 - keep) * (square - self._square)
+        for i in np.flatnonzero(np.sqrt(self._square) > limits.load * self._stall):
+            self._say(
+                f"load {names[i]}",
+                f"{names[i]} gives {np.sqrt(self._square[i]):.2f} N m for long, more than {limits.load:.0%} of its "
+                "stall "
+                f"torque of {self._stall[i]:g} N m: it will get hot.",
+            )
+        for i in np.flatnonzero(now.temperature >= self._limit - limits.warm):
+            self._say(
+                f"warm {names[i]}",
+                f"{names[i]} is at {now.temperature[i]:.0f} degrees Celsius and is stopped at "
+                f"{self._limit[i] - limits.hot:.0f}.",
+            )
+
+    def _say(self, key: str, sentence: str) -> None:
+        if key not in self._warned:
+            self._warned.add(key)
+            self.warnings.append(sentence)
+
+    def _alert(self, i: int, error: int) -> str:
+        known = [text for bit, text in self._rig.servos[i].table.alerts if error >> bit & 1]
+        return " and ".join(known) or f"error {error}"
+
+    def _named(self, which: np.ndarray) -> str:
+        names = [name for name, yes in zip(self._rig.names, which, strict=True) if yes]
+        return " and ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")

@@ -1,0 +1,106 @@
+"""The log of a driven robot: a record as a simulation gives, with what only a wire knows beside it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.design import Robot, layout
+from suchus.kinematics.tail import bend_of_servo
+from suchus.motion import Gait
+from suchus.record import DRIVEN, VARIABLES, dataset
+
+
+class Log:
+    """Keeps ticks and makes them a record.
+
+    Args:
+        robot: that is driven.
+        gait: in which it moves.
+    """
+
+    def __init__(self, robot: Robot, gait: Gait) -> None:
+        self._robot, self._gait = robot, gait
+        self._times: list[float] = []
+        self._rows: list[dict[str, np.ndarray]] = []
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def keep(self, time: float, values: Mapping[str, Any]) -> None:
+        """Keep a tick.
+
+        Args:
+            time: at which it was planned, since the controller's beginning [s].
+            values: by the names of ``record.VARIABLES`` and ``record.DRIVEN``; those left out are not known.
+        """
+        self._times.append(time)
+        self._rows.append({name: np.array(value, dtype=float) for name, value in values.items()})
+
+    def record(self, cause: str, attributes: Mapping[str, Any]) -> xr.Dataset:
+        """Return the record.
+
+        Args:
+            cause: why it ended early; empty if it did not.
+            attributes: what else is known of the drive.
+        """
+        robot, gait, place = self._robot, self._gait, layout(self._robot)
+        sizes = {
+            "time": len(self._times), "leg": len(place.limbs), "segment": len(place.trunk), "xyz": 3, "wxyz": 4,
+            "joint": len(place.hinges), "servo": len(place.servos),
+        }  # fmt: skip
+        arrays = {
+            name: self._column(name, tuple(sizes[dim] for dim in dims))
+            for name, (dims, _, _) in {**VARIABLES, **DRIVEN}.items()
+        }
+        arrays["joint_angle"] = hinge_angles(robot, arrays["servo_angle"])
+        per_run = {
+            "mass": np.array([robot.mass]),
+            "period": np.array([gait.period]),
+            "duty_factor": np.array([gait.duty_factor]),
+            "ended": np.array([self._times[-1] if self._times else 0.0]),
+            "cause": np.array([cause]),
+            "stands_on": np.array([""]),
+        }
+        coordinates: dict[str, Any] = {
+            "run": np.arange(1), "time": np.array(self._times), "leg": place.limb_names, "segment": place.trunk,
+            "joint": place.hinges, "servo": place.servos, "robot": [robot.name], "gait": [gait.name],
+            "label": ["driven"],
+        }  # fmt: skip
+        record = dataset({name: value[None] for name, value in arrays.items()}, per_run, coordinates)
+        more = {
+            name: (("run", *dims), arrays[name][None], {"units": unit, "long_name": what})
+            for name, (dims, unit, what) in DRIVEN.items()
+        }
+        made = record.assign(more).isel(run=0)
+        made.attrs.update(attributes)
+        return made
+
+    def _column(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
+        column = np.full(shape, np.nan)
+        for i, row in enumerate(self._rows):
+            if name in row:
+                column[i] = row[name]
+        return column
+
+
+def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
+    """Return the angles of all hinges at servo angles: a cable bends its hinges evenly, springs stay where they are.
+
+    Args:
+        robot: the design.
+        servos: shape (..., servo) [rad].
+
+    Paper: Eq. (18).
+    """
+    place = layout(robot)
+    angles = np.zeros((*servos.shape[:-1], len(place.hinges)))
+    for servo, hinge in enumerate(place.servo_hinges):
+        if hinge >= 0:
+            angles[..., hinge] = servos[..., servo]
+        else:
+            cable = place.cable(servo)
+            for name in cable.hinges:
+                angles[..., place.hinges.index(name)] = bend_of_servo(cable, servos[..., servo]) / len(cable.hinges)
+    return angles

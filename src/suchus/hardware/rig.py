@@ -1,0 +1,482 @@
+"""A robot's servos and sensors over its buses: what they say, what they are sent, and whether all is as it must be."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from suchus.bus import (
+    FRAMINGS,
+    STEPS,
+    WAIT,
+    BoardPlace,
+    Bus,
+    NoAnswer,
+    Packet,
+    Port,
+    Steps,
+    Table,
+    Wiring,
+    latency_timer,
+    open_port,
+)
+from suchus.control import Sensed
+from suchus.design import Robot, layout
+from suchus.design.scale import control_period
+from suchus.errors import BusFailure, InvalidDesign, SuchusError
+
+BITS = 10
+"""Bits that a byte takes on the wire, start and stop bit included [-]."""
+FULLEST = 0.9
+"""Share of a tick that the bytes of a bus may take [-]; what is left is for the adapter and the computer."""
+TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
+"""Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
+_EMPTY = Packet(0, 0)
+_AGAIN = 3  # times that a question is asked before the robot moves
+_WATCHDOG = 5  # steps of 20 ms
+_SENSES = {
+    "imu": ("orientation", "angular_velocity", "acceleration"),
+    "feet": ("foot_pressure",),
+    "belly": ("belly_pressure",),
+    "tail": ("tail_pressure",),
+}
+_OF_SERVOS = ("servo_position", "servo_velocity", "servo_torque")
+
+
+@dataclass(slots=True)
+class Reading:
+    """What servos and boards said last."""
+
+    angle: np.ndarray
+    """Angles of the joints, shape (servo,) [rad]."""
+    velocity: np.ndarray
+    """Speeds of the joints, shape (servo,) [rad/s]."""
+    torque: np.ndarray
+    """Torques by current or load, shape (servo,) [N m]."""
+    current: np.ndarray
+    """Currents, in the sense of the torque; NaN where a servo tells none, shape (servo,) [A]."""
+    voltage: np.ndarray
+    """Voltages, NaN before they were read, shape (servo,) [V]."""
+    temperature: np.ndarray
+    """Temperatures, NaN before they were read, shape (servo,) [degC]."""
+    error: np.ndarray
+    """Alerts: the bits of ``hardware_error``, shape (servo,) [-]."""
+    heard: np.ndarray
+    """Whether a servo answered in this tick, shape (servo,)."""
+    age: np.ndarray
+    """Ticks since a servo answered, shape (servo,) [-]."""
+    felt: dict[str, np.ndarray] = field(default_factory=dict)
+    """What boards feel, by the fields of ``control.Sensed``, without the run."""
+
+
+def senses(robot: Robot, boards: Sequence[BoardPlace]) -> tuple[str, ...]:
+    """Return what a robot with some boards senses: fields of ``control.Sensed``."""
+    place = layout(robot)
+    found = [*_OF_SERVOS, *(name for board in boards for name in _SENSES[board.kind])]
+    if not place.limbs:
+        found.append("foot_pressure")
+    if not place.tail:
+        found.append("tail_pressure")
+    return tuple(found)
+
+
+class Rig:
+    """The servos and boards of a robot, over open buses.
+
+    Args:
+        robot: the robot.
+        wiring: what hangs where.
+        ports: to its buses, in their order; by default those that it names are opened.
+        clocked: whether an emulator's clock is told the time.
+        rate: of ticks [Hz]; that of the robot's control period if None.
+        without: names of servos that do without: they are not asked, and stay limp.
+
+    Raises:
+        BusFailure: a port cannot be opened.
+        InvalidDesign: the wiring is not for this robot, or the bytes of a tick take longer than a tick.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        wiring: Wiring,
+        ports: Sequence[Port] = (),
+        *,
+        clocked: bool = False,
+        rate: float | None = None,
+        without: Sequence[str] = (),
+    ) -> None:
+        self.robot, self.wiring, self.clocked = robot, wiring, clocked
+        self.servos = wiring.ordered(robot)
+        self.names = layout(robot).servos
+        unknown = [name for name in without if name not in self.names]
+        if unknown:
+            raise InvalidDesign(
+                f"{', '.join(unknown)} is no servo of {robot.name!r}; there is {', '.join(self.names)}."
+            )
+        self.without = tuple(without)
+        self.period = control_period(robot) if rate is None else 1.0 / rate
+        self.asked = np.array([name not in self.without for name in self.names])
+        self.steps = Steps(self.servos)
+        self.low = np.array([one.low for one in self.servos])
+        self.high = np.array([one.high for one in self.servos])
+        self.speed = np.array([robot.servo(name).speed for name in self.names])
+        self._members = [
+            [i for i, one in enumerate(self.servos) if one.bus == number and self.asked[i]]
+            for number in range(len(wiring.bus))
+        ]
+        self._check_time()
+        self.buses: list[Bus] = []
+        try:
+            for number, place in enumerate(wiring.bus):
+                port = ports[number] if ports else open_port(place.port, place.baud)
+                wait = min(WAIT, 0.8 * self.period) if not clocked else WAIT
+                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=wait, clocked=clocked))
+        except BaseException:
+            self.close()
+            raise
+        self._turn = 0
+        count = len(self.servos)
+        angle, velocity, torque, current, voltage, temperature = np.full((6, count), np.nan)
+        self.now = Reading(
+            angle=angle,
+            velocity=velocity,
+            torque=torque,
+            current=current,
+            voltage=voltage,
+            temperature=temperature,
+            error=np.zeros(count, dtype=int),
+            heard=np.zeros(count, dtype=bool),
+            age=np.zeros(count, dtype=int),
+        )
+        self.jumps = np.zeros(count, dtype=int)
+        """How often in a row a servo said that it is where it cannot be, shape (servo,) [-]."""
+
+    # --- before it moves ----------------------------------------------------------------------------------------------
+
+    def bytes_per_tick(self, number: int) -> tuple[int, int]:
+        """Return the bytes on a bus in a tick, and how many replies are among them."""
+        place = self.wiring.bus[number]
+        framing, members = FRAMINGS[place.protocol], self._members[number]
+        frame = len(framing.reply(_EMPTY))
+        total = answers = 0
+        if members:
+            table = self.servos[members[0]].table
+            length = table.block(table.felt)[1]
+            goal = table["goal_position"]
+            ids = [self.servos[i].id for i in members]
+            total += len(framing.sync_read(ids, 0, length)) + len(members) * (frame + length)
+            total += len(framing.sync_write(goal.address, {one: bytes(goal.size) for one in ids}))
+            answers += len(members)
+            if table.health is not None:
+                total += len(framing.read(1, 0, 1)) + frame + table.block(table.health)[1]
+                answers += 1
+        for board in self.wiring.board:
+            if board.bus == number:
+                sensor = self.wiring.tables(board, self.robot)
+                total += len(framing.sync_read((board.id,), 0, 1)) + frame + sensor.block(sensor.felt)[1]
+                answers += 1
+        return total, answers
+
+    def _check_time(self) -> None:
+        for number, place in enumerate(self.wiring.bus):
+            total, _ = self.bytes_per_tick(number)
+            seconds = total * BITS / place.baud
+            if not self.clocked and seconds > FULLEST * self.period:
+                raise InvalidDesign(
+                    f"bus {number} carries {total} bytes a tick, {1e3 * seconds:.1f} ms at {place.baud} baud, and a "
+                    "tick "
+                    f"lasts {1e3 * self.period:g} ms: set its servos to a faster rate, share them among two buses, or "
+                    f"drive at --rate {FULLEST / seconds:.0f}."
+                )
+
+    def check(self) -> list[str]:
+        """Look whether all servos are there and set as they must be; return what is no reason not to drive.
+
+        Raises:
+            BusFailure: a servo does not answer, or cannot be driven as it is set; nothing has moved.
+        """
+        if self.clocked and self.buses[0].clock() is None:
+            raise BusFailure(
+                f"no clock answers on {self.buses[0].port.name}: only an emulator has one, started with --clock bus; a "
+                "robot is driven with --clock wall."
+            )
+        said: list[str] = []
+        for number, bus in enumerate(self.buses):
+            self._find(number, bus)
+            said += self._settings(number, bus)
+            keeps = latency_timer(bus.port.name)
+            if keeps is not None and keeps > 1:
+                raise BusFailure(
+                    f"the adapter of {bus.port.name} keeps bytes back for {keeps} ms, longer than a tick bears: as "
+                    "root, "
+                    "write into /etc/udev/rules.d/99-servos.rules the line "
+                    'ACTION=="add", SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1" and plug it '
+                    "in "
+                    "anew."
+                )
+        return said
+
+    def _find(self, number: int, bus: Bus) -> None:
+        """Refuse a bus on which not all answer, each alone and twice."""
+        members = self._members[number]
+        wanted = {self.servos[i].id: self.servos[i].name for i in members}
+        wanted |= {board.id: f"the board {board.kind!r}" for board in self.wiring.board if board.bus == number}
+        garbled = {}
+        heard: set[int] = set()
+        for servo in wanted:
+            broken = bus.broken + bus.dropped
+            for _ in range(_AGAIN):
+                if bus.ping(servo) is not None:
+                    heard.add(servo)
+                    break
+            garbled[servo] = bus.broken + bus.dropped > broken and servo not in heard
+        missing = [servo for servo in wanted if servo not in heard]
+        if wanted and not heard and not any(garbled.values()):
+            raise BusFailure(self._nobody(number, bus, next(iter(wanted))))
+        twins = [servo for servo in missing if garbled[servo]]
+        if twins:
+            raise BusFailure(
+                f"{_listed(wanted, twins)} on {bus.port.name} answers with replies that cannot be read, and nobody "
+                "else "
+                "does so: two servos have that number. Unplug one and give it another."
+            )
+        if missing:
+            others = ", ".join(str(one) for one in sorted(heard)) or "none"
+            raise BusFailure(
+                f"{_listed(wanted, missing)} on {bus.port.name} does not answer; there answer {others}. Look at its "
+                "plug "
+                "and its number, or go on with it limp by --without NAME."
+            )
+
+    def _nobody(self, number: int, bus: Bus, servo: int) -> str:
+        """Return the sentence for a bus on which nobody answers, at which other rates too."""
+        place = self.wiring.bus[number]
+        if not place.port.startswith("socket://") and not self.clocked:
+            bus.close()
+            for baud in TRIED:
+                if baud == place.baud:
+                    continue
+                with suppress(SuchusError):
+                    other = Bus(open_port(place.port, baud), bus.framing)
+                    answered = other.ping(servo)
+                    other.close()
+                    if answered is not None:
+                        return (
+                            f"nobody answers on {place.port} at {place.baud} baud, but at {baud} baud number {servo} "
+                            "does: "
+                            f"write baud = {baud}, or set the servos to {place.baud} with their maker's program."
+                        )
+        return (
+            f"nobody answers on {place.port} at {place.baud} baud: look at the power of the servos, the plug of the "
+            "bus "
+            f"and whether they speak {place.protocol}."
+        )
+
+    def _settings(self, number: int, bus: Bus) -> list[str]:
+        said = []
+        delay = 0.0
+        for i in self._members[number]:
+            one = self.servos[i]
+            model = self._read(bus, i, "model_number")
+            if model != one.table.number:
+                raise BusFailure(
+                    f"{one.name}, number {one.id}, says that it is model {model}; {one.model} is {one.table.number}: "
+                    "its "
+                    "registers may stand elsewhere. Correct the model in the file."
+                )
+            pause = self._read(bus, i, "return_delay") * one.table["return_delay"].unit
+            delay += pause
+            if self._read(bus, i, "operating_mode") != one.table["operating_mode"].initial:
+                raise BusFailure(
+                    f"{one.name}, number {one.id}, is not in its mode for positions: set its operating mode to "
+                    f"{one.table['operating_mode'].initial} with its maker's program."
+                )
+            if "bus_watchdog" not in one.table or self._read(bus, i, "firmware") < 38:
+                said.append(one.name)
+        total, answers = self.bytes_per_tick(number)
+        seconds = total * BITS / self.wiring.bus[number].baud + delay
+        if not self.clocked and seconds > FULLEST * self.period:
+            each = delay / max(len(self._members[number]), 1)
+            raise BusFailure(
+                f"the servos on {bus.port.name} wait {1e6 * each:.0f} us each before they answer, which makes a tick "
+                "of "
+                f"{answers} replies {1e3 * seconds:.1f} ms long, and it may last {1e3 * self.period:g} ms: set their "
+                f"return_delay to 0 (address {self.servos[self._members[number][0]].table['return_delay'].address}), "
+                "or "
+                f"drive at --rate {FULLEST / seconds:.0f}."
+            )
+        if said:
+            return [
+                f"{said[0] if len(said) == 1 else f'{len(said)} servos'} on {bus.port.name} would hold the last goal "
+                "with "
+                "full torque if this computer died: these models have no watchdog. Put a relay into their supply."
+            ]
+        return []
+
+    def _read(self, bus: Bus, i: int, register: str) -> int:
+        one = self.servos[i]
+        for _ in range(_AGAIN - 1):
+            with suppress(NoAnswer):
+                return bus.read(one.id, one.table[register])
+        return bus.read(one.id, one.table[register])
+
+    # --- while it moves -----------------------------------------------------------------------------------------------
+
+    def read(self) -> Reading:
+        """Ask all, take what comes in time, and keep what was said before of those that are silent."""
+        for number, bus in enumerate(self.buses):
+            if self._members[number]:
+                bus.begin([self.servos[i].id for i in self._members[number]], *self._block(number))
+        now = self.now
+        now.heard = np.zeros(len(self.servos), dtype=bool)
+        now.age = now.age + 1
+        for number, bus in enumerate(self.buses):
+            members = self._members[number]
+            if members:
+                replies = bus.end([self.servos[i].id for i in members], self._block(number)[1])
+                for i in members:
+                    if self.servos[i].id in replies:
+                        reply = replies[self.servos[i].id]
+                        self._take(i, self.servos[i].table, reply.data, alert=bus.framing.alert(reply.code))
+            for board in self.wiring.board:
+                if board.bus == number:
+                    self._feel(bus, board)
+        self._look_after()
+        return now
+
+    def _block(self, number: int) -> tuple[int, int]:
+        table = self.servos[self._members[number][0]].table
+        return table.block(table.felt)
+
+    def _take(self, i: int, table: Table, data: bytes, *, alert: bool) -> None:
+        now, one = self.now, self.servos[i]
+        values = table.unpack(table.felt, data)
+        angle = one.sign * (values["present_position"] - one.zero) * self.steps.unit
+        far = 3.0 * self.speed[i] * self.period * now.age[i] + 2 * np.pi / STEPS
+        if np.isfinite(now.angle[i]) and abs(angle - now.angle[i]) > far and self.jumps[i] < JUMPS:
+            self.jumps[i] += 1
+            return
+        self.jumps[i] = 0
+        now.angle[i], now.heard[i], now.age[i] = angle, True, 0
+        now.velocity[i] = one.sign * values["present_velocity"] * table["present_velocity"].unit
+        if "present_current" in values:
+            now.current[i] = one.sign * values["present_current"] * table["present_current"].unit
+            now.torque[i] = now.current[i] * table.torque_per_ampere
+        else:
+            now.torque[i] = one.sign * values["present_load"] * table["present_load"].unit * table.stall_torque
+        self._health(i, table, values)
+        if not alert:
+            now.error[i] = 0
+        elif not now.error[i]:
+            now.error[i] = -1  # which alert, is asked when the bus has time for it
+
+    def _health(self, i: int, table: Table, values: dict[str, int]) -> None:
+        now = self.now
+        if "present_voltage" in values:
+            now.voltage[i] = values["present_voltage"] * table["present_voltage"].unit
+        if "present_temperature" in values:
+            now.temperature[i] = values["present_temperature"]
+        if "hardware_error" in values:
+            now.error[i] = values["hardware_error"]
+
+    def _look_after(self) -> None:
+        """Ask one servo how it is, those with an alert first; never while a late reply may still come."""
+        for number, bus in enumerate(self.buses):
+            members = self._members[number]
+            if not members or not bus.settled:
+                continue
+            alarmed = [i for i in members if self.now.error[i] == -1]
+            table = self.servos[members[0]].table
+            if alarmed:
+                i = alarmed[0]
+                with suppress(NoAnswer):
+                    self.now.error[i] = bus.read(self.servos[i].id, table["hardware_error"])
+            elif table.health is not None:
+                i = members[self._turn % len(members)]
+                address, length = table.block(table.health)
+                request = bus.framing.read(self.servos[i].id, address, length)
+                with suppress(NoAnswer):
+                    reply = bus.ask(request, self.servos[i].id, length)
+                    self._health(i, table, table.unpack(table.health, reply.data))
+        self._turn += 1
+
+    def _feel(self, bus: Bus, board: BoardPlace) -> None:
+        table = self.wiring.tables(board, self.robot)
+        address, length = table.block(table.felt)
+        bus.begin((board.id,), address, length)
+        replies = bus.end((board.id,), length)
+        if board.id not in replies:
+            return
+        values = table.unpack(table.felt, replies[board.id].data)
+        row = np.array([values[one.name] * one.unit for one in table.registers[1:]])
+        if board.kind == "imu":
+            turned = row[:4] / max(float(np.linalg.norm(row[:4])), 1e-9)
+            self.now.felt |= {"orientation": turned, "angular_velocity": row[4:7], "acceleration": row[7:10]}
+        else:
+            self.now.felt[_SENSES[board.kind][0]] = row if board.kind != "tail" else row[0]
+
+    def sensed(self, time: float) -> Sensed:
+        """Return what a controller may know of one robot: NaN for what it has no sensor for.
+
+        Args:
+            time: since the beginning [s].
+        """
+        now, place = self.now, layout(self.robot)
+        shapes = {
+            "foot_pressure": (len(place.limbs),), "belly_pressure": (len(place.trunk),), "tail_pressure": (),
+            "orientation": (4,), "angular_velocity": (3,), "acceleration": (3,),
+        }  # fmt: skip
+        felt = {name: np.array(now.felt.get(name, np.full(shape, np.nan)))[None] for name, shape in shapes.items()}
+        if not place.tail:
+            felt["tail_pressure"] = np.zeros(1)
+        return Sensed(
+            time=time,
+            servo_position=now.angle[None].copy(),
+            servo_velocity=now.velocity[None].copy(),
+            servo_torque=now.torque[None].copy(),
+            **felt,
+        )
+
+    def aim(self, angles: np.ndarray) -> np.ndarray:
+        """Send all servos to angles, and return those that they were sent to, whole steps, shape (servo,) [rad]."""
+        steps = self.steps.of(angles)
+        self.write("goal_position", dict(enumerate(steps.tolist())))
+        return self.steps.angles(steps)
+
+    def torque(self, on: bool) -> None:
+        """Give all servos their torque, or take it away."""
+        self.write("torque_enable", dict.fromkeys(range(len(self.servos)), int(on)))
+
+    def limit(self, share: float) -> None:
+        """Let all servos use a share of their torque only, 0 to 1 [-]."""
+        self.write("torque_limit", {i: round(share * one.table.full) for i, one in enumerate(self.servos)})
+
+    def watch(self, on: bool) -> None:
+        """Let servos that can watch whether their host is there, or let them rest."""
+        able = [i for i, one in enumerate(self.servos) if "bus_watchdog" in one.table]
+        self.write("bus_watchdog", dict.fromkeys(able, 0))  # ends an older one, which would keep goals away
+        if on:
+            self.write("bus_watchdog", dict.fromkeys(able, _WATCHDOG))
+
+    def write(self, register: str, values: dict[int, int]) -> None:
+        """Write a register of some servos at once, by their places in the layout."""
+        for number, bus in enumerate(self.buses):
+            members = [i for i in self._members[number] if i in values]
+            if members:
+                bus.write_all(self.servos[members[0]].table[register], {self.servos[i].id: values[i] for i in members})
+
+    def close(self) -> None:
+        """Let go of the buses."""
+        for bus in self.buses:
+            bus.close()
+
+
+JUMPS = 3
+"""How often in a row a reading may be refused since nothing moves so fast, before it is believed and the robot stopped
+[-]."""
+
+
+def _listed(wanted: dict[int, str], which: Sequence[int]) -> str:
+    return " and ".join(f"number {one} ({wanted[one]})" for one in which[:6])

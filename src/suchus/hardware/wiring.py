@@ -1,0 +1,63 @@
+"""``hardware.toml``: which servo hangs on which bus, read and written."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from suchus.blueprint import described
+from suchus.bus import BoardPlace, BusPlace, ServoPlace, Wiring
+from suchus.design import Robot
+from suchus.design.meaning import meanings
+from suchus.record import read_toml, write
+
+
+def read_wiring(path: Path, robot: Robot) -> Wiring:
+    """Read the wiring of a robot; a port that is no whole path is looked for beside the file.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible.
+        InvalidDesign: it is for another robot, or not for all of its servos.
+    """
+    wiring: Wiring = described(read_toml(path), Wiring, path.name)
+    wiring.ordered(robot)
+    return replace(wiring, bus=tuple(replace(one, port=_beside(one.port, path)) for one in wiring.bus))
+
+
+def write_wiring(wiring: Wiring, path: Path) -> Path:
+    """Write a wiring, and return the path.
+
+    Raises:
+        Unwritable: the place cannot be written to, or is taken.
+    """
+    return write(path, wiring_text(wiring))
+
+
+def wiring_text(wiring: Wiring) -> str:
+    """Return a wiring as TOML: what each value means once, then a line for each bus, servo and board."""
+    lines = [
+        "# The angle of a joint is sign (steps - zero) 2 pi / 4096.",
+        f"robot = {_value(wiring.robot)}",
+        f"fingerprint = {_value(wiring.fingerprint)}",
+    ]
+    for name, kind in (("bus", BusPlace), ("servo", ServoPlace), ("board", BoardPlace)):
+        rows = getattr(wiring, name)
+        if rows:
+            about = meanings(kind)
+            lines += ["", *(f"# {key}: {' '.join(about[key].split())}" for key in about), f"{name} = ["]
+            for row in rows:
+                items = ", ".join(f"{f.name} = {_value(getattr(row, f.name))}" for f in fields(row))
+                lines.append(f"  {{{items}}},")
+            lines.append("]")
+    return "\n".join(lines) + "\n"
+
+
+def _beside(port: str, path: Path) -> str:
+    return port if "://" in port or Path(port).is_absolute() else str(path.parent / port)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, float):
+        return repr(round(value, 6))
+    text = str(value).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{text}"' if isinstance(value, str) else repr(value)
