@@ -107,6 +107,18 @@ COMMANDS = (
         "suchus.cli.export_commands:export_commands",
     ),
     Subcommand(
+        "emulate",
+        "ROBOT [--view] [--hardware FILE.toml]",
+        "emulate a robot's servos on a bus",
+        "suchus.cli.emulate:emulate",
+    ),
+    Subcommand(
+        "drive",
+        "GAIT [--robot ROBOT] [--hardware FILE.toml]",
+        "drive a robot of servos",
+        "suchus.cli.drive:run",
+    ),
+    Subcommand(
         "flow-atlas",
         "[ROW ...] [--out DIR] [--jobs N | --scheduler ADDRESS]",
         "compute published flows and draw ours beside theirs",

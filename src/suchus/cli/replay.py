@@ -12,6 +12,7 @@ from suchus import record
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import check_page, parse
 from suchus.design import Robot
+from suchus.hardware import held
 from suchus.record import check_file, check_replaceable
 from suchus.replay import replay, save
 from suchus.robots import ROBOTS
@@ -52,6 +53,7 @@ def make_replay(words: Sequence[str]) -> int:
     ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
     named = str(shown.robot.item()) if "robot" in shown.coords else "caiman"
     robot = ROBOTS[named] if options.robot is None else options.robot
+    shown = held(shown, robot)
     labels = [_label(run).replace("_", " ") for run in (shown, ghost) if run is not None]
     save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
     print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")

@@ -127,7 +127,7 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
         return Session(robot, gait, timestep=options.timestep, swim=swim)
 
     session()  # refuses what cannot be walked, before a browser
-    pages = _pages()
+    pages = pages_of_viewer()
     how = "in a lake" if options.lake else gait.name
     return _serve(
         lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {how}", opened,
@@ -141,7 +141,7 @@ def _replay(words: Sequence[str]) -> int:
     runs = takes(options.record, options.robot)
     ghosts = takes(options.ghost, options.robot) if options.ghost else ()
     animals = _animals(options, runs)
-    pages = _pages()
+    pages = pages_of_viewer()
     return _serve(lambda client: pages.ReplayPage(client, runs, ghosts, animals), options, options.record.name)
 
 
@@ -158,18 +158,18 @@ def _swim(words: Sequence[str]) -> int:
     options = parse(ViewSwimOptions, "suchus view swim", words, about)
     space = vortex_film(options.record)
     if space is not None:
-        pages = _pages()
+        pages = pages_of_viewer()
         return _serve(
             lambda client: pages.VortexPage(client, space), options, options.record.name, camera=space.camera()
         )
     swims, curves = films(options.record)
-    pages = _pages()
+    pages = pages_of_viewer()
     return _serve(
         lambda client: pages.SwimPage(client, swims, curves), options, options.record.name, camera=pages.FROM_ABOVE
     )
 
 
-def _pages() -> Any:
+def pages_of_viewer() -> Any:
     """Return what needs viser, or say that it is missing."""
     try:
         from suchus.viewer import pages  # noqa: PLC0415  an optional extra, needed here only
@@ -189,7 +189,7 @@ def _serve(
     opened: Callable[[str], object] | None = None,
     **settings: Any,
 ) -> int:
-    pages = _pages()
+    pages = pages_of_viewer()
     viewer = pages.Viewer(page, host=where.host, port=where.port, most=where.most, title=title, **settings)
     try:
         print(f"{title}: open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)

@@ -238,9 +238,10 @@ class _Drive:
             cause = str(stop)
         except BusFailure as error:
             cause, failed = str(error), error
-        except KeyboardInterrupt:
-            cause = "stopped by hand."
-            self._end(self._settings.stop)
+        except KeyboardInterrupt as stop:
+            with suppress(KeyboardInterrupt):  # asked twice: its torque is off by then
+                self._end(self._settings.stop)
+            stop.record = self._record(f"{ASKED}a signal.")  # type: ignore[attr-defined]
             raise
         except BaseException:
             self._end("off")

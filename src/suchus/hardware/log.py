@@ -10,6 +10,7 @@ from suchus.design import Robot, layout
 from suchus.kinematics.tail import bend_of_servo
 from suchus.motion import Gait
 from suchus.record import DRIVEN, VARIABLES, dataset
+from suchus.skin import poses
 
 
 class Log:
@@ -104,3 +105,29 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
             for name in cable.hinges:
                 angles[..., place.hinges.index(name)] = bend_of_servo(cable, servos[..., servo]) / len(cable.hinges)
     return angles
+
+
+def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
+    """Return a log for the eye: where nobody measured the robot's place, it is held above one, and feels nothing.
+
+    Args:
+        record: of one run; one that says where the robot was is returned as it is.
+        robot: whose it is.
+    """
+    if np.isfinite(record.position.values).any() or not np.isfinite(record.servo_angle.values).all():
+        return record
+    count, place = record.sizes["time"], layout(robot)
+    position = np.zeros((count, 3))
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    turned = record.orientation.values
+    orientation = np.where(np.isfinite(turned).all(axis=-1, keepdims=True), turned, level)
+    bones = poses(robot, position, orientation, record.joint_angle.values)
+    lowest = float(bones.positions[..., 2].min(initial=0.0))
+    position[:, 2] = -lowest + 0.1 * robot.length * bool(not place.limbs) + 0.02 * robot.length
+    tips = bones.positions[:, [limb.tip for limb in place.limbs]] + position[:, None]
+    shown = {
+        "position": position, "orientation": orientation, "centre_of_mass": position, "foot_position": tips,
+        "foot_force": np.zeros((count, len(place.limbs), 3)), "belly_force": np.zeros((count, len(place.trunk), 3)),
+        "tail_force": np.zeros((count, 3)), "snout": position, "tail_tip": bones.positions[:, -1] + position,
+    }  # fmt: skip
+    return record.assign({name: record[name].copy(data=values) for name, values in shown.items()})

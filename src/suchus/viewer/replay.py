@@ -12,6 +12,7 @@ from suchus.capture import Tracks, UnusableTracks, observe
 from suchus.design import LEGS, Robot, joint_names
 from suchus.design.ground import Ground
 from suchus.errors import IncompatibleRecord, UnknownName
+from suchus.hardware import held
 from suchus.motion import START
 from suchus.record import VARIABLES, check_land, ground_of, load
 from suchus.robots import ROBOTS
@@ -104,6 +105,7 @@ def _take(path: Path, run: xr.Dataset, number: int, robot: Robot | None) -> Take
             f"{path} holds {run.sizes['joint']} joints and robot {who.name!r} has {len(joint_names(who))}: "
             "name the robot that walked with --robot."
         )
+    run = held(run, who)
     valid = np.isfinite(run.position.values).all(axis=-1)
     if valid.sum() < 2:
         raise IncompatibleRecord(f"run {number} of {path} has fewer than two valid samples.")

@@ -1,0 +1,258 @@
+"""``suchus drive GAIT``: a robot of servos moves in a gait, by rules, or swims; its log is a record."""
+
+import select
+import shlex
+import sys
+import termios
+import time
+import tty
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+import xarray as xr
+from rich.console import Console
+
+from suchus.bus import FRAMINGS, Instruction, Packet, Port, Wiring
+from suchus.bus.packets import Framing
+from suchus.cli.entry import BadCommand
+from suchus.cli.options import parse
+from suchus.cli.terminal import working
+from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming
+from suchus.design import Robot
+from suchus.emulator import Body, Emulator, MemoryPort
+from suchus.errors import BusFailure, UnknownName
+from suchus.experiments._driven import Driven
+from suchus.figures import styled
+from suchus.gaits import gait_of, own_gait, suits
+from suchus.hardware import BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_wiring
+from suchus.motion import START, Gait
+from suchus.record import check_writable
+from suchus.report import PAGE, check_place, save_outcome
+from suchus.robots import ROBOTS
+from suchus.water import swim_of
+
+SWIM = "swim"
+"""Gait that is the robot's own wave, as in suchus view --lake."""
+_SHOWN = 3  # ticks whose packets a dry run prints
+_HELD = 4.0  # [s]; how long a robot stands up
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveOptions:
+    """Options of ``suchus drive``."""
+
+    gait: Annotated[str, tyro.conf.Positional] = ""
+    """The gait, a name that suchus list shows or a TOML file; swim for the robot's own wave; its own gait if none."""
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is driven."""
+    hardware: Path = Path("hardware.toml")
+    """Which servo hangs where, as suchus calibrate or suchus emulate write it."""
+    port: str | None = None
+    """Port of its only bus, in the place of the file's."""
+    clock: Literal["wall", "bus"] = "wall"
+    """wall: this computer's time; bus: an emulator is told the time, and nothing is ever late."""
+    control: Literal["open", "closed", "steered", "pattern", "stand", "swim"] = "open"
+    """What decides: the gait alone, the three feedback rules, these and the heading loop, coupled oscillators, standing
+    up and sitting down again, or a swim."""
+    seconds: float = 30.0
+    """How long, the first second of standing included [s]."""
+    rate: float | None = None
+    """Ticks in a second [Hz]; by default what suits a robot of its size, 100 for one of 1 m."""
+    stop: Literal["sag", "hold", "off"] = "sag"
+    """How it ends: let down with a fifth of its torque and switched off, left standing, or switched off at once."""
+    without: tuple[str, ...] = ()
+    """Servos that are not there: it goes on with them limp."""
+    dry_run: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Open no port: show what would be sent, and drive an emulated robot instead."""
+    out: Path | None = None
+    """Folder of the log, its figures and its page; by default out/drive_GAIT."""
+
+
+def run(words: Sequence[str]) -> int:
+    """Drive until the time is over, a key is pressed or something is wrong, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the robot cannot do it; nothing has moved.
+        BusFailure: servos cannot be reached, or the robot had to be stopped; the log is kept.
+    """
+    about = "Drive a robot of servos. Any key stops it, as Ctrl-C and the end of the terminal do; then it is let down."
+    options = parse(DriveOptions, "suchus drive", _gait_first(words), about)
+    gait, control = _movement(options)
+    folder = options.out or Path("out") / f"drive_{gait.name}"
+    check_writable(folder.parent)
+    check_place(folder)
+    wiring = read_wiring(options.hardware, options.robot)
+    if options.port is not None:
+        if len(wiring.bus) != 1:
+            raise BadCommand(
+                f"--port names one port, and {options.hardware} has {len(wiring.bus)} buses: name them there."
+            )
+        wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
+    settings = DriveSettings(duration=options.seconds, stop=options.stop)
+    begun = time.perf_counter()
+    with _opened(options, wiring, gait) as (rig, clock):
+        check_drive(rig, gait, control)
+        told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
+        try:
+            with _keys() as asked, working() as bars:
+                record = drive(
+                    rig, gait, control, settings, clock=clock, asked=asked, say=bars.say, progress=bars.task(gait.name)
+                )
+        except (BusFailure, KeyboardInterrupt) as error:
+            _keep(told, getattr(error, "record", None), folder, words, time.perf_counter() - begun)
+            raise
+    _keep(told, record, folder, words, time.perf_counter() - begun)
+    return 0
+
+
+def _movement(options: DriveOptions) -> tuple[Gait, Control]:
+    """Return the gait and what decides."""
+    robot = options.robot
+    if options.gait == SWIM or (options.control == "swim" and not options.gait):
+        gait, kind = swim_of(robot), "swim"
+    else:
+        try:
+            gait = gait_of(robot, options.gait or None)
+        except UnknownName as error:
+            raise BadCommand(f"{error} {SWIM} and a path to a TOML file will do as well.") from error
+        kind = options.control
+        if not options.gait and not suits(robot, gait):
+            gait = own_gait(robot)
+    closed = Coordinated().suited(robot, gait)
+    controls: dict[str, Callable[[], Control]] = {
+        "open": OpenLoop,
+        "closed": lambda: closed,
+        "steered": lambda: replace(closed, heading=HeadingRule()),
+        "pattern": PatternGenerator,
+        "stand": lambda: Standing(at=START + gait.period, hold=_HELD),
+        "swim": Swimming,
+    }
+    return gait, controls[kind]()
+
+
+@contextmanager
+def _opened(options: DriveOptions, wiring: Wiring, gait: Gait) -> Iterator[tuple[Rig, Any]]:
+    """Yield the open robot and its clock; an emulated one in this process where nothing is to be opened."""
+    ports: list[Port] = []
+    clocked = options.clock == "bus" or options.dry_run
+    if options.dry_run:
+        emulator = Emulator(wiring, Body(options.robot, gait), clocked=True)
+        ports = [
+            Telling(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
+            for number, bus in enumerate(wiring.bus)
+        ]
+    rig = Rig(
+        options.robot, wiring, ports, clocked=clocked, without=options.without,
+        rate=None if options.dry_run else options.rate,
+    )  # fmt: skip
+    try:
+        yield rig, BusClock(rig) if clocked else WallClock(rig.period)
+    finally:
+        rig.close()
+
+
+def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float) -> None:
+    """Write the folder of a log, and say what it says."""
+    if record is None or record.sizes["time"] < 1:
+        return
+    outcome = told.tell(record, seconds)
+    with styled():
+        figures = told.draw(outcome)
+    save_outcome(outcome, figures, told, folder, command=shlex.join(["suchus", "drive", *words]))
+    console = Console(highlight=False)
+    console.print(outcome.decides, markup=False)
+    cause = str(record.cause.item())
+    if cause:
+        console.print(cause, markup=False)
+    print(f"the log, its figures and its replay: {folder / PAGE}")
+
+
+@contextmanager
+def _keys() -> Iterator[Callable[[], str]]:
+    """Yield what says whether a key was pressed; the terminal is as before in the end."""
+    before = None
+    with suppress(termios.error, OSError, ValueError, AttributeError):  # no terminal, or one that cannot be set
+        if sys.stdin.isatty():
+            before = termios.tcgetattr(sys.stdin)
+            tty.setcbreak(sys.stdin)
+
+    def asked() -> str:
+        if before is None:
+            return ""
+        try:
+            ready, _, _ = select.select((sys.stdin,), (), (), 0.0)
+            return ("a key." if sys.stdin.read(1) else "the terminal was closed.") if ready else ""
+        except (OSError, ValueError):
+            return "the terminal was closed."
+
+    try:
+        yield asked
+    finally:
+        if before is not None:
+            with suppress(termios.error, OSError, ValueError):
+                termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+
+
+class Telling:
+    """A port that prints what is sent over it: the handshake in short, then the packets of some ticks.
+
+    Args:
+        port: that it is.
+        framing: what is spoken.
+        wiring: names of those that are spoken to.
+    """
+
+    def __init__(self, port: Port, framing: Framing, wiring: Wiring) -> None:
+        self.name = port.name
+        self._port, self._decoder, self._told = port, framing.requests(), 0
+        self._word = framing.word
+        self._names = {one.id: one.name for one in wiring.servo}
+        self._tables = {one.id: one.table for one in wiring.servo}
+
+    def send(self, data: bytes, wait: float) -> None:
+        """Send, and print what."""
+        for packet in self._decoder.feed(data):
+            self._tell(packet, data)
+        self._port.send(data, wait)
+
+    def receive(self, wait: float) -> bytes:
+        """Return what has arrived."""
+        return self._port.receive(wait)
+
+    def close(self) -> None:
+        """Let go of it."""
+        self._port.close()
+
+    def _tell(self, packet: Packet, data: bytes) -> None:
+        if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
+            return
+        word, rest = self._word, packet.data
+        address = int.from_bytes(rest[:word], "little")
+        length = int.from_bytes(rest[word : 2 * word], "little")
+        table = next(iter(self._tables.values()))
+        register = next((one.name for one in table.registers if one.address == address), str(address))
+        if register == "goal_position":
+            self._told += 1
+        if self._told > _SHOWN:
+            return
+        kind = "write" if packet.code == Instruction.SYNC_WRITE else "read"
+        step = length + 1 if kind == "write" else 1
+        called = [self._names.get(rest[i], str(rest[i])) for i in range(2 * word, len(rest), step)]
+        print(f"{kind} {register}, {len(called)} of {', '.join(called[:3])} ...\n  {data.hex(' ')}")
+
+
+def _gait_first(words: Sequence[str]) -> list[str]:
+    """Let the gait be named as an option too, as everywhere else."""
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--gait":
+            if words[i + 1 : i + 2] == []:
+                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--gait="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words

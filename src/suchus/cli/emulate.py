@@ -1,0 +1,192 @@
+"""``suchus emulate ROBOT``: its servos on buses that other programs open, with the simulated robot behind them."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from math import radians
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+
+from suchus.bus import BusPlace, Wiring, straight
+from suchus.cli.entry import BadCommand
+from suchus.cli.options import parse
+from suchus.cli.view import pages_of_viewer
+from suchus.design import Robot
+from suchus.emulator import Body, Emulator, Server, Trouble
+from suchus.faults import FAULTS, from_table
+from suchus.gaits import own_gait
+from suchus.hardware import read_wiring, write_wiring
+from suchus.land import Ground, Lake
+from suchus.motion import Gait
+from suchus.record import check_writable, save
+from suchus.robots import ROBOTS
+
+MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250"}
+"""Servos of an emulated robot for which no hardware is written, by protocol."""
+_PLACE = Path("hardware.toml")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmulateOptions:
+    """Options of ``suchus emulate``."""
+
+    robot: Annotated[Robot, tyro.conf.Positional] = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is emulated."""
+    hardware: Path = _PLACE
+    """Which servo hangs where, with the paths of the ports; written for this robot where there is no such file."""
+    protocol: Literal["dynamixel", "feetech"] = "dynamixel"
+    """What servos speak, where the file is written."""
+    clock: Literal["wall", "bus"] = "wall"
+    """wall: time passes by itself; bus: the robot moves when it is told to, by suchus drive --clock bus."""
+    gait: Gait | None = None
+    """Gait in whose first posture the robot begins; by default its own."""
+    lake: float | None = None
+    """Level of the water around it [m]; dry land if it is left out."""
+    slope: float = 0.0
+    """Slope of the ground, uphill positive [degrees]."""
+    socket: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Listen on a socket of this computer in the place of a pseudo-terminal."""
+    latency: float = 0.0
+    """How long requests and replies are on their way, each [ms]."""
+    noise: float = 0.0
+    """Standard deviation of the angles that servos tell [degrees]."""
+    resolution: float = 0.0
+    """Step of the servos' angles, where it is coarser than 4096 a turn [degrees]."""
+    lost: float = 0.0
+    """Share of packets that are lost [-]."""
+    corrupt: float = 0.0
+    """Share of replies in which a bit is flipped [-]."""
+    dropped: float = 0.0
+    """Share of replies that lack a byte [-]."""
+    mute: tuple[int, ...] = ()
+    """Numbers of servos that do not answer."""
+    twin: tuple[int, ...] = ()
+    """Numbers that two servos have."""
+    hot: tuple[int, ...] = ()
+    """Numbers of servos that get hot."""
+    wet: tuple[int, ...] = ()
+    """Numbers of servos whose module takes in water."""
+    sag: float = 0.0
+    """Voltage that the battery loses in a second [V/s]."""
+    fault: tuple[str, ...] = ()
+    """What breaks in the servos, as limp:LF_yaw or weak:RH_pitch: a fault that suchus list shows, and its part."""
+    at: float = 0.0
+    """When servos become mute, hot, wet or broken and the battery sags [s]."""
+    seed: int = 0
+    """Seed of what is random."""
+    seconds: float | None = None
+    """How long to serve [s]; until Ctrl-C if it is left out."""
+    view: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Show the robot in the browser (extra: viewer)."""
+    port: int = 8080
+    """Port of the page in the browser; 0 for any that is free."""
+    out: Path | None = None
+    """Where to keep what truly happened, a record that suchus view and suchus replay show; nothing by default."""
+
+
+def emulate(words: Sequence[str]) -> int:
+    """Serve until interrupted, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the ports cannot be made.
+    """
+    about = (
+        "Emulate a robot's servos on a bus: what drives them cannot tell them from real ones, and nothing can break."
+    )
+    options = parse(EmulateOptions, "suchus emulate", _robot_first(words), about)
+    if options.out is not None:
+        check_writable(options.out.parent)
+    trouble = Trouble(
+        latency=1e-3 * options.latency, noise=radians(options.noise), resolution=radians(options.resolution),
+        lost=options.lost, corrupt=options.corrupt, dropped=options.dropped, mute=options.mute, twin=options.twin,
+        hot=options.hot, wet=options.wet, sag=options.sag, at=options.at, seed=options.seed,
+    )  # fmt: skip
+    clocked = options.clock == "bus"
+    body = Body(
+        options.robot,
+        options.gait or own_gait(options.robot),
+        ground=Ground(uphill=radians(options.slope)),
+        lake=None if options.lake is None else Lake(level=options.lake),
+        faults=[_fault(text, options.at) for text in options.fault],
+        latency=trouble.latency if clocked else 0.0,
+    )
+    wiring, links = _wired(options)
+    server = Server(Emulator(wiring, body, trouble, clocked=clocked), links, sockets=options.socket)
+    viewer: Any = None
+    try:
+        if options.socket or not links:
+            wiring = _with_ports(wiring, server.ports)
+        if not options.hardware.exists():
+            write_wiring(_with_ports(wiring, server.ports), options.hardware)
+        print(
+            f"{', '.join(server.ports)}: the servos of {options.robot.name}, wired as {options.hardware} says",
+            flush=True,
+        )
+        if trouble.latency and clocked and abs(body.latency - trouble.latency) > 1e-9:
+            print(f"goals are {1e3 * body.latency:g} ms on their way, whole steps of the physics", flush=True)
+        if options.view:
+            viewer = _viewer(options, server, body)
+            print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
+        end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
+        with suppress(KeyboardInterrupt):
+            server.serve(until=lambda: end is not None and body.tick >= end)
+    finally:
+        server.close()
+        if viewer is not None:
+            viewer.stop()
+        if options.out is not None and body.tick > 0:
+            print(f"what truly happened: {save(body.record(), options.out)}")
+    print("ended.")
+    return 0
+
+
+def _wired(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
+    """Return what hangs where, and under which names the pseudo-terminals are found."""
+    if options.hardware.exists():
+        wiring = read_wiring(options.hardware, options.robot)
+        ports = [Path(one.port) for one in wiring.bus if "://" not in one.port]
+        return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
+    check_writable(options.hardware.parent)
+    link = options.hardware.parent / f"{options.hardware.stem}.port"
+    place = BusPlace(port=link.name, protocol=options.protocol)
+    return straight(options.robot, [place], MODELS[options.protocol], boards=True), [] if options.socket else [link]
+
+
+def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:
+    """Return a wiring whose buses are found where they are."""
+    named = [port if "://" in port else Path(port).name for port in ports]
+    return replace(wiring, bus=tuple(replace(one, port=port) for one, port in zip(wiring.bus, named, strict=True)))
+
+
+def _fault(text: str, at: float) -> Any:
+    kind, colon, part = text.partition(":")
+    if not colon or not part:
+        raise BadCommand(f"--fault {text} names no part; say as limp:LF_yaw. The kinds are {', '.join(FAULTS)}.")
+    return from_table({"kind": kind, "joint": part, "at": at})
+
+
+def _viewer(options: EmulateOptions, server: Server, body: Body) -> Any:
+    pages = pages_of_viewer()
+    level = options.lake
+
+    def look() -> Any:
+        torque = "with its torque on" if (body.powered > 0.0).any() else "limp: nobody drives it"
+        return pages.Seen(body.time, body.now, level, f"{', '.join(server.ports)}, {torque}")
+
+    return pages.Viewer(
+        lambda client: pages.WatchPage(client, options.robot, look), port=options.port,
+        title=f"{options.robot.name}, emulated", camera=pages.camera(options.robot),
+    )  # fmt: skip
+
+
+def _robot_first(words: Sequence[str]) -> list[str]:
+    """Let the robot be named as an option too, as everywhere else."""
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--robot" and i + 1 < len(words):
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--robot="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words
