@@ -32,6 +32,8 @@ FULLEST = 0.9
 """Share of a tick that the bytes of a bus may take [-]; what is left is for the adapter and the computer."""
 TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
+PATIENT = 0.1
+"""How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
 _EMPTY = Packet(0, 0)
 _AGAIN = 3  # times that a question is asked before the robot moves
 _WATCHDOG = 5  # steps of 20 ms
@@ -127,12 +129,12 @@ class Rig:
             for number in range(len(wiring.bus))
         ]
         self._check_time()
+        self._wait = min(WAIT, 0.8 * self.period)
         self.buses: list[Bus] = []
         try:
             for number, place in enumerate(wiring.bus):
                 port = ports[number] if ports else open_port(place.port, place.baud)
-                wait = min(WAIT, 0.8 * self.period) if not clocked else WAIT
-                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=wait, clocked=clocked))
+                self.buses.append(Bus(port, FRAMINGS[place.protocol], wait=self._wait, clocked=clocked))
         except BaseException:
             self.close()
             raise
@@ -203,6 +205,8 @@ class Rig:
                 "robot is driven with --clock wall."
             )
         said: list[str] = []
+        for bus in self.buses:
+            bus.wait = PATIENT
         for number, bus in enumerate(self.buses):
             self._find(number, bus)
             said += self._settings(number, bus)
@@ -216,6 +220,9 @@ class Rig:
                     "in "
                     "anew."
                 )
+        for bus in self.buses:
+            bus.settle()
+            bus.wait = self._wait
         return said
 
     def _find(self, number: int, bus: Bus) -> None:
