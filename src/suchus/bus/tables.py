@@ -4,13 +4,15 @@ Sources: ROBOTIS e-manual and the tables of its SDK (Apache-2.0) for the X serie
 Feetech's manual for STS. Boards for sensors are nobody's product: their tables say what a board of one's own must do.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi
 from types import MappingProxyType
 from typing import Literal
 
+from suchus.blueprint import motors
+from suchus.design import Motor
 from suchus.errors import UnknownName
 
 Sign = Literal["none", "two", "bit"]
@@ -72,10 +74,8 @@ class Table:
     """``dynamixel`` or ``feetech``."""
     registers: tuple[Register, ...]
     """In the order of their addresses."""
-    stall_torque: float = 1.0
-    """Torque at rest at 12 V, or at the highest voltage that it takes [N m]; what its load is a share of."""
-    torque_per_ampere: float = 1.0
-    """That over the current at rest [N m/A]: what a current is taken to be, which gears' friction makes inaccurate."""
+    motor: Motor | None = None
+    """What is bought; None for a board."""
     felt: tuple[str, str]
     """First and last register of the block that is read at every tick."""
     health: tuple[str, str] | None = None
@@ -89,6 +89,16 @@ class Table:
     """Value of ``torque_limit`` that stands for all of the torque [-]."""
     alerts: tuple[tuple[int, str], ...] = ()
     """Bits of ``hardware_error``, and what they say."""
+
+    @property
+    def stall_torque(self) -> float:
+        """Torque at rest [N m]; what its load is a share of."""
+        return 1.0 if self.motor is None else self.motor.stall_torque
+
+    @property
+    def torque_per_ampere(self) -> float:
+        """That over the current at rest [N m/A]: what a current is taken to be, which the gear's friction blurs."""
+        return 1.0 if self.motor is None else self.motor.stall_torque / self.motor.stall_current
 
     @cached_property
     def by_name(self) -> Mapping[str, Register]:
@@ -128,28 +138,23 @@ _RPM = 2 * pi / 60
 _STEP = 2 * pi / STEPS
 
 
-def _x_series(
-    model: str, number: int, *, stall: tuple[float, float], current: float, hottest: int, volts: tuple[int, int]
-) -> Table:
-    """Return the table of an X servo.
+_AMPERES = {"XM": 2.69e-3, "XW": 2.69e-3, "XC330": 1e-3}
+"""What a step of ``present_current`` is, by how the name of a model begins [A]; others tell a load only."""
 
-    Args:
-        model: its name.
-        number: its model number.
-        stall: torque [N m] and current [A] at rest.
-        current: what a step of ``present_current`` is [A]; 0 where it tells a load only.
-        hottest: temperature at which it switches off [degrees Celsius].
-        volts: least and greatest voltage [0.1 V].
-    """
+
+def _x_series(motor: Motor) -> Table:
+    """Return the table of an X servo."""
+    current = next((step for start, step in _AMPERES.items() if motor.name.startswith(start)), 0.0)
+    low, high = (round(10 * end) for end in motor.volts_range)
+    hottest = round(motor.temperature_limit)
     two: Sign = "two"
     return Table(
-        model=model,
-        number=number,
+        model=motor.name,
+        number=motor.model_number,
         protocol="dynamixel",
-        stall_torque=stall[0],
-        torque_per_ampere=stall[0] / stall[1],
+        motor=motor,
         registers=(
-            Register(name="model_number", address=0, size=2, initial=number),
+            Register(name="model_number", address=0, size=2, initial=motor.model_number),
             Register(name="firmware", address=6, size=1, initial=48),
             Register(name="id", address=7, size=1, writable=True, initial=1, span=(0, 252)),
             Register(name="baud_rate", address=8, size=1, writable=True, initial=1, span=(0, 7)),
@@ -157,8 +162,8 @@ def _x_series(
             Register(name="operating_mode", address=11, size=1, writable=True, initial=3, span=(0, 16)),
             Register(name="homing_offset", address=20, size=4, unit=_STEP, sign=two, writable=True),
             Register(name="temperature_limit", address=31, size=1, writable=True, initial=hottest, span=(0, 100)),
-            Register(name="voltage_high", address=32, size=2, unit=0.1, writable=True, initial=volts[1]),
-            Register(name="voltage_low", address=34, size=2, unit=0.1, writable=True, initial=volts[0]),
+            Register(name="voltage_high", address=32, size=2, unit=0.1, writable=True, initial=high),
+            Register(name="voltage_low", address=34, size=2, unit=0.1, writable=True, initial=low),
             Register(name="position_high", address=48, size=4, unit=_STEP, writable=True, initial=STEPS - 1,
                      span=(0, STEPS - 1)),
             Register(name="position_low", address=52, size=4, unit=_STEP, writable=True, span=(0, STEPS - 1)),
@@ -191,24 +196,18 @@ def _x_series(
     )  # fmt: skip
 
 
-def _sts(model: str, number: int, *, stall: tuple[float, float], volts: tuple[int, int]) -> Table:
-    """Return the table of an STS servo; it has no watchdog of the bus, and holds its last goal when the host is gone.
-
-    Args:
-        model: its name.
-        number: its model number.
-        stall: torque [N m] and current [A] at rest.
-        volts: least and greatest voltage [0.1 V].
-    """
+def _sts(motor: Motor) -> Table:
+    """Return the table of an STS servo: without a watchdog, it holds its last goal when the host is gone."""
+    hottest = round(motor.temperature_limit)
+    low, high = (round(10 * end) for end in motor.volts_range)
     return Table(
-        model=model,
-        number=number,
+        model=motor.name,
+        number=motor.model_number,
         protocol="feetech",
-        stall_torque=stall[0],
-        torque_per_ampere=stall[0] / stall[1],
+        motor=motor,
         registers=(
             Register(name="firmware", address=0, size=1, initial=3),
-            Register(name="model_number", address=3, size=2, initial=number),
+            Register(name="model_number", address=3, size=2, initial=motor.model_number),
             Register(name="id", address=5, size=1, writable=True, initial=1, span=(0, 253)),
             Register(name="baud_rate", address=6, size=1, writable=True, span=(0, 7)),
             Register(name="return_delay", address=7, size=1, unit=2e-6, writable=True, span=(0, 254)),
@@ -216,9 +215,9 @@ def _sts(model: str, number: int, *, stall: tuple[float, float], volts: tuple[in
             Register(name="position_low", address=9, size=2, unit=_STEP, writable=True, span=(0, STEPS - 1)),
             Register(name="position_high", address=11, size=2, unit=_STEP, writable=True, initial=STEPS - 1,
                      span=(0, STEPS - 1)),
-            Register(name="temperature_limit", address=13, size=1, writable=True, initial=70, span=(0, 100)),
-            Register(name="voltage_high", address=14, size=1, unit=0.1, writable=True, initial=volts[1]),
-            Register(name="voltage_low", address=15, size=1, unit=0.1, writable=True, initial=volts[0]),
+            Register(name="temperature_limit", address=13, size=1, writable=True, initial=hottest, span=(0, 100)),
+            Register(name="voltage_high", address=14, size=1, unit=0.1, writable=True, initial=high),
+            Register(name="voltage_low", address=15, size=1, unit=0.1, writable=True, initial=low),
             Register(name="homing_offset", address=31, size=2, unit=_STEP, sign="bit", sign_bit=11, writable=True),
             Register(name="operating_mode", address=33, size=1, writable=True, span=(0, 3)),
             Register(name="torque_enable", address=40, size=1, writable=True, span=(0, 128)),
@@ -243,20 +242,11 @@ def _sts(model: str, number: int, *, stall: tuple[float, float], volts: tuple[in
     )  # fmt: skip
 
 
+_SERIES: Mapping[str, Callable[[Motor], Table]] = {"dynamixel": _x_series, "feetech": _sts}
 TABLES: Mapping[str, Table] = MappingProxyType(
-    {
-        table.model: table
-        for table in (
-            _x_series("XL430-W250", 1060, stall=(1.5, 1.4), current=0.0, hottest=72, volts=(60, 140)),
-            _x_series("XC330-M288", 1240, stall=(0.93, 1.8), current=1e-3, hottest=70, volts=(35, 70)),
-            _x_series("XM430-W350", 1020, stall=(4.1, 2.3), current=2.69e-3, hottest=80, volts=(95, 160)),
-            _x_series("XM540-W270", 1120, stall=(10.6, 4.4), current=2.69e-3, hottest=80, volts=(95, 160)),
-            _sts("STS3215-12V", 777, stall=(2.94, 2.7), volts=(40, 140)),
-            _sts("STS3250", 2825, stall=(4.9, 4.5), volts=(40, 140)),
-        )
-    }
+    {name: _SERIES[motor.protocol](motor) for name, motor in motors().items() if motor.protocol in _SERIES}
 )
-"""The servos that we speak with, by model."""
+"""The servos that we speak with, by the names of ``blueprint.motors``."""
 
 
 def _board(model: str, number: int, protocol: str, registers: tuple[Register, ...]) -> Table:

@@ -11,13 +11,6 @@ from suchus.control import Sensed
 OK, RANGE, LIMIT, ACCESS = 0, 4, 6, 7  # errors of Dynamixel 2.0
 AMBIENT = 25.0
 """Temperature of the air, at which servos begin [degrees Celsius]."""
-FULL_RISE = 120.0
-"""By how much a servo would warm up in the end at its full torque [K]: chosen so that a third of it, what makers call
-continuous, is borne for ever below the limit of 70 degrees; no maker tells it."""
-SLOW = 120.0
-"""Time constant of that [s]; chosen: a stalled hobby servo switches off after about a minute."""
-NOMINAL = 12.0
-"""Voltage of the battery at the beginning [V]."""
 SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
                 "current": True, "overload": True}  # fmt: skip
 """Which alerts take the torque away, as the makers set them."""
@@ -77,7 +70,9 @@ class EmulatedServo(Device):
         self.put("id", place.id)
         self.put("baud_rate", codes.get(baud, 0))
         self.put("return_delay", 0)
-        self.temperature, self.voltage, self.torque = AMBIENT, NOMINAL, 0.0
+        self.supply = place.table.motor.volts if place.table.motor is not None else 0.0
+        """Voltage of the battery at the beginning [V]."""
+        self.temperature, self.voltage, self.torque = AMBIENT, self.supply, 0.0
         self.heard_at = 0.0
         self.off = False
         """Whether it has switched itself off; a reboot ends that."""
@@ -164,9 +159,13 @@ class EmulatedServo(Device):
             voltage: at its plug [V].
             now: by the emulator's clock [s].
         """
-        load = min(self.torque / self.table.stall_torque, 1.0)
-        rest = AMBIENT + FULL_RISE * load**2
-        self.temperature += seconds * ((rest - self.temperature) / SLOW + heating)
+        motor = self.place.table.motor
+        if motor is not None:
+            load = min(self.torque / motor.stall_torque, 1.0)
+            lost = motor.volts * motor.stall_current * load**2  # all of it heat: a servo that holds does no work
+            heat = motor.heat
+            cooling = (self.temperature - AMBIENT) / heat.resistance
+            self.temperature += seconds * ((lost - cooling) / heat.capacity + heating)
         self.voltage = voltage
         if self.temperature >= self.get("temperature_limit"):
             self.fail("overheated")

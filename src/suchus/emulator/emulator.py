@@ -9,7 +9,7 @@ import numpy as np
 from suchus.bus import BROADCAST, CLOCK, FRAMINGS, BusGone, Decoder, Framing, Instruction, Packet, Wiring
 from suchus.control import Sensed
 from suchus.emulator.body import Body
-from suchus.emulator.devices import NOMINAL, OK, Board, Device, EmulatedServo
+from suchus.emulator.devices import OK, Board, Device, EmulatedServo
 from suchus.emulator.trouble import Trouble
 from suchus.errors import Diverged
 
@@ -62,7 +62,7 @@ class Emulator:
             self.lines[one.bus].devices[one.id] = board
         self._late: list[Sensed] = []
         self._behind = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if clocked else 0
-        self._voltage = NOMINAL
+        self._sagged = 0.0
         self._power()
         self._feel()
 
@@ -217,10 +217,10 @@ class Emulator:
         trouble, now, period = self.trouble, self.body.time, self.body.period
         on = now >= trouble.at
         if on:
-            self._voltage = max(self._voltage - trouble.sag * period, 0.0)
+            self._sagged += trouble.sag * period
         for servo in self.servos:
             heating = trouble.heating if on and servo.place.id in trouble.hot else 0.0
-            servo.age(period, heating, self._voltage, now)
+            servo.age(period, heating, max(servo.supply - self._sagged, 0.0), now)
             if on and servo.place.id in trouble.wet:
                 servo.fail("electrical shock" if servo.table.protocol == "dynamixel" else "overload")
 

@@ -106,31 +106,33 @@ class Driven(Experiment):
             return {"drive": self._draw(outcome.record)}
 
     def _draw(self, record: xr.Dataset) -> Figure:
-        figure, axes = panels(3, 1, sharex=True, height=7.0)
+        figure, axes = panels(3, 1, sharex=True, height=8.5)
         off = _DEGREES * (record.servo_angle - record.servo_asked).values
         size = np.sqrt(np.nanmean(off**2, axis=0))
         time = record.time.values
         for rank, i in enumerate(np.argsort(size)[::-1][:4]):
             colour = list(COLOURS.values())[rank]
             axes[0, 0].plot(time, off[:, i], color=colour, label=str(record.servo.values[i]).replace("_", " "))
-        axes[0, 0].set_ylabel("angle - asked [degrees]")
-        axes[0, 0].legend(loc="upper right", ncols=4, title="the four servos farthest off")
+        axes[0, 0].set_ylabel("off [degrees]")
+        axes[0, 0].legend(
+            loc="upper right", ncols=4, title="angle less what was asked, of the four servos farthest off"
+        )
         heat = record.servo_temperature.values
         for i in range(heat.shape[1]):
             axes[1, 0].plot(time, heat[:, i], color=COLOURS["neutral"], linewidth=0.8)
         hottest = np.full(len(time), np.nan)
         seen = np.isfinite(heat).any(axis=1)
         hottest[seen] = np.nanmax(heat[seen], axis=1)
-        axes[1, 0].plot(time, hottest, color=COLOURS["alarm"], label="hottest")
-        axes[1, 0].set_ylabel("temperature [degrees Celsius]")
-        axes[1, 0].legend(loc="upper left")
+        axes[1, 0].plot(time, hottest, color=COLOURS["alarm"], label="the hottest")
+        axes[1, 0].set_ylabel("temperature [°C]")
+        axes[1, 0].legend(loc="upper left", title="servos, grey; the hottest, red")
         took = 1e3 * (record.tick_began + record.tick_took).values
         axes[2, 0].plot(time, took, color=COLOURS["ours"], linewidth=0.8, label="from the plan until goals are sent")
         axes[2, 0].set_ylabel("late [ms]")
         missing = 100.0 * (1.0 - record.servo_heard.values.mean(axis=1))
         twin = axes[2, 0].twinx()
         twin.plot(time, missing, color=COLOURS["alarm"], linewidth=0.8)
-        twin.set_ylabel("servos unheard [%]", color=COLOURS["alarm"])
+        twin.set_ylabel("unheard [%]", color=COLOURS["alarm"])
         twin.set_ylim(0.0, max(5.0, 1.05 * float(missing.max())))
         axes[2, 0].set_xlabel("time [s]")
         axes[2, 0].legend(loc="upper left")
