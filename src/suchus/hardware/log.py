@@ -114,8 +114,9 @@ def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
         record: of one run; one that says where the robot was is returned as it is.
         robot: whose it is.
     """
-    if np.isfinite(record.position.values).any() or not np.isfinite(record.servo_angle.values).all():
+    if "servo_heard" not in record or np.isfinite(record.position.values).any():
         return record
+    record = record.isel(time=np.isfinite(record.servo_angle.values).all(axis=-1))
     count, place = record.sizes["time"], layout(robot)
     position = np.zeros((count, 3))
     level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
