@@ -1,5 +1,7 @@
 """Emulated buses for tests, with a body that needs no physics: servos that are where they were sent."""
 
+from dataclasses import replace
+
 import numpy as np
 from tests.felt import felt
 
@@ -29,7 +31,8 @@ class Obedient:
         return self.tick * self.period
 
     def sensed(self):
-        return felt(self.robot, servo_position=self.angles, servo_torque=self.torques, foot_pressure=1.5)
+        seen = felt(self.robot, servo_torque=self.torques, foot_pressure=1.5)
+        return replace(seen, servo_position=self.angles[None].copy())
 
     def aim(self, goals):
         for place, angle in goals.items():

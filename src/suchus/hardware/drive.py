@@ -222,7 +222,7 @@ class _Drive:
         self._progress = progress
         self._log, self._guard = Log(rig.robot, gait), Guard(rig, settings.limits)
         self._told = 0
-        self._tick = 0
+        self._tick = self._offset = 0
         self._goal = np.zeros(len(rig.servos))
         self._missed = self._clamped = 0
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
@@ -265,21 +265,19 @@ class _Drive:
         if unheard:
             raise BusFailure(f"{' and '.join(unheard[:4])} does not say where it is: the robot cannot be started.")
         here = np.where(rig.asked, rig.now.angle, 0.0)
-        self._goal = rig.aim(np.clip(here, rig.low, rig.high))
-        rig.limit(1.0)
-        rig.torque(True)
+        self._goal = rig.ready(np.clip(here, rig.low, rig.high))
         rig.watch(True)
         there = np.clip(self._controller.rest()[0], rig.low, rig.high)
         far = float(np.abs(there - here)[rig.asked].max(initial=0.0))
         count = int(max(far - _EARLY, 0.0) / self._settings.approach / rig.period)
         self._clock.begin()
-        first = -count if count else 0
-        tick = first
+        self._offset, first = count, -count
+        self._tick = tick = first
         while tick < 0:
             share = (tick - first + 1) / count
-            self._one(tick, first, here + (there - here) * share)
+            rig.read()
+            self._send(tick, here + (there - here) * share)
             tick = max(self._clock.wait(tick + 1 - first) + first, tick + 1)
-        self._offset = -first
 
     def _go(self, ticks: int) -> None:
         tick, stepped = 0, -1
@@ -293,7 +291,7 @@ class _Drive:
             if command.air_fraction is not None and np.isfinite(command.air_fraction).any():
                 raise UnsuitedRobot("the control lets air out of the hull, and no servo of this robot moves air.")
             self._limb = command.phase[0]
-            self._send(tick, self._offset, command.targets[0])
+            self._send(tick, command.targets[0])
             if tick % 16 == 0:
                 self._progress("driving", tick / max(ticks, 1))
             if tick == ticks:
@@ -303,14 +301,10 @@ class _Drive:
             tick = min(reached, ticks)
         self._progress("driving", 1.0)
 
-    def _one(self, tick: int, first: int, wanted: np.ndarray) -> None:
-        self._rig.read()
-        self._send(tick, -first, wanted)
-
-    def _send(self, tick: int, offset: int, wanted: np.ndarray) -> None:
+    def _send(self, tick: int, wanted: np.ndarray) -> None:
         """Look whether all is well, send goals within the limits, and keep the tick."""
         rig, now = self._rig, self._rig.now
-        late = self._clock.late(tick + offset)
+        late = self._clock.late(tick + self._offset)
         why = self._guard.look(now)
         for sentence in self._guard.warnings[self._told :]:
             self._say(sentence)
@@ -337,7 +331,7 @@ class _Drive:
                 "servo_target": sent, "limb_phase": self._limb, "servo_asked": wanted, "servo_heard": now.heard,
                 "reading_age": now.age * rig.period, "servo_current": now.current, "servo_voltage": now.voltage,
                 "servo_temperature": now.temperature, "servo_error": np.maximum(now.error, 0), "tick_began": late,
-                "tick_took": self._clock.late(tick + offset) - late,
+                "tick_took": self._clock.late(tick + self._offset) - late,
             },
         )  # fmt: skip
         if why:
@@ -356,6 +350,8 @@ class _Drive:
                 self._pass(_HOLDS)
                 rig.limit(_SAGS)
                 self._pass(_SINKS)
+        except BusFailure:  # what can be said no longer; why it ended is known by then
+            pass
         except BaseException:
             self._off()
             raise
@@ -373,13 +369,10 @@ class _Drive:
         """Let time pass while the servos keep hearing from us."""
         rig = self._rig
         until = self._tick + round(seconds / rig.period)
-        with suppress(BusFailure):
-            while self._tick < until:
-                rig.read()
-                rig.aim(self._goal)
-                self._tick = max(self._clock.wait(self._tick + 1 + self._offset) - self._offset, self._tick + 1)
-
-    _offset = 0
+        while self._tick < until:
+            rig.read()
+            rig.aim(self._goal)
+            self._tick = max(self._clock.wait(self._tick + 1 + self._offset) - self._offset, self._tick + 1)
 
     def _record(self, cause: str) -> xr.Dataset:
         rig = self._rig

@@ -35,7 +35,7 @@ TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
 _EMPTY = Packet(0, 0)
-_AGAIN = 3  # times that a question is asked before the robot moves
+_AGAIN = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
 _WATCHDOG = 5  # steps of 20 ms
 _SENSES = {
     "imu": ("orientation", "angular_velocity", "acceleration"),
@@ -460,12 +460,38 @@ class Rig:
         """Let all servos use a share of their torque only, 0 to 1 [-]."""
         self.write("torque_limit", {i: round(share * one.table.full) for i, one in enumerate(self.servos)})
 
+    def ready(self, goals: np.ndarray) -> np.ndarray:
+        """Give all servos their torque where they are, and be sure of it; return where they were sent [rad]."""
+        everybody = range(len(self.servos))
+        steps = self.steps.of(goals)
+        self.surely("bus_watchdog", dict.fromkeys(everybody, 0))  # ends an older one, which would keep goals away
+        self.surely("goal_position", dict(enumerate(steps.tolist())))
+        self.surely("torque_limit", {i: one.table.full for i, one in enumerate(self.servos)})
+        self.surely("torque_enable", dict.fromkeys(everybody, 1))
+        return self.steps.angles(steps)
+
     def watch(self, on: bool) -> None:
         """Let servos that can watch whether their host is there, or let them rest."""
         able = [i for i, one in enumerate(self.servos) if "bus_watchdog" in one.table]
-        self.write("bus_watchdog", dict.fromkeys(able, 0))  # ends an older one, which would keep goals away
-        if on:
-            self.write("bus_watchdog", dict.fromkeys(able, _WATCHDOG))
+        self.write("bus_watchdog", dict.fromkeys(able, _WATCHDOG if on else 0))
+
+    def surely(self, register: str, values: dict[int, int]) -> None:
+        """Write a register of some servos one after the other, until each says that it has it.
+
+        Raises:
+            BusFailure: one does not say so, or refuses.
+        """
+        for i, value in values.items():
+            one = self.servos[i]
+            if not self.asked[i] or register not in one.table:
+                continue
+            for left in reversed(range(_AGAIN)):
+                try:
+                    self.buses[one.bus].write(one.id, one.table[register], value)
+                    break
+                except NoAnswer:
+                    if not left:
+                        raise
 
     def write(self, register: str, values: dict[int, int]) -> None:
         """Write a register of some servos at once, by their places in the layout."""

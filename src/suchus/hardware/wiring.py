@@ -57,7 +57,5 @@ def _beside(port: str, path: Path) -> str:
 
 
 def _value(value: Any) -> str:
-    if isinstance(value, float):
-        return repr(round(value, 6))
     text = str(value).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{text}"' if isinstance(value, str) else repr(value)
