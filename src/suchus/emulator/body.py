@@ -191,9 +191,9 @@ class Body:
             self._turn_over()
         self._recorder.store(self._kept, self._loop.command.phase, self._loop.command.targets)
         last = self._recorder.record(self._times(self.tick - self._kept)).isel(time=slice(self._kept + 1))
-        parts = [*self._blocks, last]
-        whole = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else last
-        whole = whole.assign(ended=whole.ended * 0 + whole.time[-1], cause=last.cause)
+        end = last.ended.copy(data=np.array([float(last.time[-1])]))
+        parts = [part.assign(ended=end, cause=last.cause) for part in (*self._blocks, last)]
+        whole = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else parts[0]
         whole.attrs.update(timestep=self.period / self._loop.steps, control_period=self.period)
         return whole.isel(run=0)
 

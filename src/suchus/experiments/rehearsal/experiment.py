@@ -147,9 +147,9 @@ class Rehearsal(Experiment):
                 )
 
     def quick(self) -> "Rehearsal":
-        """Half a cycle, both protocols, one wire, the gait alone and the three rules."""
+        """A quarter of a cycle, both protocols, and one wire for the three rules."""
         return replace(
-            self, cycles=0.5, rule_cycles=0.5, controls=("open", "closed"), latencies=(0.05,), resolutions=(), losses=()
+            self, cycles=0.25, rule_cycles=0.25, controls=("closed",), latencies=(0.05,), resolutions=(), losses=()
         )
 
     def wires(self) -> Iterator[Wire]:
