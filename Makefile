@@ -39,8 +39,8 @@ single double space: .venv/.dev # the flow's kernels, compiled once; else every 
 tests: .venv/.dev
 	$(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
 
-mutate: .venv/.dev # every rule of a verdict broken in every way; also a part of the tests
-	$(PY) -m pytest tests/shelves/test_every_rule.py -k break -v -n0
+mutate: .venv/.dev # every rule of a verdict and every measure broken in every way; also a part of the tests
+	$(PY) -m pytest tests/shelves/test_every_rule.py tests/shelves/test_every_measure.py -k break -m "slow or not slow" -v -n0
 
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s

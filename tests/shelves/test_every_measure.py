@@ -1,0 +1,284 @@
+"""A test of the tests: what measures compute is broken in every way that could hide a wrong number.
+
+Each function of an experiment that reads measures from its record is broken once at every place: the least for the
+greatest, the first for the last, one of two that are compared for the other; so are the tables of conditions that are
+compared. The record stays, nothing is simulated anew. A break is noticed if a number is another, beyond what the kept
+numbers of ``tests/golden`` allow, or none.
+"""
+
+import ast
+import inspect
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from copy import deepcopy
+from textwrap import dedent
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.experiment import Measure
+from suchus.experiments import EXPERIMENTS
+
+NAMES = [name for name, one in EXPERIMENTS.items() if one.rules()]
+SAME = 1e-6
+"""Relative difference up to which a measure is the same [-]."""
+_LEAST = {
+    "min": "max",
+    "amin": "amax",
+    "nanmin": "nanmax",
+    "argmin": "argmax",
+    "idxmin": "idxmax",
+    "minimum": "maximum",
+}
+_OTHER = _LEAST | {greatest: least for least, greatest in _LEAST.items()}
+_SIZE = "Its size or its square is taken, which has no sign."
+_ONE_RUN = "What is read there holds one run."
+_ALWAYS_ONE = "In its quick form the robot switches to the best posture on every ground, so that each share is one."
+_SHORT = "In its quick form the last cycle is the one before and the first after the disturbance too."
+EXCUSED: Mapping[str, Mapping[str, str]] = {
+    "gait_diagram": {
+        "_harmonic: values - values.mean() the other way round": "Lag and gain are of quotients of two of these.",
+        "_period: load[n:] - load[:-n] the other way round": _SIZE,
+        "_period: min(int(1.5 * period / step), len(load) - 2) is max": "The best shift is shorter than both.",
+    },
+    "joint_loops": {"measure: float(tail.sel(test='step')[-1]) - step the other way round": _SIZE},
+    "gallop_limits": {"_first: speeds[from_here][0] is the last": "In its quick form one speed pays at most."},
+    "joint_faults": {"_effects: change.sel({dim: a}) - change.sel({dim: b}) the other way round": _SIZE},
+    "bipedal_reach": {
+        "least_lead: run=0 is the last": _ONE_RUN,
+        "measure: run=0 is the last": _ONE_RUN,
+    },
+    "terrain": {
+        "_most_tilt: abs(angles['pitch']).max('time') is min": "In its quick form the roll is the greater tilt.",
+        "_share_of_best: distance.sel(arm='switching', drop=True) ... LE)).max('arm') the other way round": _ALWAYS_ONE,
+        "measure: share.min() is max": _ALWAYS_ONE,
+        "measure: share.argmin('ground') is argmax": _ALWAYS_ONE,
+    },
+    "feedback": {
+        "disturbed_measures: min(hold, 0.5) is max": "In its quick form phases are held for half a cycle.",
+        "disturbed_measures: part.time[-1] - gait.period the other way round": _SHORT,
+        "disturbed_measures: part.time[-1] is the first": _SHORT,
+        "_loop_measures: part.time[0] is the last": _SHORT,
+        "_loop_measures: missing['spine'] / begun the other way round": _SHORT,
+        "_loop_measures: _ending(pitch, gait.period).mean() - _en ... .period).mean() the other way round": _SIZE,
+        "_undisturbed_measures: part.isel(time=-1) - part.isel(time=0) the other way round": "Both ends of a quotient.",
+    },
+}
+"""By experiment the breaks that no measure of its quick form notices, and why that hides nothing."""
+
+
+@pytest.mark.slow("each measure of each question that judges is broken at every place, some hundred times")
+@pytest.mark.parametrize("name", NAMES)
+def test_every_way_to_break_a_measure_changes_a_number(name, quick_outcome):
+    survived = [broken for broken, noticed in tried(name, quick_outcome(name).record) if not noticed]
+    assert set(survived) == set(EXCUSED.get(name, {}))
+
+
+def test_a_break_that_is_noticed_and_one_that_is_not():
+    """So that a search that finds no survivor has looked."""
+    source = "def number(values):\n    unread = min(values)\n    return max(values) - values[0]\n"
+    function, space = _made(ast.parse(source).body[0], {})
+    told = {what: _made(broken, space)[0]([1.0, 5.0, 2.0]) for what, broken in breaks(ast.parse(source).body[0])}
+    assert function([1.0, 5.0, 2.0]) == 4.0
+    assert told == {
+        "number: max(values) is min": 0.0,
+        "number: max(values) - values[0] the other way round": -4.0,
+        "number: values[0] is the last": 3.0,
+        "number: min(values) is max": 4.0,
+    }
+
+
+def tried(name: str, record: xr.Dataset) -> Iterator[tuple[str, bool]]:
+    """Yield every break of the functions that read the record, and whether a number noticed."""
+    question = EXPERIMENTS[name].quick()
+    with _called(question) as codes:
+        whole = _numbers(question.measure, record)
+    for what, module, table, broken in swapped(question):
+        kept = getattr(module, table)
+        setattr(module, table, broken)
+        try:
+            yield what, not _same(whole, _numbers(question.measure, record))
+        finally:
+            setattr(module, table, kept)
+    for module, owner, function in _functions(question):
+        measures = function.__code__ in codes
+        numbers = whole if measures else _of_a_record(function, record)
+        if numbers is None:
+            continue
+        for what, broken in breaks(_tree(function)):
+            made, _ = _made(broken, vars(module))
+            kept = inspect.getattr_static(owner, function.__name__)
+            setattr(owner, function.__name__, made)
+            try:
+                found = _numbers(question.measure if measures else made, record)
+            except Exception:
+                found = {}
+            finally:
+                setattr(owner, function.__name__, kept)
+            yield what, not _same(numbers, found)
+
+
+def swapped(question: Any) -> Iterator[tuple[str, ModuleType, str, Any]]:
+    """Yield tables of what is compared with what, one row of which has its last two names exchanged."""
+    for module in _modules(question):
+        for name, table in vars(module).items():
+            rows = list(table.values()) if isinstance(table, dict) else list(table) if isinstance(table, tuple) else []
+            pairs = [
+                isinstance(row, tuple) and len(row) > 1 and all(isinstance(one, str) for one in row) for row in rows
+            ]
+            if not rows or not all(pairs) or (isinstance(table, tuple) and any(len(row) < 3 for row in rows)):
+                continue
+            for i, row in enumerate(rows):
+                other = [*rows[:i], (*row[:-2], row[-1], row[-2]), *rows[i + 1 :]]
+                broken = dict(zip(table, other, strict=True)) if isinstance(table, dict) else tuple(other)
+                yield f"{name}: {' '.join(row)} the other way round", module, name, broken
+
+
+def breaks(tree: ast.FunctionDef) -> Iterator[tuple[str, ast.FunctionDef]]:
+    """Yield what was done to a function, and the broken function."""
+    for i, node in enumerate(ast.walk(tree)):
+        told = _broken(node)
+        if told is not None:
+            copy = deepcopy(tree)
+            at = next(one for j, one in enumerate(ast.walk(copy)) if j == i)
+            _break(at)
+            yield f"{tree.name}: {told}", copy
+
+
+def _broken(node: ast.AST) -> str | None:
+    """Return what would be done to a node, or None."""
+    if isinstance(node, ast.Call) and _word(node.func) in _OTHER:
+        return f"{_short(node)} is {_OTHER[_word(node.func)]}"
+    if isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Sub, ast.Div)):
+        one_less = isinstance(node.right, ast.Constant)
+        return None if one_less else f"{_short(node)} the other way round"
+    if isinstance(node, ast.Subscript) and _first_or_last(node.slice) is not None:
+        return f"{_short(node)} is the {'last' if _first_or_last(node.slice) == 0 else 'first'}"
+    if (
+        isinstance(node, ast.keyword)
+        and node.arg in ("run", "time", "cycle")
+        and _first_or_last(node.value) is not None
+    ):
+        return f"{node.arg}={ast.unparse(node.value)} is the {'last' if _first_or_last(node.value) == 0 else 'first'}"
+    return None
+
+
+def _break(node: ast.AST) -> None:
+    if isinstance(node, ast.Call):
+        where = node.func
+        if isinstance(where, ast.Attribute):
+            where.attr = _OTHER[where.attr]
+        elif isinstance(where, ast.Name):
+            where.id = _OTHER[where.id]
+    elif isinstance(node, ast.BinOp):
+        node.left, node.right = node.right, node.left
+    elif isinstance(node, ast.Subscript):
+        node.slice = _other_end(node.slice)
+    elif isinstance(node, ast.keyword):
+        node.value = _other_end(node.value)
+
+
+def _word(node: ast.expr) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+def _first_or_last(node: ast.expr) -> int | None:
+    text = ast.unparse(node)
+    return int(text) if text in ("0", "-1") else None
+
+
+def _other_end(node: ast.expr) -> ast.expr:
+    return ast.parse("-1" if _first_or_last(node) == 0 else "0", mode="eval").body
+
+
+def _short(node: ast.AST) -> str:
+    text = " ".join(ast.unparse(node).split())
+    return text if len(text) <= 60 else f"{text[:40]} ... {text[-15:]}"
+
+
+@contextmanager
+def _called(question: Any) -> Iterator[set[CodeType]]:
+    """Note which functions of the question's own package run."""
+    found: set[CodeType] = set()
+    package = type(question).__module__.removesuffix(".experiment")
+
+    def note(frame: Any, event: str, _: Any) -> None:
+        if event == "call" and str(frame.f_globals.get("__name__", "")).startswith(package):
+            found.add(frame.f_code)
+
+    sys.setprofile(note)
+    try:
+        yield found
+    finally:
+        sys.setprofile(None)
+
+
+def _modules(question: Any) -> list[ModuleType]:
+    package = type(question).__module__.removesuffix(".experiment")
+    return [one for name, one in sorted(sys.modules.items()) if f"{name}.".startswith(f"{package}.")]
+
+
+def _functions(question: Any) -> Iterator[tuple[ModuleType, Any, FunctionType]]:
+    """Yield module, owner and function of the question's own package."""
+    for module in _modules(question):
+        classes = [one for one in vars(module).values() if inspect.isclass(one) and one.__module__ == module.__name__]
+        for owner in (module, *classes):
+            for held in list(vars(owner).values()):
+                function = getattr(held, "__func__", held)
+                if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+                    yield module, owner, function
+
+
+def _of_a_record(function: FunctionType, record: xr.Dataset) -> dict[str, float] | None:
+    """Return what a function reads of a record, as those do that a run calls for each robot; None of another."""
+    parameters = inspect.signature(function).parameters
+    if [one.annotation for one in parameters.values()] != [xr.Dataset]:
+        return None
+    try:
+        return _numbers(function, record) or None
+    except Exception:
+        return None
+
+
+def _tree(function: FunctionType) -> ast.FunctionDef:
+    tree = ast.parse(dedent(inspect.getsource(function))).body[0]
+    assert isinstance(tree, ast.FunctionDef)
+    return tree
+
+
+def _made(tree: ast.FunctionDef, space: Mapping[str, Any]) -> tuple[Callable[..., Any], dict[str, Any]]:
+    """Return what a function is, made of its source in a copy of its module's names."""
+    names = dict(space)
+    module = ast.fix_missing_locations(ast.Module(body=[tree], type_ignores=[]))
+    exec(compile(module, f"<{tree.name}, broken>", "exec"), names)
+    return names[tree.name], names
+
+
+def _numbers(read: Callable[[xr.Dataset], Any], record: xr.Dataset) -> dict[str, float]:
+    """Return every number that is read of a record, by name."""
+    return dict(_flat("", read(record)))
+
+
+def _flat(name: str, value: Any) -> Iterator[tuple[str, float]]:
+    if isinstance(value, Mapping):
+        for key, one in value.items():
+            yield from _flat(f"{name} {key}", one)
+    elif isinstance(value, (list, tuple)):
+        for i, one in enumerate(value):
+            yield from _flat(f"{name} {i}", one)
+    elif isinstance(value, Measure):
+        yield name, float(value.value)
+    elif isinstance(value, (bool, int, float, np.ndarray, np.generic, xr.DataArray)):
+        for i, one in enumerate(np.asarray(value, float).ravel()):
+            yield f"{name} {i}", float(one)
+
+
+def _same(whole: Mapping[str, float], broken: Mapping[str, float]) -> bool:
+    if set(whole) != set(broken):
+        return False
+    one, other = (np.array([numbers[name] for name in whole]) for numbers in (whole, broken))
+    return bool(np.allclose(one, other, rtol=SAME, atol=0.0, equal_nan=True))
