@@ -23,7 +23,12 @@ import xarray as xr
 from suchus.experiment import Measure
 from suchus.experiments import EXPERIMENTS
 
-NAMES = [name for name, one in EXPERIMENTS.items() if one.rules()]
+ELSEWHERE = {
+    "swimming": "Two cycles settle no rung of its ladder, so that its quick form has none of these numbers; their exact "
+    "answers are in tests/experiments/test_swim_ladder.py.",
+}
+"""Questions whose quick form says too little, and where their measures are tried."""
+NAMES = [name for name, one in EXPERIMENTS.items() if one.rules() and name not in ELSEWHERE]
 SAME = 1e-6
 """Relative difference up to which a measure is the same [-]."""
 _LEAST = {

@@ -13,7 +13,7 @@ from suchus.paper import CLAIMS
 from suchus.robots import ROBOTS
 from suchus.study import Claims, Plan
 from suchus.study.claim_measures import RUNS, asked_rules, held, measures_of
-from suchus.verdict import Clause, Rule
+from suchus.verdict import RULES, Clause, Rule, examples_of
 
 LEAST = 0.05
 
@@ -107,6 +107,22 @@ def test_repeats_that_were_measured_are_not_replaced():
     number, holds = held(RULE, measures)
     assert holds.tolist() == [False, True]
     assert np.isnan(number).tolist() == [True, False]  # undecided is not judged
+
+
+def test_of_a_claim_about_water_a_sample_is_judged_where_the_models_agree():
+    rows = {word: row for row, word in reversed(examples_of("swimming")["swim_tail_thrust"])}
+    words, rule = ["reproduced", "contradicted", "models disagree"], RULES["swim_tail_thrust"]
+    number, holds = held(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
+    assert np.isfinite(number).tolist() == [True, True, False]
+    assert holds.tolist() == [True, False, False]
+
+
+def test_a_sample_whose_control_group_does_not_walk_is_not_judged():
+    rows = {word: row for row, word in reversed(examples_of("crawl_stability")["com_fluctuation"])}
+    words, rule = ["reproduced", "contradicted", "not testable"], RULES["com_fluctuation"]
+    number, holds = held(rule, {name: np.array([rows[word][name] for word in words]) for name in rule.needs})
+    assert np.isfinite(number).tolist() == [True, True, False]
+    assert holds.tolist() == [True, False, False]
 
 
 def test_a_rule_that_needs_what_is_not_measured_is_named():

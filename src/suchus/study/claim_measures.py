@@ -9,7 +9,7 @@ from suchus.design import LEGS
 from suchus.errors import IncompatibleRecord
 from suchus.gaits import CONDITIONS
 from suchus.land import FAILED_JOINTS
-from suchus.verdict import RULES, Rule, varied_of
+from suchus.verdict import RULES, Rule, ladder, varied_of
 
 FAULTY = ("coordinated", "limbs_only")
 """Conditions in which joints fail, too: the article's two groups."""
@@ -142,15 +142,20 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
     """Return the number of a claim in every sample, NaN where it is not judged, and whether its statement holds.
 
     A sample whose intervals leave the statement undecided is not judged, nor one whose control group does not do what
-    the claim needs.
+    the claim needs, nor one of which models disagree.
 
     Args:
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
     """
     needed = once(rule, measures)
-    number = np.asarray(needed[rule.measure], dtype=float)
     rows = [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]
-    answers = [rule.held(row) if rule.testable(row) else None for row in rows]
+    if rule.rungs:
+        said = [ladder.voices(rule, row) for row in rows]
+        number = np.array([ladder.spread(voices)[0] for voices in said], dtype=float)
+        answers = [None if ladder.disagree(voices) else ladder.agreed(voices) for voices in said]
+    else:
+        number = np.asarray(needed[rule.measure], dtype=float)
+        answers = [rule.held(row) if rule.testable(row) else None for row in rows]
     number = np.where([answer is None for answer in answers], np.nan, number)
     return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)
