@@ -24,8 +24,8 @@ from suchus.experiment import Measure
 from suchus.experiments import EXPERIMENTS
 
 ELSEWHERE = {
-    "swimming": "Two cycles settle no rung of its ladder, so that its quick form has none of its numbers; exact answers "
-    "of them are in tests/experiments/test_swim_ladder.py.",
+    "swimming": "Two cycles settle no rung of its ladder, so that its quick form has no numbers of it; exact ones "
+    "are in tests/experiments/test_swim_ladder.py.",
 }
 """Questions whose quick form says too little, and where their measures are tried."""
 NAMES = [name for name, one in EXPERIMENTS.items() if one.rules() and name not in ELSEWHERE]
