@@ -125,6 +125,10 @@ def truth(filmed: Filmed) -> dict[str, float]:
         **{f"phase_{leg}": phase for leg, phase in zip(LEGS[1:], animal.limb_phases[1:], strict=True)},
         "period": animal.period * float(filmed.pace.mean()),
         "stride": animal.stride / animal.trunk,
+        "stride_length": animal.stride,
+        "speed": animal.stride / (animal.period * float(filmed.pace.mean())),
+        "turning": 0.0,
+        **{f"step_length_{leg}": animal.stride for leg in LEGS},
         "spine_lateral": animal.spine_bend,
         "spine_rightmost": animal.spine_rightmost,
         **bends,
@@ -137,7 +141,8 @@ def read(filmed: Filmed) -> dict[str, tuple[float, float]] | None:
         numbers = observe(filmed.tracks).numbers
     except UnusableTracks:
         return None
-    return {name: (apart(numbers[name], value), numbers[name].error) for name, value in truth(filmed).items()}
+    true = truth(filmed).items()
+    return {name: (apart(numbers[name], value), numbers[name].error) for name, value in true if name in numbers}
 
 
 def held(seed: int) -> dict[str, bool] | None:

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.capture import UnusableTracks, film, film_animal, observe
+from suchus.capture import UnusableTracks, film, film_animal, observe, to_gait
 from suchus.capture.tracks import renamed
+from suchus.gaits import GAITS
 
 
 @pytest.fixture
@@ -37,9 +38,29 @@ def refused(tracks, *words):
     return sentence
 
 
-def test_missing_keypoints_are_named(tracks):
-    assert "lacks the keypoints shoulder, LF;" in refused(without(tracks, "LF", "shoulder"), "--names")
-    refused(without(tracks, "neck", "snout"), "neck (or snout)")
+def test_missing_keypoints_are_named(caiman, tracks):
+    for gone, named in ((("LF", "shoulder"), "keypoints shoulder, LF that"), (("neck",), "neck (or snout)")):
+        walk = observe(without(tracks, *gone))
+        with pytest.raises(UnusableTracks, match="--names") as caught:
+            to_gait(walk, caiman, GAITS["belly_crawl"], name="x")
+        assert named in str(caught.value)
+        assert any(f"without {gone[0]}" in note for note in walk.notes)
+    refused(without(tracks, "neck", "shoulder", "hip", "tail_base", "spine_1", "spine_2"), "fewer than two keypoints")
+
+
+def test_a_part_of_the_keypoints_measures_what_it_shows(tracks):
+    whole = observe(tracks).numbers
+    for gone, unknown in (
+        ("LH", "duty_LH"),
+        ("neck", "spine_lateral"),
+        ("tail_tip", "tail_lateral"),
+        ("hip", "stride"),
+    ):
+        part = observe(without(tracks, gone)).numbers
+        assert unknown in whole
+        assert unknown not in part
+        assert part["duty_RF"].value == pytest.approx(whole["duty_RF"].value, abs=0.01)
+        assert part["phase_RF"].value == pytest.approx(whole["phase_RF"].value, abs=0.005)
 
 
 def test_a_snout_does_where_there_is_no_neck(tracks):
@@ -50,10 +71,12 @@ def test_a_snout_does_where_there_is_no_neck(tracks):
     }
 
 
-def test_a_point_that_is_mostly_lost_is_named(tracks):
+def test_a_point_that_is_mostly_lost_is_named_and_left_out(tracks):
     position = tracks.position.copy()
     position[: int(0.7 * len(position)), tracks.points.index("RH")] = np.nan
-    refused(replace(tracks, position=position), "RH is lost in 70 % of the frames")
+    walk = observe(replace(tracks, position=position))
+    assert walk.notes[0].startswith("RH is lost in 70 % of the frames")
+    assert walk.lacks == ("RH",)
 
 
 def test_points_lost_in_turns_are_told(tracks):
@@ -103,7 +126,7 @@ def test_no_frame_and_one_frame(tracks):
 
 def test_an_animal_at_rest(tracks):
     still = np.broadcast_to(tracks.position[:1], tracks.position.shape)
-    refused(replace(tracks, position=still), "nothing in", "repeats")
+    refused(replace(tracks, position=still), "the animal stands", "--start")
 
 
 def test_a_camera_that_goes_along(tracks):

@@ -189,6 +189,8 @@ def test_heading_scale_and_losses_change_nothing_on_clean_tracks(caiman, crawl, 
     second, _ = filmed(caiman, crawl, replace(clean, heights=False, heading=-2.5, scale=913.0))
     third, _ = filmed(caiman, crawl, replace(clean, heights=False, lost=0.1))
     for name, seen in first.numbers.items():
+        if seen.unit.startswith("m"):
+            continue  # in pixels in the second film
         # edges of a swing are found by steps, which end a little differently in other coordinates
         np.testing.assert_allclose(second.value(name), seen.value, rtol=1e-5, atol=1e-4, err_msg=name)
         if name.startswith(("duty", "spine_lateral")) and name.count("_") == 1:

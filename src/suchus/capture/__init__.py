@@ -2,11 +2,13 @@
 
 from suchus.capture.angles import standing_index
 from suchus.capture.animal import SyntheticAnimal, film_animal
+from suchus.capture.beside import beside, beside_lines
 from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.reading import ReadingOptions, read_tracks, summary, write_gait
 from suchus.capture.retarget import NEEDED, Captured, driven_share, to_curves, to_gait
 from suchus.capture.table import AngleCycle, is_angle_table, read_angles, write_table
-from suchus.capture.tracks import Tracks, UnusableTracks
+from suchus.capture.tables import tables
+from suchus.capture.tracks import Tracks, UnusableTracks, View
 from suchus.capture.walk import Seen, Walk, observe
 
 __all__ = [
@@ -19,7 +21,10 @@ __all__ = [
     "SyntheticAnimal",
     "Tracks",
     "UnusableTracks",
+    "View",
     "Walk",
+    "beside",
+    "beside_lines",
     "driven_share",
     "film",
     "film_animal",
@@ -30,6 +35,7 @@ __all__ = [
     "read_tracks",
     "standing_index",
     "summary",
+    "tables",
     "to_curves",
     "to_gait",
     "write_gait",

@@ -35,19 +35,25 @@ def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
     The spine's is the whole trunk's: the direction of the front girdle (``neck`` or ``snout`` before ``shoulder``)
     against that of the hind one (``hip`` before ``tail_base``), which equals the sum of the joint angles between
     them. The tail's lateral angle is that of the tail against the hind girdle, at a share of the tail's length; its
-    vertical one is that of its first segment, the tail's pitch.
+    vertical one is that of its first segment, the tail's pitch. Angles whose points were not tracked are NaN, as are
+    those to the sides where the camera stands beside the animal, and those up and down where no heights were seen.
 
     Args:
         tracks: the keypoints.
         tail_share: where along the tail its direction is taken, 1 at the tip [-].
     """
-    pelvis, root = ("hip", "tail_base"), tracks.tail_chain[1:3]
+    nothing = np.full(len(tracks.time), np.nan)
+    thorax, pelvis, root = tracks.thorax, tracks.pelvis, tracks.tail_chain[1:3]
+    aside = tracks.view == "top"
+    rises = elevation if aside else azimuth  # from the side, what lies in the picture is up and down
     return to_bend_angles(
         JointSums(
-            spine_yaw=wrapped(azimuth(tracks, *tracks.thorax) - azimuth(tracks, *pelvis)),
-            spine_pitch=elevation(tracks, *pelvis) - elevation(tracks, *tracks.thorax),
-            tail_yaw=_tail_yaw(tracks, tail_share),
-            tail_pitch=elevation(tracks, *root) - elevation(tracks, *pelvis),
+            spine_yaw=wrapped(azimuth(tracks, *thorax) - azimuth(tracks, *pelvis))
+            if aside and thorax and pelvis
+            else nothing,
+            spine_pitch=rises(tracks, *pelvis) - rises(tracks, *thorax) if thorax and pelvis else nothing,
+            tail_yaw=_tail_yaw(tracks, tail_share) if aside and pelvis and tracks.has("tail_tip") else nothing,
+            tail_pitch=rises(tracks, *root) - rises(tracks, *pelvis) if pelvis and len(root) > 1 else nothing,
         )
     )
 

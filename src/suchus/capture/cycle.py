@@ -156,7 +156,7 @@ def _check_period(period: float, duration: float, rate: float, source: str) -> N
     if duration < LEAST_CYCLES * period:
         raise UnusableTracks(
             f"{source} lasts {duration:.2f} s, {duration / period:.1f} cycles of about {period:.2f} s; at least "
-            f"{LEAST_CYCLES} cycles are needed, two or more for a spread."
+            f"{LEAST_CYCLES} cycles are needed, {LEAST_CYCLES - duration / period:.1f} more, two or more for a spread."
         )
     if rate * period < LEAST_FRAMES:
         raise UnusableTracks(

@@ -9,8 +9,8 @@ from scipy.stats import t as student
 
 from suchus.capture.angles import azimuth
 from suchus.capture.cycle import fit, harmonics_for
-from suchus.capture.swings import Middles, middles, swing
-from suchus.capture.tracks import Tracks, UnusableTracks
+from suchus.capture.swings import Middles, Swing, middles, swing
+from suchus.capture.tracks import Tracks
 
 GRID = 400
 """Phases of a cycle at which a foot is looked at [-]."""
@@ -41,6 +41,8 @@ class FootContact(NamedTuple):
     """Standard deviation of that share from stride to stride, without what noise adds [-]; NaN with one stride."""
     hidden: float
     """Share of the cycle in which it is hardly ever seen [-]."""
+    swings: Swing
+    """Its swings, one by one."""
 
     @property
     def duty(self) -> float:
@@ -69,10 +71,11 @@ def grid() -> Float[np.ndarray, " grid"]:
 
 
 def forward_path(tracks: Tracks, leg: str) -> Float[np.ndarray, " frame"]:
-    """Return how far a foot is ahead of the hip along the trunk, NaN where it was not seen [m or px]."""
-    look = (tracks.at("shoulder") - tracks.at("hip"))[:, :2]
+    """Return how far a foot is ahead of the rear of the trunk along it, NaN where it was not seen [m or px]."""
+    front, rear = tracks.line
+    look = (tracks.at(front) - tracks.at(rear))[:, :2]
     ahead = look / np.linalg.norm(look, axis=1, keepdims=True)
-    return np.asarray(((tracks.at(leg) - tracks.at("hip"))[:, :2] * ahead).sum(axis=1))
+    return np.asarray(((tracks.at(leg) - tracks.at(rear))[:, :2] * ahead).sum(axis=1))
 
 
 def steps(tracks: Tracks, leg: str, period: float) -> Middles:
@@ -80,23 +83,17 @@ def steps(tracks: Tracks, leg: str, period: float) -> Middles:
     return middles(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
 
 
-def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
-    """Return when a foot stands in the mean cycle: see ``swings``.
+def contact(tracks: Tracks, leg: str, period: float) -> FootContact | None:
+    """Return when a foot stands in the mean cycle, or None where no swing was filmed from stance to stance.
 
     Args:
         tracks: the keypoints, by a clock that follows the animal's pace.
         leg: of ``LEGS``.
         period: of the cycle [s].
-
-    Raises:
-        UnusableTracks: none of its swings was filmed from stance to stance.
     """
     swings = swing(tracks.time, tracks.at(leg)[:, :2], forward_path(tracks, leg), period)
     if swings is None:
-        raise UnusableTracks(
-            f"in {tracks.source} no step of {leg} can be seen from one stance to the next: film more cycles, track the "
-            "foot again, or film it nearer."
-        )
+        return None
     n = len(swings.phase)
     whole = np.angle(np.mean(np.exp(2j * np.pi * swings.phase))) / (2 * np.pi)
     apart = np.mod(swings.phase - whole + 0.5, 1.0) - 0.5
@@ -117,6 +114,7 @@ def contact(tracks: Tracks, leg: str, period: float) -> FootContact:
         duty_error=float(np.hypot(_SURE * swings.share_error, times * scatter / np.sqrt(n))),
         scatter=scatter,
         hidden=_hidden(tracks, leg, period),
+        swings=swings,
     )
 
 
@@ -138,17 +136,21 @@ def _hidden(tracks: Tracks, point: str, period: float) -> float:
     return float(np.mean(share[filmed > 0] < _RARE))
 
 
-def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep:
+def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
     """Return how a foot moves in the frame of its girdle, whose direction is smoothed over the cycle.
+
+    It is None where the girdle's points were not tracked, or seen from the side.
 
     Args:
         tracks: the keypoints.
         leg: of ``LEGS``.
         period: of the cycle [s].
     """
-    ahead, behind = tracks.thorax if leg.endswith("F") else ("hip", "tail_base")
+    girdle = tracks.thorax if leg.endswith("F") else tracks.pelvis
+    if girdle is None or tracks.view == "side":
+        return None
     origin = "shoulder" if leg.endswith("F") else "hip"
-    look = smooth_azimuth(tracks, ahead, behind, period)
+    look = smooth_azimuth(tracks, *girdle, period)
     d = tracks.at(leg) - tracks.at(origin)
     forward = d[:, 0] * np.cos(look) + d[:, 1] * np.sin(look)
     outward = (d[:, 1] * np.cos(look) - d[:, 0] * np.sin(look)) * (1 if leg.startswith("L") else -1)

@@ -4,7 +4,7 @@ Files of DeepLabCut, SLEAP and LightningPose are read by the ``movement`` librar
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,10 @@ import h5py
 import numpy as np
 
 from suchus import blueprint
+from suchus.capture.markers import SUFFIXES, read_markers
 from suchus.capture.retarget import Captured
 from suchus.capture.table import is_table, read_table
-from suchus.capture.tracks import Tracks, UnusableTracks, renamed
+from suchus.capture.tracks import UNITS, Tracks, UnusableTracks, View, renamed
 from suchus.capture.walk import Walk
 from suchus.design import LEGS
 from suchus.errors import UnknownName, UnreadableFile
@@ -110,11 +111,18 @@ def _guess(path: Path) -> str:
         with h5py.File(path) as file:
             return "SLEAP" if "tracks" in file else "DeepLabCut"
     if suffix == ".csv":
-        return "DeepLabCut"
+        return "Anipose" if _is_anipose(path) else "DeepLabCut"
     raise UnreadableFile(
         f"{path} is neither a CSV table nor a file that a pose estimator is known by; say whose it is with --software "
         f"({', '.join(SOFTWARE)})."
     )
+
+
+def _is_anipose(path: Path) -> bool:
+    """Return whether a CSV table is one of Anipose: a column for each axis, error and score, and the frame's number."""
+    with path.open("rb") as file:
+        cells = file.readline(2**16).decode(errors="replace").strip().split(",")
+    return "fnum" in cells and any(cell.endswith("_ncams") for cell in cells)
 
 
 def _one(data: Any, individual: str | None, name: str) -> Any:
@@ -147,10 +155,14 @@ class ReadingOptions:
     """Points with less are lost [-]; what DeepLabCut and movement use."""
     y_down: bool | None = None
     """Whether y points to the right of x, seen from above; None: as the file's kind has it."""
+    view: View = "top"
+    """Where the camera stood; from the side, y is up."""
+    unit: str | None = None
+    """Unit of lengths in files that do not say it, as those of pose estimators: m, cm or mm; px is of unknown size."""
 
 
 def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
-    """Read tracks from a CSV table, or from a file of DeepLabCut, SLEAP or LightningPose.
+    """Read tracks from a CSV table, a TRC or C3D file, or one of DeepLabCut, SLEAP, LightningPose or Anipose.
 
     Args:
         path: the file.
@@ -166,9 +178,22 @@ def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
     check_file(path)
     if path.stat().st_size == 0:
         raise UnreadableFile(f"{path} is empty; a header and one row per frame are needed.")
+    if how.unit is not None and how.unit not in UNITS:
+        raise UnknownName("unit", how.unit, tuple(UNITS))
+    if how.rate is not None and not 0.0 < how.rate < np.inf:
+        raise UnusableTracks(f"the frame rate is {how.rate:g}; a number above 0 is needed, in frames per second.")
+    tracks = _read(path, how)
+    if how.view == "side" and tracks.upright:
+        raise UnusableTracks(f"{path.name} holds heights, so that it needs no view from the side; leave --view out.")
+    return replace(tracks, view=how.view)
+
+
+def _read(path: Path, how: ReadingOptions) -> Tracks:
+    if how.software is None and path.suffix.lower() in SUFFIXES:
+        return read_markers(path, names=how.names)
     if how.software is None and is_table(path):
-        return read_table(path, names=how.names, confidence=how.confidence, y_down=how.y_down)
-    return read_poses(
+        return read_table(path, names=how.names, confidence=how.confidence, y_down=how.y_down, rate=how.rate)
+    tracks = read_poses(
         path,
         software=how.software,
         rate=how.rate,
@@ -177,6 +202,9 @@ def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
         confidence=how.confidence,
         y_down=how.y_down,
     )
+    if how.unit in (None, "px"):
+        return tracks
+    return replace(tracks, unit="m", position=UNITS[str(how.unit)] * tracks.position)
 
 
 def write_gait(captured: Captured, walk: Walk, path: Path) -> Path:
@@ -195,16 +223,17 @@ def summary(walk: Walk) -> list[str]:
 
     def one(name: str, digits: int = 2, scale: float = 1.0) -> str:
         if name not in walk.numbers:
-            return "(it does not bend)"
+            return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
         value, _, error, _ = walk.numbers[name]
         apart = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
         return f"{scale * value:.{digits}f}{apart}"
 
     turn = degrees(1.0)
+    legs = [leg for leg in LEGS if f"duty_{leg}" in walk.numbers]
     return [
         f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {one('stride')} trunk lengths per cycle",
-        "stance share: " + ", ".join(f"{leg} {one(f'duty_{leg}')}" for leg in LEGS),
-        "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in LEGS),
+        "stance share: " + ", ".join(f"{leg} {one(f'duty_{leg}')}" for leg in legs),
+        "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in legs),
         f"spine: {one('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
         f"{one('spine_rightmost', 3)}",
         f"tail: {one('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its length, "

@@ -10,6 +10,7 @@ import numpy as np
 
 from suchus.capture.angles import STANDING
 from suchus.capture.table import AngleCycle
+from suchus.capture.tracks import UnusableTracks
 from suchus.capture.walk import UNSURE, Walk
 from suchus.design import LEGS, Layout, LimbPlace, Robot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
@@ -39,6 +40,8 @@ Girdles = Literal["alike", "apart"]
 
 On a film of our own crawl, which commands 27 mm for all, slipping lets front feet stroke by 26 and hind feet by 30 mm.
 """
+Time = Literal["froude", "own"]
+"""Whether time goes with the square root of length, as at equal Froude number, or stays the animal's."""
 NEEDED = ("four_limbs", "foot_paths")
 """What the walk of a four-limbed animal requires of a robot: names of ``design.NEEDS``."""
 _PAIRS = (LEGS[:2], LEGS[2:])
@@ -55,6 +58,8 @@ class Captured:
 
     gait: Gait
     """The gait for the robot."""
+    timing: str
+    """How the animal's time became the robot's, a sentence."""
     notes: tuple[str, ...]
     """Sentences on what was measured and is not in the gait, what is in it without a measurement, and what was
     changed."""
@@ -70,7 +75,15 @@ class _Feet(NamedTuple):
 
 
 def to_gait(
-    walk: Walk, robot: Robot, base: Gait, *, name: str, duty: Duty = "retraction", girdles: Girdles = "alike"
+    walk: Walk,
+    robot: Robot,
+    base: Gait,
+    *,
+    name: str,
+    duty: Duty = "retraction",
+    girdles: Girdles = "alike",
+    time: Time = "froude",
+    trunk: float | None = None,
 ) -> Captured:
     """Return the gait by which a robot walks as was measured.
 
@@ -85,13 +98,23 @@ def to_gait(
         name: name of the new gait.
         duty: which share of the cycle becomes its duty factor.
         girdles: whether front and hind limbs share their stroke and lift.
+        time: whether the period goes with the square root of the length, or is the animal's own.
+        trunk: the animal's length from hip to shoulder, where the film does not show it [m].
 
     Raises:
         UnsuitedRobot: the robot lacks four limbs with foot paths.
+        UnusableTracks: the walk was measured without keypoints that a gait is read from.
         OutsideLimits: the base has no foot paths, or the robot cannot follow even with the base's posture and a small
             stroke.
     """
     check_needs(robot, NEEDED, "a captured walk")
+    if walk.lacks:
+        why = [note for note in walk.notes if note.partition(" ")[0] in (*walk.lacks, "neck", "snout")]
+        raise UnusableTracks(
+            f"{walk.source} lacks the keypoint{'s' * (len(walk.lacks) > 1)} {', '.join(walk.lacks)} that a gait is "
+            f"read from{''.join(f'; {note}' for note in why)}: rename with --names THEIRS=OURS, or track them; suchus "
+            "capture --tables DIR measures what the others show."
+        )
     check_limits(robot, base)
     if not base.limbs or not all(isinstance(limb, FootPath) for limb in base.limbs):
         raise OutsideLimits(
@@ -99,11 +122,12 @@ def to_gait(
             "curves, holds limbs or turns cranks: name another one with --base."
         )
     notes: list[str] = []
-    gait = _timed(walk, replace(base, name=name, curves=(), coupling=()), duty, notes)
+    factor, timing = time_scale(walk, robot, time, trunk)
+    gait = _timed(walk, replace(base, name=name, curves=(), coupling=()), duty, factor, notes)
     gait = _bent(walk, robot, gait, notes)
     gait = _stepping(walk, robot, gait, base, girdles, notes)
     gait = _slowed(robot, gait, notes)
-    return Captured(gait=gait, notes=(*walk.notes, *notes, *_unheld(walk)))
+    return Captured(gait=gait, timing=timing, notes=(*walk.notes, *notes, *_unheld(walk)))
 
 
 def driven_share(robot: Robot) -> float:
@@ -128,7 +152,40 @@ def mean_of(walk: Walk, stem: str, legs: tuple[str, ...] = LEGS) -> float:
     return float(np.mean([walk.value(f"{stem}_{leg}") for leg in known or legs]))
 
 
-def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
+def time_scale(walk: Walk, robot: Robot, time: Time, trunk: float | None) -> tuple[float, str]:
+    """Return by what the robot's period is longer than the animal's, and a sentence that says why [-].
+
+    Bodies of different size walk alike at equal Froude number, where time goes with the square root of length.
+
+    Args:
+        walk: the measured walk.
+        robot: the robot that shall walk.
+        time: see ``to_gait``.
+        trunk: see ``to_gait``.
+
+    Raises:
+        UnusableTracks: the length that was given is none.
+    """
+    if trunk is not None and not 0.0 < trunk < np.inf:
+        raise UnusableTracks(f"the animal's trunk is {trunk:g} m long; a length above 0 is needed.")
+    own, long = walk.value("period"), walk.numbers.get("trunk_length")
+    animal = trunk if trunk is not None else long.value if long is not None and long.unit == "m" else None
+    if time == "own":
+        return 1.0, f"time: the animal's own, a cycle of {own:.3f} s"
+    if animal is None:
+        return 1.0, (
+            f"time: the animal's own, a cycle of {own:.3f} s, since a film in pixels does not show how long the animal "
+            "is; with --trunk METRES, its length from hip to shoulder, time goes with the square root of length"
+        )
+    ours = hips_ahead(robot, 0)
+    factor = float(np.sqrt(ours / animal))
+    return factor, (
+        f"time: scaled by {factor:.3f}, the square root of lengths ({ours:.3f} m of {robot.name}, {animal:.3f} m of "
+        f"the animal, hip to shoulder): the cycle of {own:.3f} s becomes {factor * own:.3f} s; --time own keeps it"
+    )
+
+
+def _timed(walk: Walk, gait: Gait, duty: Duty, factor: float, notes: list[str]) -> Gait:
     stem = "duty" if duty == "contact" else "retraction"
     share = mean_of(walk, stem)
     other = mean_of(walk, "retraction" if duty == "contact" else "duty")
@@ -142,7 +199,9 @@ def _timed(walk: Walk, gait: Gait, duty: Duty, notes: list[str]) -> Gait:
         shares = ", ".join(f"{leg} {value:.2f}" for leg, value in apart.items())
         notes.append(f"the legs' {duty} shares differ ({shares}); the gait holds their mean")
     phases = tuple(_rounded((walk.value(f"phase_{leg}") + 0.05) % 1.0 - 0.05) for leg in LEGS)
-    return replace(gait, period=_rounded(walk.value("period")), duty_factor=_rounded(share), limb_phases=phases)
+    return replace(
+        gait, period=_rounded(factor * walk.value("period")), duty_factor=_rounded(share), limb_phases=phases
+    )
 
 
 def _bent(walk: Walk, robot: Robot, gait: Gait, notes: list[str]) -> Gait:

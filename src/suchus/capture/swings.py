@@ -60,6 +60,16 @@ class Swing(NamedTuple):
     """The same of where the middle of the swing lies against all of ``phase`` [cycle]."""
     scatter: float
     """Standard deviation of the share from stride to stride that noise does not explain [-]."""
+    shares: Float[np.ndarray, " swing"]
+    """Duration of each swing, drawn to that of all as far as noise blurs it [cycle]."""
+    shares_error: Float[np.ndarray, " swing"]
+    """Standard error of each, that of all included [cycle]."""
+    phases_error: Float[np.ndarray, " swing"]
+    """Standard error of each phase by its own frames [cycle]."""
+    paths: Float[np.ndarray, " swing"]
+    """Distance over the ground from each place to the next [m or px]."""
+    paths_error: Float[np.ndarray, " swing"]
+    """Standard error of each [m or px]."""
 
 
 class _Frames(NamedTuple):
@@ -68,6 +78,7 @@ class _Frames(NamedTuple):
     time: Float[np.ndarray, "swing frame"]  # [cycle]
     trace: Float[np.ndarray, "swing frame"]  # from one place to the next, in strides
     weight: Float[np.ndarray, "swing frame"]
+    stride: Float[np.ndarray, " swing"]  # [m or px]
 
 
 def middles(time: np.ndarray, place: np.ndarray, ahead: np.ndarray, period: float) -> Middles:
@@ -82,7 +93,7 @@ def middles(time: np.ndarray, place: np.ndarray, ahead: np.ndarray, period: floa
     frames, own = _cut(time / period, place, _turns(time / period, ahead))
     if not len(own):
         return Middles(np.zeros(0), np.zeros(0))
-    own, error, _, _ = _each(frames, own)
+    own, error, _, _, _ = _each(frames, own)
     return Middles(own[:, :2].mean(axis=1) * period, error * period)
 
 
@@ -98,7 +109,7 @@ def swing(time: np.ndarray, place: np.ndarray, ahead: np.ndarray, period: float)
     frames, own = _cut(time / period, place, _turns(time / period, ahead))
     if not len(own):
         return None
-    own, _, lasts, unsure = _each(frames, own)
+    own, error, lasts, unsure, blurred = _each(frames, own)
     middle, seen = own[:, :2].mean(axis=1), frames.weight > 0
     when = (frames.time - middle[:, None])[seen]
     trace = ((frames.trace - own[:, 2, None]) / (own[:, 3] - own[:, 2])[:, None])[seen]
@@ -110,13 +121,21 @@ def swing(time: np.ndarray, place: np.ndarray, ahead: np.ndarray, period: float)
     fast = float(found[0] + share * _fast(found[4:]))
     gap = _gap(when, found[0], found[1])
     blind = gap / 2 if gap > _UNSEEN * share else 0.0
+    share_error = float(np.linalg.norm([np.sqrt(apart @ covariance @ apart), _FAMILY * share, blind]))
+    scatter = float(np.sqrt(max(0.0, np.var(lasts) - np.mean(unsure**2))))
+    own_part = scatter**2 / np.maximum(scatter**2 + unsure**2, 1e-12)
     return Swing(
         phase=middle + fast,
         skew=half - fast,
         share=share,
-        share_error=float(np.linalg.norm([np.sqrt(apart @ covariance @ apart), _FAMILY * share, blind])),
+        share_error=share_error,
         middle_error=float(np.hypot(np.sqrt(halves @ covariance @ halves), blind / 2)),
-        scatter=float(np.sqrt(max(0.0, np.var(lasts) - np.mean(unsure**2)))),
+        scatter=scatter,
+        shares=np.maximum(share + own_part * (lasts - np.mean(lasts)), _LEAST),
+        shares_error=np.sqrt(share_error**2 + own_part * unsure**2),
+        phases_error=error,
+        paths=(own[:, 3] - own[:, 2]) * frames.stride,
+        paths_error=blurred * frames.stride,
     )
 
 
@@ -165,7 +184,7 @@ def _cut(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tuple[_Frame
     middle = turns.mean(axis=1)
     borders = np.concatenate([middle[:1] - 0.6, (middle[1:] + middle[:-1]) / 2, middle[-1:] + 0.6])
     seen = np.isfinite(place).all(axis=1)
-    parts, own = [], []
+    parts, own, strides = [], [], []
     for (turn, back), left, right in zip(turns, borders[:-1], borders[1:], strict=True):
         centre = (turn + back) / 2
         if centre - time[0] < _HALF or time[-1] - centre < _HALF:
@@ -179,12 +198,13 @@ def _cut(time: np.ndarray, place: np.ndarray, turns: np.ndarray) -> tuple[_Frame
         if stride == 0.0:
             continue
         parts.append((time[use], (place[use] - here) @ (there - here) / stride**2))
+        strides.append(stride)
         own.append((turn, max(back, turn + _LEAST), 0.0, 1.0))
     most = max((len(times) for times, _ in parts), default=0)
     frames = np.zeros((3, len(parts), most))
     for k, (times, trace) in enumerate(parts):
         frames[:, k, : len(times)] = times, trace, np.ones(len(times))
-    return _Frames(*frames), np.array(own).reshape(-1, 4)
+    return _Frames(frames[0], frames[1], frames[2], np.array(strides)), np.array(own).reshape(-1, 4)
 
 
 def _course(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -209,7 +229,7 @@ def _fast(shape: np.ndarray) -> float:
     return float(low + high) / 2
 
 
-def _each(frames: _Frames, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _each(frames: _Frames, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Fit each swing by itself, of the shape that is expected.
 
     Gauss and Newton's steps, in rounds in which frames far off count less. Edges are drawn to those of a swing of the
@@ -217,10 +237,12 @@ def _each(frames: _Frames, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 
     Returns:
         Lift-off, touchdown [cycle] and both places [stride] of each, the standard errors of its middle, how long it
-        lasts without being drawn to the mean, and the standard error of that [cycle].
+        lasts without being drawn to the mean, and the standard error of that [cycle]; the standard error of the
+        distance of its places [stride].
     """
     own, loose = start.copy(), np.diag(1.0 / np.array([_EDGES, _EDGES, _PLACES, _PLACES]) ** 2)
     duration, halves = np.array([-1.0, 1.0, 0.0, 0.0]), np.array([0.5, 0.5, 0.0, 0.0])
+    far = np.array([0.0, 0.0, -1.0, 1.0])
     lasts = own @ duration
     unsure = np.full(len(own), _EDGES)
     for i in range(_ROUNDS):
@@ -236,7 +258,7 @@ def _each(frames: _Frames, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
         free = own + np.einsum("kij,kj->ki", alone, r + (start - own) @ loose)
         lasts, unsure = free @ duration, np.sqrt(np.einsum("i,kij,j->k", duration, alone, duration))
     error = np.sqrt(np.einsum("i,kij,j->k", halves, alone, halves))
-    return own, error, lasts, unsure
+    return own, error, lasts, unsure, np.sqrt(np.einsum("i,kij,j->k", far, alone, far))
 
 
 def _normal(frames: _Frames, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,7 +2,8 @@
 
 ``time [s], hip_x [mm], hip_y [mm], ...``: the first column is the time; the others are a keypoint, an axis (x and y,
 or x, y and z) and a unit (m, cm, mm or px, the same for all). An empty cell is a lost point. A column
-``hip_confidence [-]`` may follow. Metres have y to the left of x, seen from above; pixels, as in images, to the right.
+``hip_confidence [-]`` may follow. Where the first column is ``frame``, its numbers are divided by the frame rate.
+Metres have y to the left of x, seen from above; pixels, as in images, to the right.
 
 A table of joint angles over one cycle is a CSV file too; it is closed where its end meets its beginning.
 """
@@ -24,6 +25,7 @@ from suchus.errors import UnreadableFile
 from suchus.record import write
 
 _HEADING = re.compile(r"\s*(?P<point>.+)_(?P<axis>x|y|z|confidence)\s*\[(?P<unit>[^\]]*)\]\s*")
+_FRAME = re.compile(r"frames?|frame[ _](number|index)|frame \[-\]|fnum")
 _EXAMPLE = "time [s], hip_x [mm], hip_y [mm], ..."
 
 
@@ -33,14 +35,17 @@ class _Column(NamedTuple):
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a file is a CSV table that is not one of DeepLabCut's or LightningPose's."""
+    """Return whether a file is a CSV table that is not one of DeepLabCut's, LightningPose's or Anipose's."""
     if path.suffix.lower() not in (".csv", ".txt"):
         return False
     with path.open("rb") as file:
-        return not file.read(16).lstrip(b"\xef\xbb\xbf").lower().startswith(b"scorer")
+        head = file.readline(2**16).lstrip(b"\xef\xbb\xbf").lower()
+    return not head.startswith(b"scorer") and b"_ncams" not in head
 
 
-def read_table(path: Path, *, names: Mapping[str, str], confidence: float, y_down: bool | None) -> Tracks:
+def read_table(
+    path: Path, *, names: Mapping[str, str], confidence: float, y_down: bool | None, rate: float | None = None
+) -> Tracks:
     """Read a CSV table.
 
     Args:
@@ -48,13 +53,19 @@ def read_table(path: Path, *, names: Mapping[str, str], confidence: float, y_dow
         names: our name of a keypoint by the file's, where they differ.
         confidence: points with less are lost.
         y_down: whether y points to the right of x, seen from above; None: in pixels only.
+        rate: frames per second, where the first column counts frames [1/s].
 
     Raises:
         UnreadableFile: it is missing or empty, or a heading or a cell makes no sense.
+        UnusableTracks: it counts frames, and no frame rate was given.
     """
     rows = _rows(path)
     columns, unit = _columns(rows[0], path.name)
     values = _numbers(rows, path.name)
+    if _FRAME.fullmatch(rows[0][0].strip().lower()):
+        if rate is None:
+            raise UnusableTracks(f"{path.name} counts frames and does not give their rate; give it, as in --fps 50.")
+        values[:, 0] /= rate
     points = tuple(dict.fromkeys(c.point for c in columns))
     axes = "xyz" if any(c.axis == "z" for c in columns) else "xy"
     position = np.full((len(values), len(points), len(axes)), np.nan)
@@ -116,9 +127,11 @@ def _rows(path: Path) -> list[list[str]]:
 
 
 def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
-    if header[0].strip().lower() != "time [s]":
+    first = header[0].strip().lower()
+    if first != "time [s]" and not _FRAME.fullmatch(first):
         raise UnreadableFile(
-            f"the first column of {name} is {header[0].strip()!r}; 'time [s]' is needed, as in: {_EXAMPLE}"
+            f"the first column of {name} is {header[0].strip()!r}; 'time [s]' is needed, or 'frame' and --fps, as in: "
+            f"{_EXAMPLE}"
         )
     columns, units = [], set()
     for heading in header[1:]:

@@ -1,9 +1,10 @@
-"""Tracks: where the keypoints of a body are in every frame, what they must be to be of use, and points that jump."""
+"""Tracks: where the keypoints of a body are in every frame, and what they must be to be of use."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +13,7 @@ from suchus.design import LEGS
 from suchus.errors import SuchusError
 
 NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
-"""Keypoints that every file must hold, besides ``neck`` or ``snout``."""
+"""Keypoints that a gait is read from, besides ``neck`` or ``snout``; measurements do with fewer."""
 
 UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("nan")}
 """Units of length and what they are in metres; pixels are of unknown size."""
@@ -20,7 +21,10 @@ UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("na
 _RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
 _TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
 _JUMPED = 3.0  # times the usual length of a link; longer, and one of its points is somewhere else
-_LOST = 0.5  # share of lost frames beyond which a point is useless
+LOST = 0.5
+"""Share of lost frames beyond which a point is useless [-]."""
+View = Literal["top", "side"]
+"""Where a camera stands: above, so that bends to the sides are seen, or beside, so that those up and down are."""
 
 
 class UnusableTracks(SuchusError, ValueError):
@@ -46,6 +50,22 @@ class Tracks:
     """Unit of the positions: ``m``, or ``px`` where the scale is unknown."""
     source: str
     """File that they are from, for messages."""
+    view: View = "top"
+    """Where the camera stands; from the side, the second axis is up, and the body goes along the first."""
+
+    def has(self, *points: str) -> bool:
+        """Return whether all of these points were tracked."""
+        return set(points) <= set(self.points)
+
+    @property
+    def legs(self) -> tuple[str, ...]:
+        """The feet that were tracked, in the order of ``LEGS``."""
+        return tuple(leg for leg in LEGS if leg in self.points)
+
+    def without(self, points: Collection[str]) -> "Tracks":
+        """Return the tracks of the other points."""
+        keep = [i for i, name in enumerate(self.points) if name not in points]
+        return replace(self, points=tuple(self.points[i] for i in keep), position=self.position[:, keep])
 
     def at(self, point: str) -> Float[np.ndarray, "frame axis"]:
         """Return the track of one point."""
@@ -62,19 +82,42 @@ class Tracks:
         return self.position.shape[-1] == 3
 
     @property
-    def thorax(self) -> tuple[str, str]:
-        """The two points that show the heading of the front girdle, the front one first."""
-        return ("neck" if "neck" in self.points else "snout"), "shoulder"
+    def thorax(self) -> tuple[str, str] | None:
+        """The two points that show the heading of the front girdle, the front one first; None where one is missing."""
+        head = "neck" if "neck" in self.points else "snout"
+        return (head, "shoulder") if self.has(head, "shoulder") else None
+
+    @property
+    def pelvis(self) -> tuple[str, str] | None:
+        """The same of the hind girdle."""
+        return ("hip", "tail_base") if self.has("hip", "tail_base") else None
 
     @property
     def trunk_chain(self) -> tuple[str, ...]:
         """Midline points from the front girdle to the tail's base, front to back."""
-        return (*self.thorax, *self._numbered("spine")[::-1], "hip", "tail_base")
+        head = "neck" if "neck" in self.points else "snout"
+        chain = (head, "shoulder", *self._numbered("spine")[::-1], "hip", "tail_base")
+        return tuple(name for name in chain if name in self.points)
 
     @property
     def tail_chain(self) -> tuple[str, ...]:
         """Midline points from the hind girdle to the tail's tip, front to back."""
-        return ("hip", "tail_base", *self._numbered("tail"), "tail_tip")
+        chain = ("hip", "tail_base", *self._numbered("tail"), "tail_tip")
+        return tuple(name for name in chain if name in self.points)
+
+    @property
+    def midline(self) -> tuple[str, ...]:
+        """All midline points, front to back; where both are tracked, the snout is ahead of the neck."""
+        snout = ("snout",) if self.has("snout", "neck") else ()
+        return tuple(dict.fromkeys((*snout, *self.trunk_chain, *self.tail_chain)))
+
+    @property
+    def line(self) -> tuple[str, str]:
+        """Two points that show where the trunk heads, the front one first: shoulder and hip, or what comes nearest."""
+        between = ("shoulder", *self._numbered("spine")[::-1], "hip")
+        inner = [name for name in between if name in self.points]
+        chain = inner if len(inner) > 1 else self.trunk_chain
+        return chain[0], chain[-1]
 
     def between(self, start: float | None, end: float | None) -> "Tracks":
         """Return the frames from ``start`` to ``end`` [s]."""
@@ -86,16 +129,28 @@ class Tracks:
         return replace(self, time=self.time[keep], position=self.position[keep])
 
     def ahead(self) -> "Tracks":
-        """Return the tracks turned so that the body faces along x on average: no number depends on the camera then."""
-        d = self.at("shoulder") - self.at("hip")
+        """Return the tracks turned so that the body faces along x on average: no number depends on the camera then.
+
+        Seen from the side they are mirrored instead, where the body faces the other way: up stays up.
+        """
+        front, rear = self.line
+        d = self.at(front) - self.at(rear)
         facing = np.angle(np.nanmean(np.exp(1j * np.arctan2(d[:, 1], d[:, 0]))))
-        c, s = np.cos(facing), np.sin(facing)
         position = self.position.copy()
+        if self.view == "side":
+            position[..., 0] *= 1.0 if abs(facing) <= np.pi / 2 else -1.0
+            return replace(self, position=position)
+        c, s = np.cos(facing), np.sin(facing)
         position[..., :2] = position[..., :2] @ np.array([[c, -s], [s, c]])
         return replace(self, position=position)
 
     def trunk_length(self) -> float:
-        """Return the length of the trunk from hip to shoulder along the points between, in the unit of the tracks."""
+        """Return the length of the trunk from hip to shoulder along the points between, in the unit of the tracks.
+
+        It is NaN where shoulder or hip were not tracked.
+        """
+        if not self.has("shoulder", "hip"):
+            return float("nan")
         chain = ("shoulder", *self._numbered("spine")[::-1], "hip")
         links = [self.at(a) - self.at(b) for a, b in pairwise(chain)]
         if len(links) > 1:
@@ -158,15 +213,27 @@ def renamed(points: tuple[str, ...], names: Mapping[str, str], source: str) -> t
 
 
 def check_tracks(tracks: Tracks) -> None:
-    """Refuse tracks that no gait can be read from; left and right are looked at elsewhere.
+    """Refuse tracks that nothing can be measured on; whether single points are to be trusted is looked at elsewhere.
 
     Raises:
-        UnusableTracks: points are missing or mostly lost, time or size make no sense.
+        UnusableTracks: no two points of the trunk are there, or the time makes no sense.
     """
-    _check_points(tracks)
+    if len(tracks.trunk_chain) < 2:
+        raise UnusableTracks(
+            f"{tracks.source} has fewer than two keypoints of the trunk (neck or snout, shoulder, spine_1, ..., hip, "
+            f"tail_base), so that nobody knows where the body heads; it holds {', '.join(tracks.points) or 'none'}: "
+            "rename with --names THEIRS=OURS, or track them."
+        )
     _check_time(tracks)
-    _check_seen(tracks)
-    if tracks.unit == "m":
+
+
+def check_size(tracks: Tracks) -> None:
+    """Refuse an animal whose trunk has a length that no animal has.
+
+    Raises:
+        UnusableTracks: the unit must be wrong.
+    """
+    if tracks.unit == "m" and tracks.has("shoulder", "hip"):
         length = tracks.trunk_length()
         if not _TRUNK[0] <= length <= _TRUNK[1]:
             raise UnusableTracks(
@@ -175,15 +242,10 @@ def check_tracks(tracks: Tracks) -> None:
             )
 
 
-def _check_points(tracks: Tracks) -> None:
-    missing = [name for name in NEEDED if name not in tracks.points]
-    if not {"neck", "snout"} & set(tracks.points):
-        missing.insert(0, "neck (or snout)")
-    if missing:
-        raise UnusableTracks(
-            f"{tracks.source} lacks the keypoint{'s' * (len(missing) > 1)} {', '.join(missing)}; it holds "
-            f"{', '.join(tracks.points)}: rename with --names THEIRS=OURS, or track them."
-        )
+def lacking(points: Collection[str]) -> tuple[str, ...]:
+    """Return the keypoints that a gait is read from and that are not among these."""
+    head = () if {"neck", "snout"} & set(points) else ("neck (or snout)",)
+    return (*head, *(name for name in NEEDED if name not in points))
 
 
 def _check_time(tracks: Tracks) -> None:
@@ -202,97 +264,3 @@ def _check_time(tracks: Tracks) -> None:
             f"in {tracks.source} frames are {np.median(steps):.4g} s apart; {1 / _RATE[1]:g} to {1 / _RATE[0]:g} s is "
             "allowed: the time seems to be in milliseconds or frames, seconds are needed."
         )
-
-
-def _check_seen(tracks: Tracks) -> None:
-    for name in (*tracks.trunk_chain, *tracks.tail_chain, *LEGS):
-        lost = float(np.mean(np.isnan(tracks.at(name)).any(axis=-1)))
-        if lost > _LOST:
-            raise UnusableTracks(
-                f"in {tracks.source} the keypoint {name} is lost in {100 * lost:.0f} % of the frames; at most "
-                f"{100 * _LOST:.0f} % may be: track it again, or lower the confidence that is asked for."
-            )
-
-
-_AROUND = 3  # frames before and after, whose median a point is held against
-_FAR = 0.2  # [trunk]; less is noise, which the fits take care of
-_USUAL, _SHARE = 3.0, 90.0  # times what is not exceeded in so many per cent of the frames
-
-
-def without_jumps(tracks: Tracks) -> Tracks:
-    """Return the tracks with points lost where they are far from where they were just before and just after.
-
-    Far is beyond a fifth of the trunk, and beyond three times what 90 % of the frames of that point stay below, so that
-    a fast foot in a slow film is none. This is Hampel's identifier with a window of seven frames and a quantile that
-    holds where a foot stands still most of the time. Longer mistakes, as two feet exchanged for a while, are no jumps.
-    """
-    position = tracks.position.copy()
-    padded = np.pad(position, ((_AROUND, _AROUND), (0, 0), (0, 0)), constant_values=np.nan)
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _AROUND + 1, axis=0)
-    seen = np.isfinite(windows).all(axis=2).sum(axis=-1)  # (frame, point)
-    usual = np.full_like(position, np.nan)
-    known = seen >= _AROUND
-    usual[known] = np.nanmedian(windows[known], axis=-1)
-    apart = np.linalg.norm(position - usual, axis=-1)
-    for i in range(position.shape[1]):
-        far = apart[:, i]
-        if np.isfinite(far).any():
-            most = max(_FAR * tracks.trunk_length(), _USUAL * float(np.nanpercentile(far, _SHARE)))
-            position[far > most, i] = np.nan
-    return replace(tracks, position=position)
-
-
-_ALWAYS = 0.9  # share of the frames that counts as always
-_IN_A_ROW = 0.5  # share of these frames that follow each other, below which it is noise
-_OFTEN = 0.1  # share of the frames in which noise may do so
-_SOMETIMES = 0.02  # share that a point's noise does not explain
-
-
-def check_sides(tracks: Tracks) -> None:
-    """Refuse tracks in which a left foot lies right of its right neighbour, seen along the body.
-
-    Raises:
-        UnusableTracks: it names the pair, or says that the whole picture is mirrored, and gives the frames.
-    """
-    front, hind = _crossed(tracks, "LF", "RF", *tracks.thorax), _crossed(tracks, "LH", "RH", "hip", "tail_base")
-    shares = float(np.nanmean(front)), float(np.nanmean(hind))
-    if min(shares) > _ALWAYS:
-        raise UnusableTracks(
-            f"in {tracks.source} LF and LH lie on the right of the body, RF and RH on the left: left and right are "
-            "swapped in both pairs, or y points the other way; rename the feet, or give --y-axis up or down "
-            "(images have it down)."
-        )
-    for (left, right), crossed, share in zip((("LF", "RF"), ("LH", "RH")), (front, hind), shares, strict=True):
-        if share > _ALWAYS:
-            raise UnusableTracks(
-                f"in {tracks.source} {left} lies on the right of the body and {right} on the left, in "
-                f"{100 * share:.0f} % of the frames: left and right of this pair are swapped; give --names "
-                f"{left}={right} {right}={left}."
-            )
-        if share > _SOMETIMES:
-            frames = np.flatnonzero(crossed == 1)
-            if np.mean(np.diff(frames) == 1) < _IN_A_ROW:
-                _check_noise(tracks, left, right, share)
-                continue
-            raise UnusableTracks(
-                f"in {tracks.source} {left} and {right} are swapped in {len(frames)} frames, first in frame "
-                f"{frames[0] + 1} at {tracks.time[frames[0]]:.2f} s and last in frame {frames[-1] + 1}: exchange "
-                "them there."
-            )
-
-
-def _check_noise(tracks: Tracks, left: str, right: str, share: float) -> None:
-    """Refuse feet that change sides from frame to frame, if they do so often."""
-    if share > _OFTEN:
-        raise UnusableTracks(
-            f"in {tracks.source} {left} lies right of {right} in {100 * share:.0f} % of the frames, now here and now "
-            f"there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; track them again, or film nearer."
-        )
-
-
-def _crossed(tracks: Tracks, left: str, right: str, ahead: str, behind: str) -> np.ndarray:
-    """Return 1 in frames in which the left foot lies right of the right one, 0 where it does not, NaN where lost."""
-    look = tracks.at(ahead) - tracks.at(behind)
-    across = tracks.at(left) - tracks.at(right)
-    side = look[:, 0] * across[:, 1] - look[:, 1] * across[:, 0]
-    return np.where(np.isnan(side), np.nan, side < 0)

@@ -12,13 +12,18 @@ from suchus import blueprint
 from suchus.capture import (
     NEEDED,
     ReadingOptions,
+    Tracks,
+    View,
     Walk,
+    beside,
+    beside_lines,
     driven_share,
     is_angle_table,
     observe,
     read_angles,
     read_tracks,
     summary,
+    tables,
     to_curves,
     to_gait,
     write_gait,
@@ -30,9 +35,13 @@ from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
 from suchus.figures import captioned, save
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
+from suchus.figures.measured import curvature_figure, strides_figure
+from suchus.figures.overlay import overlay
 from suchus.gaits import own_gait
 from suchus.motion import Gait, check_limits
-from suchus.record import check_replaceable, check_writable
+from suchus.record import check_replaceable, check_writable, write
+from suchus.record import save as save_record
+from suchus.record.tables import COLUMNS, write_tables
 from suchus.robots import ROBOTS
 
 
@@ -41,9 +50,14 @@ class CaptureOptions:
     """Options of ``suchus capture``."""
 
     tracks: Annotated[Path, tyro.conf.Positional]
-    """CSV table of keypoints or of joint angles, or a file of DeepLabCut, SLEAP or LightningPose."""
-    out: Path = Path("captured.toml")
-    """The gait file; its diagram is saved beside it."""
+    """CSV table of keypoints or of joint angles, a TRC or C3D file, or one of DeepLabCut, SLEAP, LightningPose or
+    Anipose."""
+    out: Path | None = None
+    """The gait file, by default captured.toml, or none where tables are asked for; its diagram is saved beside it."""
+    tables: Path | None = None
+    """Folder for what was measured: tables in CSV and NetCDF, every stride and the mean with intervals, and figures."""
+    video: Path | None = None
+    """The film itself, a video, a GIF or a folder of pictures; with --tables, skeleton and contacts are drawn on it."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot for which the gait is made."""
     base: Gait | None = None
@@ -54,6 +68,11 @@ class CaptureOptions:
     """Duty factor as the fraction of the cycle in which feet move back along the body, or rest on the ground."""
     girdles: Literal["alike", "apart"] = "alike"
     """Stroke and lift as the mean of all feet, or of the front feet and of the hind feet."""
+    time: Literal["froude", "own"] = "froude"
+    """Whether the robot's period goes with the square root of its length, at the animal's Froude number, or is the
+    animal's own."""
+    trunk: float | None = None
+    """The animal's length from hip to shoulder [m], for films in pixels, which do not show it."""
     tail_share: float | None = None
     """Place along the tail up to which its bend is measured, 1 at the tip; by default the end of what is driven."""
     names: tuple[str, ...] = ()
@@ -68,6 +87,10 @@ class CaptureOptions:
     """Confidence below which a keypoint counts as missing [-], 0 to 1."""
     y_axis: Literal["auto", "up", "down"] = "auto"
     """Whether y points to the left of x, seen from above (up), or to the right (down), as in images."""
+    view: View = "top"
+    """Whether the camera stood above the animal, or beside it: then y is up, and bends up and down are measured."""
+    unit: str | None = None
+    """Unit of lengths, m, cm or mm, in files of pose estimators that do not say it."""
     start: float | None = None
     """Time before which frames are left out [s]."""
     end: float | None = None
@@ -82,30 +105,72 @@ def capture(words: Sequence[str]) -> int:
     """
     about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
     options = parse(CaptureOptions, "suchus capture", words, about)
-    if options.out.suffix != ".toml":
-        raise BadCommand(f"the gait goes into a .toml file; --out is {str(options.out)!r}.")
-    check_writable(options.out.parent)
-    check_replaceable(options.out)
+    out = options.out or (None if options.tables else Path("captured.toml"))
+    if options.video and not options.tables:
+        raise BadCommand("--video is drawn into the folder of --tables; give that too, as in --tables measured.")
+    if options.tables:
+        check_writable(options.tables)
+        check_replaceable(options.tables)
+    if out:
+        if out.suffix != ".toml":
+            raise BadCommand(f"the gait goes into a .toml file; --out is {str(out)!r}.")
+        check_writable(out.parent)
+        check_replaceable(out)
     if is_angle_table(options.tracks):
-        return _play(options, _asked(words))
+        return _play(options, out or Path("captured.toml"), _asked(words))
     robot = options.robot
-    check_needs(robot, NEEDED, "a gait from tracked keypoints")
-    base = options.base or own_gait(robot)
+    if out:
+        check_needs(robot, NEEDED, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)
         move("reading", 0.1)
         tracks = read_tracks(options.tracks, _how(options)).between(options.start, options.end)
         move("looking for the cycle", 0.3)
-        share = driven_share(robot) if options.tail_share is None else options.tail_share
-        walk = observe(tracks, tail_share=share)
-        move("writing", 0.8)
-        name = options.out.stem
-        captured = to_gait(walk, robot, base, name=name, duty=options.duty, girdles=options.girdles)
-        write_gait(captured, walk, options.out)
-        picture = _draw(walk, options.out)
-    print(*summary(walk), *(f"note: {note}" for note in captured.notes), sep="\n")
-    print(f"gait: {options.out}", f"diagram: {picture}", *run_it(robot, _asked(words), options.out), sep="\n")
+        driven = driven_share(robot) if out else 1.0
+        walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
+        said, notes = [*summary(walk)], walk.notes
+        if options.tables:
+            move("measuring", 0.6)
+            said += _measured(walk, tracks, options.tables, options.video)
+        if out:
+            move("writing", 0.8)
+            base = options.base or own_gait(robot)
+            captured = to_gait(
+                walk,
+                robot,
+                base,
+                name=out.stem,
+                duty=options.duty,
+                girdles=options.girdles,
+                time=options.time,
+                trunk=options.trunk,
+            )
+            write_gait(captured, walk, out)
+            notes, picture = captured.notes, _draw(walk, out.parent, out.stem)
+            apart = beside(walk, robot, captured.gait)
+            said = [captured.timing, *said, *beside_lines(apart, robot.name)]
+            if options.tables:
+                write_tables(apart, options.tables / "beside_the_robot")
+            said += [f"gait: {out}", f"diagram: {picture}", *run_it(robot, _asked(words), out)]
+    seen = len(summary(walk)) + bool(out)
+    print(*said[:seen], *(f"note: {note}" for note in notes), *said[seen:], sep="\n")
     return 0
+
+
+def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
+    """Write the tables of a walk and their figures, and return the lines that say where they are."""
+    data = tables(walk)
+    drawn = overlay(tracks, walk.strides, walk.wrong, video) if video else None
+    write_tables(data, folder)
+    save_record(data, folder / "measured.nc")
+    _draw(walk, folder, "cycle")
+    save(strides_figure(data), folder, "strides")
+    if "curvature" in data:
+        save(curvature_figure(data), folder, "curvature")
+    said = [f"tables: {folder}, {data.sizes['stride']} strides; what each column is stands in {folder / COLUMNS}"]
+    if drawn is not None:
+        said.append(f"on the film: {write(folder / 'overlay.gif', drawn)}")
+    return said
 
 
 def _asked(words: Sequence[str]) -> str:
@@ -118,17 +183,17 @@ def _asked(words: Sequence[str]) -> str:
     return ""
 
 
-def _play(options: CaptureOptions, asked: str) -> int:
+def _play(options: CaptureOptions, out: Path, asked: str) -> int:
     """Write the gait that plays a table of joint angles, say what it is, and return 0."""
     cycle = read_angles(options.tracks)
-    gait = to_curves(cycle, options.robot, name=options.out.stem, period=options.period)
+    gait = to_curves(cycle, options.robot, name=out.stem, period=options.period)
     check_limits(options.robot, gait)
-    blueprint.write(gait, options.out)
+    blueprint.write(gait, out)
     left = max(zip(cycle.residual, cycle.joints, strict=True))
     print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
     print(f"{left[1]} most, by {np.degrees(left[0]):.1f} degrees in the root mean square.")
-    lines = run_it(options.robot, asked, options.out, "salamander")
-    print(f"gait: {options.out}", *lines, sep="\n")
+    lines = run_it(options.robot, asked, out, "salamander")
+    print(f"gait: {out}", *lines, sep="\n")
     return 0
 
 
@@ -146,21 +211,26 @@ def _how(options: CaptureOptions) -> ReadingOptions:
         individual=options.individual,
         confidence=options.confidence,
         y_down=None if options.y_axis == "auto" else options.y_axis == "down",
+        view=options.view,
+        unit=options.unit,
     )
 
 
-def _draw(walk: Walk, out: Path) -> Path:
+def _draw(walk: Walk, folder: Path, stem: str) -> Path:
     """Draw two mean cycles one after the other."""
     cycle = walk.cycle
+
+    def twice(name: str) -> np.ndarray | None:
+        return np.tile(cycle[name].values, 2) if name in cycle else None
+
     figure = gait_diagram(
         [
             GaitTrack(
+                legs=tuple(str(leg) for leg in cycle.leg.values),
                 time=np.concatenate([cycle.phase.values, 1.0 + cycle.phase.values]),
                 stance=np.tile(cycle.stance.values, 2),
-                spine=np.tile(cycle.spine_lateral.values, 2),
-                tail=np.tile(cycle.tail_lateral.values, 2),
-                spine_spread=np.tile(cycle.spine_lateral_spread.values, 2),
-                tail_spread=np.tile(cycle.tail_lateral_spread.values, 2),
+                **{part: twice(f"{part}_lateral") for part in ("spine", "tail")},
+                **{f"{part}_spread": twice(f"{part}_lateral_spread") for part in ("spine", "tail")},
                 label=walk.source,
             )
         ],
@@ -171,4 +241,4 @@ def _draw(walk: Walk, out: Path) -> Path:
         f"The mean of {walk.cycles:.1f} cycles of {walk.source}, drawn twice. Black: a foot stands, spine or tail bend "
         "to the right. Bands: standard deviation of single frames, camera noise included."
     )
-    return save(captioned(figure, text), out.parent, out.stem)[1]
+    return save(captioned(figure, text), folder, stem)[1]

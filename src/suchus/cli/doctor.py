@@ -32,7 +32,7 @@ browser, extras. The exit code is 0 when it can run, and 2 when it cannot."""
 _EXTRAS = {
     "viewer": "suchus view, and suchus demo live",
     "optimise": "suchus optimise",
-    "capture": "tracks of DeepLabCut, SLEAP, LightningPose",
+    "capture": "tracks of DeepLabCut, SLEAP, LightningPose, Anipose, C3D; films",
     "gym": "Gymnasium tasks",
     "usd": "suchus export --format usd",
     "hardware": "suchus drive and suchus calibrate, with real servos",
