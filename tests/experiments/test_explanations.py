@@ -126,3 +126,13 @@ def test_a_question_without_words_is_refused_in_a_sentence(explained, tmp_path):
     templates.cache_clear()
     with pytest.raises(InvalidDesign, match=r"neither a method explain nor explanation\.md in the folder"):
         Asks().explain({})
+
+
+def test_where_bending_costs_distance_it_is_said(quick_outcome):
+    question = EXPERIMENTS["displacement"].quick()
+    found = {name: measure.value for name, measure in quick_outcome("displacement").measures.items()}
+    assert "bending costs" not in question.explain(found)
+    less = {"forward_ratio": 0.8, "forward_ratio_low": 0.7, "forward_ratio_high": 0.9}
+    assert "with the same legs alone" in question.explain(found | less)
+    assert "bending costs it 20% of that distance" in question.explain(found | less)
+    assert "bending costs" not in question.explain(found | less | {"forward_ratio_high": 1.1})  # it may be either way

@@ -11,6 +11,7 @@ from suchus.model.build import (
     standing,
     topology,
 )
+from suchus.model.stability import longest_step
 
 __all__ = [
     "SUPPLY",
@@ -20,6 +21,7 @@ __all__ = [
     "compile_model",
     "force_sensors",
     "joint_addresses",
+    "longest_step",
     "sensor_names",
     "sites",
     "slew_column",

@@ -15,10 +15,12 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated,
 from suchus.experiments.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import between, peak_torque, roll_rate, whole
+from suchus.model import longest_step
 from suchus.motion import Gait, roll
 from suchus.progress import portion
 from suchus.robots import ROBOTS
 
+_NEARLY = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
 
@@ -89,6 +91,16 @@ class DeathRoll(Experiment):
             frequencies=(2.0,),
             timesteps=(0.0025, 0.00125),
         )
+
+    def on(self, robot: Robot) -> "DeathRoll":
+        """Return the same question for another robot, in time steps that hold its joints as they hold those of now."""
+        asked = super(DeathRoll, self).on(robot)  # a class with slots has no short form
+        finer, longest = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
+        while finer * max(asked.timesteps) > _NEARLY * longest:
+            finer /= 2  # control periods stay whole numbers of steps
+        steps = tuple(finer * step for step in asked.timesteps)
+        timestep, coarse = finer * asked.timestep, finer * asked.coarse_timestep
+        return replace(asked, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
 
     @property
     def _duration(self) -> float:

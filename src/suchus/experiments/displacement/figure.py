@@ -159,7 +159,13 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         if min(ratio.shape) > 1:
             label = "ratio of displacements [-]"
             draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed, form="%.3g")
-        ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_SHOWN)
+            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_SHOWN)
+        else:  # of the strokes or the bends the body can follow one only
+            over = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
+            ax.plot(ratio[over], ratio.squeeze("bend" if over == "stroke" else "stroke"), marker="o")
+            ax.axvline(star[over == "bend"], color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
+            ax.set_xlabel(f"{ratio[over].attrs['long_name']} [{ratio[over].attrs['units']}]")
+            ax.set_ylabel("ratio of displacements [-]")
         ax.legend(loc="upper right", fontsize=10)
         ax.set_title("spine and tail over limbs only")
         if pitched:
@@ -180,12 +186,13 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax.set_ylabel("displacement forward [m]")
         ax.set_title("phase lag of the trunk")
     line = ", the orange line the article's ratio" if article else ""
+    shown = "star" if min(ratio.shape) > 1 else "dotted line"
     what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
     middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
     return captioned(
         figure,
         f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
-        f"star is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
+        f"{shown} is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
         "the legs, with spine and tail.",
     )
 

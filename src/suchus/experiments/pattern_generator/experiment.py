@@ -30,6 +30,7 @@ _EDGE = 0.01  # above the limbs' highest drive, where they have just fallen sile
 STRAIGHT = ("drive_low", "straight", "drive_high")
 """Walks by an even drive: the lowest that moves the limbs, the one for walking, the highest."""
 _EVERY = 4  # control periods between the samples kept of the oscillators
+_LEAST_TIME = START + 1.5  # of the runs from the water, beyond the time in which the felt load settles [s]
 _SETTLED = 0.25  # the last part of a sweep's time, over which frequencies are taken
 
 
@@ -99,7 +100,7 @@ class PatternGeneratorExperiment(Experiment):
             check.number("ramp", 1.0, 1000.0, "")
             check.number("slope", 0.01, 1.0, "rad")
             check.number("water_line", 0.0, 100.0, "m")
-            check.number("shore_time", START + 1.5, 3600.0, "s")
+            check.number("shore_time", _LEAST_TIME, 3600.0, "s")
             check.whole("seed", 0, 2**31)
 
     def quick(self) -> "PatternGeneratorExperiment":
@@ -121,6 +122,7 @@ class PatternGeneratorExperiment(Experiment):
             mass_factor=swimmer.mass / self.swimmer.mass,
         )
         across = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
+        across["shore_time"] = max(across["shore_time"], _LEAST_TIME)
         return replace(asked, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **across)
 
     def simulate(self, progress: Progress = silent) -> Simulated:

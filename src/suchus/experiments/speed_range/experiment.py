@@ -87,18 +87,20 @@ class SpeedRange(Experiment):
         return Simulated(record=record, replays=self._replays(fastest))
 
     def _replays(self, fastest: Sequence[xr.Dataset]) -> Mapping[str, Replay]:
-        """Return the replay of the first gait and the last."""
-        until = min(float(walked.time[-1]) for walked in fastest)
-        pair = [walked.sel(time=slice(None, until)) for walked in (fastest[0], fastest[-1])]
-        names = [str(walked.gait.item()).replace("_", " ") for walked in pair]
+        """Return the replay of the first gait and the last, where there are two."""
+        shown = [fastest[0], fastest[-1]] if len(fastest) > 1 else fastest
+        until = min(float(walked.time[-1]) for walked in shown)
+        shown = [walked.sel(time=slice(None, until)) for walked in shown]
+        names = [str(walked.gait.item()).replace("_", " ") for walked in shown]
+        beside = f", and, half transparent, {names[1]}" if len(names) > 1 else ""
         return replayed(
             "speed_replay.html",
-            pair[0],
+            shown[0],
             self.robot,
-            ghost=pair[1],
-            labels=names,
+            ghost=shown[1] if len(shown) > 1 else None,
+            labels=names if len(names) > 1 else (),
             title="In a hurry",
-            caption=f"At the shortest cycle that was tried: {names[0]}, and, half transparent, {names[1]}.",
+            caption=f"At the shortest cycle that was tried: {names[0]}{beside}.",
         )
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:

@@ -1,0 +1,33 @@
+"""The longest step that holds a robot's joints: of which size it is, and that longer ones do not hold them."""
+
+import numpy as np
+import pytest
+
+from body_files import giant
+from suchus.design.scale import scaled
+from suchus.experiments import EXPERIMENTS
+from suchus.land import simulate
+from suchus.model import longest_step
+from suchus.robots import ROBOTS
+
+
+def test_the_longest_step_is_a_time_of_the_body():
+    robot = ROBOTS["caiman"]
+    assert longest_step(scaled(robot, length_factor=0.25)) == pytest.approx(longest_step(robot) / 2, rel=1e-6)
+
+
+def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():
+    robot = giant()
+    asked = EXPERIMENTS["death_roll"].quick().on(robot)
+    run = asked._afloat(asked._roll(), "trunk", "vacuum")
+    longest = longest_step(robot)
+    assert 0.0005 < longest < 0.001
+    for step, holds in ((0.0005, True), (0.001, False)):
+        record = simulate([run], duration=0.06, timestep=step)
+        assert np.isfinite(record.servo_velocity.values).all() == holds
+    assert max(*asked.timesteps, asked.coarse_timestep, asked.timestep) < longest
+
+
+def test_a_robot_that_is_nearly_as_stiff_rolls_in_the_same_steps():
+    asked = EXPERIMENTS["death_roll"].quick()
+    assert asked.on(ROBOTS["long_tail"]).timesteps == asked.timesteps
