@@ -15,7 +15,7 @@ from validation_rows import OUT, ROOT, SOURCES, is_whole, note
 
 from suchus import flow
 from suchus.flow import signals
-from suchus.flow.resolution import SKIN_SUM
+from suchus.flow.resolution import SKIN_FRICTION, SKIN_SUM
 from validation_page import write_validation
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
@@ -201,6 +201,20 @@ def test_impulsively_started_cylinder(reynolds, cells, until, half):
                  polar_t=exact["t_star"], polar_cd=exact["cd"])  # fmt: skip
     assert offs[1] < 0.03
     assert offs[2] < 0.015
+
+
+@pytest.mark.parametrize(("cells", "low"), list(zip((96, 48), SKIN_FRICTION, strict=True)))
+def test_friction_along_the_skin(cells, low):
+    """Read off the wall it is as low as is said beside its plots; the force exchanged is not."""
+    exact = published("polar_cd_re550.csv")
+    _, record, f = cases.cylinder(cells, 550, x=(-1.75, 3.75), y=(-1.75, 1.75), until=1.3)
+    k = (exact["t_star"] > 1.0) & (exact["t_star"] < 2.5)
+    rubbed, whole = (
+        np.interp(exact["t_star"][k], 2 * cases.middle(record), value).mean()
+        for value in (2 * record.column("shear_x"), f[:, 0])
+    )
+    assert 1 - rubbed / exact["friction"][k].mean() == pytest.approx(low, abs=0.01)
+    assert whole / exact["cd"][k].mean() == pytest.approx(1, abs=0.02)
 
 
 def test_duetsch_oscillating_cylinder():

@@ -46,7 +46,9 @@ def _channel(effort: RunEffort, progress: Progress, *, mean_speed: float) -> Cur
     time = middles(record)
     kept = last_periods(time, lift, 5)
     return {
-        "largest drag": np.array(drag[kept].max()), "largest lift": np.array(lift[kept].max()),
+        "largest drag": np.array(drag[kept].max()), "least drag": np.array(drag[kept].min()),
+        "largest lift": np.array(lift[kept].max()), "least lift": np.array(lift[kept].min()),
+        "half the swing of the lift": np.array(0.5 * np.ptp(lift[kept])),
         "Strouhal": np.array(flow.frequency(time[kept], lift[kept]) * _DIAMETER / mean_speed),
         "lift": np.stack([time, lift]),
     }  # fmt: skip
