@@ -12,6 +12,8 @@ from suchus.control import Swimming
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _ends, _radius, _speed, _uneven
+from suchus.experiments.swim_free.figure import draw_below
+from suchus.experiments.swim_free.submerged import DEEP
 from suchus.motion import LIMBS_UP, intended
 from suchus.robots import ROBOTS
 from suchus.rotation import about
@@ -101,3 +103,18 @@ def test_bad_swims_are_refused(fields, message):
 def test_bad_floats_are_refused(fields, message):
     with pytest.raises(InvalidDesign, match=message):
         replace(EXPERIMENTS["floating"], **fields)
+
+
+def test_pitch_is_drawn_nose_down_positive_as_in_fig_11():
+    time = np.arange(3.0)
+    record = xr.Dataset(
+        {
+            "deep_depth": (("dive", "dive_time"), [[0.0, 0.1, 0.2]]),
+            "deep_pitch": (("dive", "dive_time"), [[0.0, 0.1, 0.2]]),
+        },
+        coords={"dive": [next(iter(DEEP))], "dive_time": time},
+        attrs={"depth": 0.2, "deep_from": 1.0},
+    )
+    pitch = draw_below(record, DEEP).axes[1]
+    assert "nose down positive" in pitch.get_ylabel()
+    assert pitch.lines[0].get_ydata().tolist() == np.degrees(record.deep_pitch.values[0]).tolist()

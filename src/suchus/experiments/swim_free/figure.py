@@ -115,12 +115,12 @@ def draw_below(record: xr.Dataset, called: Mapping[str, str]) -> Figure:
             if name not in record.dive.values:
                 continue
             one, time = record.sel(dive=name), record.dive_time
-            for ax, values in ((axes[0, 0], -one.deep_depth), (axes[0, 1], -np.degrees(one.deep_pitch))):
+            for ax, values in ((axes[0, 0], -one.deep_depth), (axes[0, 1], np.degrees(one.deep_pitch))):
                 ax.plot(time, values, color=COLOURS[colour], linestyle=dashes, label=called[name])
         axes[0, 0].axhline(-record.attrs["depth"], color=COLOURS["neutral"], linewidth=0.9)
         axes[0, 1].axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         axes[0, 0].set(xlabel="time [s]", ylabel="root above the surface [m]")
-        axes[0, 1].set(xlabel="time [s]", ylabel="pitch, nose up positive [deg]")
+        axes[0, 1].set(xlabel="time [s]", ylabel="pitch, nose down positive [deg]")
         axes[0, 1].legend(loc="best")
     return captioned(
         figure,
