@@ -57,7 +57,7 @@ class Feetech(Framing):
         return code != 0
 
     def refusal(self, code: int) -> str:
-        """Say nothing: this protocol does not tell why."""
+        """Say nothing: this protocol does not say why."""
         del code
         return ""
 

@@ -101,7 +101,7 @@ class Driven(Experiment):
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw how far servos were off, how hot they got, and how late ticks were."""
+        """Draw how far servos were off, how hot they got, and the delay of ticks."""
         with styled():
             return {"drive": self._draw(outcome.record)}
 
@@ -140,7 +140,7 @@ class Driven(Experiment):
             figure,
             "What servos and bus did while the robot was driven: how far the servos were off what was asked of them, "
             "how "
-            "warm they got, how late the goals of each tick were sent and how many servos were not heard in it.",
+            "warm they got, the delay with which the goals of each tick were sent and how many servos were not heard in it.",
         )
 
     def quick(self) -> "Driven":

@@ -31,7 +31,7 @@ class Standing:
     title: str
     """Title for people."""
     about: str
-    """What it is."""
+    """Explanation in a sentence, for people."""
     words: Mapping[str, str]
     """What each quantity is."""
     units: Mapping[str, str]

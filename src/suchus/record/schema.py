@@ -75,7 +75,7 @@ Forces and torques are means over the control period before each sample; the res
 """
 
 DRIVEN: Mapping[str, tuple[tuple[str, ...], str, str]] = {
-    "tick_began": (("time",), "s", "how late the tick began against its plan"),
+    "tick_began": (("time",), "s", "delay of the tick against its plan"),
     "tick_took": (("time",), "s", "from the beginning of the tick until its goals were sent"),
     "servo_asked": (("time", "servo"), "rad", "angle that the controller asked for, before limits and steps"),
     "servo_heard": (

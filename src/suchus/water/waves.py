@@ -103,9 +103,9 @@ class FilmedWave:
     wavelength: float
     """Length of one whole wave [body length]."""
     head: float
-    """Amplitude of the snout, half of its way from side to side [body length]."""
+    """Amplitude of the snout, half of the distance from side to side [body length]."""
     tail: float
-    """Amplitude of the tail's tip, half of its way from side to side [body length]."""
+    """Amplitude of the tail's tip, half of the distance from side to side [body length]."""
 
     @property
     def period(self) -> float:
