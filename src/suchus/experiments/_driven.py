@@ -140,7 +140,7 @@ class Driven(Experiment):
             figure,
             "What servos and bus did while the robot was driven: how far the servos were off what was asked of them, "
             "how "
-            "warm they got, the delay with which the goals of each tick were sent and how many servos were not heard in it.",
+            "warm they got, the delay of the goals of each tick and how many servos were not heard in it.",
         )
 
     def quick(self) -> "Driven":
