@@ -119,6 +119,12 @@ COMMANDS = (
         "suchus.cli.drive:run",
     ),
     Subcommand(
+        "calibrate",
+        "wiring|zero|log [RECORD.nc] [--robot ROBOT]",
+        "find out how a robot is wired and how stiff it is",
+        "suchus.cli.calibrate:calibrate",
+    ),
+    Subcommand(
         "flow-atlas",
         "[ROW ...] [--out DIR] [--jobs N | --scheduler ADDRESS]",
         "compute published flows and draw ours beside theirs",

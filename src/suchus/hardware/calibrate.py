@@ -1,0 +1,224 @@
+"""What a robot that was built says of itself: which servo moves which joint, where its zeros are, how stiff it is."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from math import radians
+
+import numpy as np
+import xarray as xr
+
+from suchus.bus import Wiring
+from suchus.errors import BusFailure, IncompatibleRecord, InvalidDesign
+from suchus.hardware.drive import Clock
+from suchus.hardware.rig import Rig
+
+NUDGE = radians(5.0)
+"""By how much a servo is moved so that people see which one it is [rad]."""
+_PACE = radians(20.0)  # [rad/s]; how fast
+_LEAST = 50  # samples from which a servo is judged
+_COVERED = 1.96  # standard deviations on either side that hold 95 %
+
+Answer = Callable[[int, int], tuple[str, int]]
+"""Asked with bus and number of the servo that has just moved to more steps: the joint that moved, and 1 where in its
+positive sense, -1 where not."""
+
+
+def find_wiring(rig: Rig, clock: Clock, answer: Answer) -> Wiring:
+    """Move each servo alone, there and back, and return the wiring by what moved.
+
+    All others are without torque meanwhile, and it too in the end.
+
+    Args:
+        rig: the open robot, wired as is believed; its names are not.
+        clock: of its ticks.
+        answer: says what moved; it is asked while the servo holds.
+
+    Raises:
+        BusFailure: a servo does not answer.
+        InvalidDesign: a joint was named twice.
+    """
+    rig.check()
+    clock.begin()
+    tick, found = 0, {}
+    rig.torque(False)
+    try:
+        for i, one in enumerate(rig.servos):
+            if not rig.asked[i]:
+                found[one.name] = one
+                continue
+            rig.read()
+            if not rig.now.heard[i]:
+                rig.read()
+            here = rig.now.angle[i]
+            if not np.isfinite(here):
+                raise BusFailure(f"number {one.id} on bus {one.bus} does not say where it is.")
+            steps = int(rig.steps.of(rig.now.angle)[i])
+            rig.surely("goal_position", {i: steps})
+            rig.surely("torque_limit", {i: one.table.full})
+            rig.surely("torque_enable", {i: 1})
+            far = round(NUDGE / rig.steps.unit)
+            count = max(1, round(NUDGE / _PACE / rig.period))
+            way = [steps + round(far * (k + 1) / count) for k in range(count)]
+            tick = _through(rig, clock, tick, i, [*way, *count * [way[-1]]])
+            name, sign = answer(one.bus, one.id)
+            tick = _through(rig, clock, tick, i, [*way[::-1], steps])
+            rig.surely("torque_enable", {i: 0})
+            if name in found:
+                raise InvalidDesign(
+                    f"{name} was said to have moved with number {found[name].id} and with number {one.id}; each joint "
+                    "has one servo: begin again, and look which one it is."
+                )
+            true = next((other for other in rig.servos if other.name == name), None)
+            if true is None:
+                raise InvalidDesign(f"{name} is no servo of {rig.robot.name!r}; there is {', '.join(rig.names)}.")
+            found[name] = replace(one, name=name, sign=sign, low=true.low, high=true.high)
+    finally:
+        for _ in range(3):
+            rig.torque(False)
+    return replace(rig.wiring, servo=tuple(found[name] for name in rig.names))
+
+
+def _through(rig: Rig, clock: Clock, tick: int, i: int, steps: list[int]) -> int:
+    """Send one servo through steps, one a tick, and return the tick that comes next."""
+    for step in steps:
+        rig.write("goal_position", {i: step})
+        tick = max(clock.wait(tick + 1), tick + 1)
+        rig.read()
+    return tick
+
+
+def find_zeros(rig: Rig, posture: np.ndarray, *, times: int = 10) -> tuple[Wiring, np.ndarray]:
+    """Return the wiring with the zeros by where the servos are now, limp, and by how much each zero changed [rad].
+
+    Args:
+        rig: the open robot, which somebody holds in a posture.
+        posture: that it is held in, shape (servo,) [rad].
+        times: how often each is asked; the median counts.
+
+    Raises:
+        BusFailure: a servo does not answer.
+    """
+    rig.check()
+    for _ in range(3):
+        rig.torque(False)
+    told = []
+    for _ in range(times):
+        rig.read()
+        told.append(np.where(rig.now.heard, rig.now.angle, np.nan))
+    heard = np.isfinite(told).any(axis=0) | ~rig.asked
+    if not heard.all():
+        silent = [name for name, yes in zip(rig.names, heard, strict=True) if not yes]
+        raise BusFailure(f"{' and '.join(silent[:4])} does not say where it is.")
+    here = np.where(rig.asked, np.nanmedian(np.where(rig.asked, told, 0.0), axis=0), posture)
+    off = here - posture
+    servo = tuple(
+        replace(one, zero=one.zero + one.sign * round(off[i] / rig.steps.unit)) for i, one in enumerate(rig.servos)
+    )
+    return replace(rig.wiring, servo=servo), off
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fitted:
+    """One number of a servo, with the interval that holds it by 95 %."""
+
+    value: float
+    """The number."""
+    half: float
+    """Half of the width of its interval."""
+
+    def __str__(self) -> str:
+        return f"{self.value:.4g} +- {self.half:.2g}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoFit:
+    """What a log says of one servo."""
+
+    stiffness: Fitted
+    """Torque for each radian that it is off its goal [N m/rad]."""
+    damping: Fitted
+    """Torque against each radian per second [N m s/rad]."""
+    play: Fitted
+    """Way that it goes without a torque, whole width [rad]."""
+    friction: Fitted
+    """Torque that turns with the sense of its motion, against gravity, inertia and viscous friction [N m]."""
+    offset: Fitted
+    """Angle by which its zero is off [rad]."""
+
+
+def fit_log(record: xr.Dataset) -> Mapping[str, ServoFit]:
+    """Return what a log says of each servo, by least squares; those that hardly moved are left out.
+
+    How far a servo is off its goal is its torque over its stiffness, plus half of its play in the sense of the torque,
+    plus what damping takes: linear in all that is looked for. Its friction is what of the torque changes sign with its
+    motion, beside a constant, a part with the angle, with the speed and with the acceleration: move joints to and fro,
+    one at a time and without load, else it is blurred. Torques are told by currents, and are as good as those.
+
+    Args:
+        record: of one run; its goals act after the sample in which they stand.
+
+    Raises:
+        IncompatibleRecord: it holds no torques, or fewer samples than a fit needs.
+    """
+    goal, angle = record.servo_target.values[:-1], record.servo_angle.values[1:]
+    speed, torque = record.servo_velocity.values[1:], record.servo_torque.values[1:]
+    if len(goal) < _LEAST or not np.isfinite(torque).any():
+        raise IncompatibleRecord(
+            f"a log of {len(goal)} samples {'with' if np.isfinite(torque).any() else 'without'} torques tells "
+            "nothing of "
+            f"the servos; {_LEAST} samples with torques at least are needed."
+        )
+    period = float(np.median(np.diff(record.time.values)))
+    found = {}
+    for i, name in enumerate(record.servo.values):
+        whole = np.isfinite(goal[:, i] + angle[:, i] + speed[:, i] + torque[:, i])
+        if "servo_heard" in record:
+            whole &= record.servo_heard.values[1:, i] > 0
+        off, t, w, a = (part[whole, i] for part in (goal - angle, torque, speed, angle))
+        if len(off) < _LEAST or np.ptp(t) < 1e-6 or np.ptp(a) < 1e-4:
+            continue
+        one = np.ones_like(off)
+        soft, halves = _least_squares(np.column_stack([t, w, np.sign(t), one]), off)
+        if not soft[0] > 0.0:
+            continue
+        faster = np.gradient(w, period)
+        felt, felt_halves = _least_squares(np.column_stack([one, a, faster, w, np.tanh(w / 0.02)]), t)
+        stiffness = 1.0 / soft[0]
+        found[str(name)] = ServoFit(
+            stiffness=Fitted(value=stiffness, half=halves[0] * stiffness**2),
+            damping=Fitted(value=soft[1] * stiffness, half=halves[1] * stiffness),
+            play=Fitted(value=2.0 * soft[2], half=2.0 * halves[2]),
+            friction=Fitted(value=felt[4], half=felt_halves[4]),
+            offset=Fitted(value=soft[3], half=halves[3]),
+        )
+    if not found:
+        raise IncompatibleRecord("no servo of the log moved and gave a torque: drive a gait, and fit that log.")
+    return found
+
+
+def _least_squares(columns: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coefficients and half of the width of their intervals, residuals that follow one another counted once.
+
+    Args:
+        columns: shape (sample, coefficient).
+        values: shape (sample,).
+    """
+    found, *_ = np.linalg.lstsq(columns, values, rcond=None)
+    left = values - columns @ found
+    count = max(len(values) - columns.shape[1], 1)
+    alike = float(np.clip(np.corrcoef(left[:-1], left[1:])[0, 1], 0.0, 0.99)) if left.std() > 0.0 else 0.0
+    spread = left.var() * len(values) / count * (1.0 + alike) / (1.0 - alike)
+    half: np.ndarray = _COVERED * np.sqrt(np.diag(spread * np.linalg.pinv(columns.T @ columns)))
+    return found, half
+
+
+def fits_text(fits: Mapping[str, ServoFit]) -> str:
+    """Return fits as a table: for each servo each number, and half of the width of its interval."""
+    names = ("stiffness", "damping", "play", "friction", "offset")
+    units = ("Nm_per_rad", "Nms_per_rad", "rad", "Nm", "rad")
+    head = ",".join(f"{name}_{unit},{name}_half" for name, unit in zip(names, units, strict=True))
+    rows = [
+        ",".join([name, *(f"{getattr(fit, one).value:.6g},{getattr(fit, one).half:.3g}" for one in names)])
+        for name, fit in fits.items()
+    ]
+    return "\n".join([f"servo,{head}", *rows]) + "\n"
