@@ -1,0 +1,107 @@
+"""An emulated bus as other programs see it: a pseudo-terminal, or a socket of this computer."""
+
+import threading
+from contextlib import contextmanager
+from dataclasses import replace
+
+import pytest
+from tests.hardware.test_drive import GAIT, REST, ROBOT
+from tests.wires import Obedient, wiring
+
+from suchus.bus import FRAMINGS, Bus, BusGone, open_port
+from suchus.emulator import Emulator, Server, Trouble
+from suchus.errors import BusFailure, InvalidDesign, Unwritable
+from suchus.hardware import BusClock, DriveSettings, Rig, drive
+
+pytest.importorskip("serial", reason="the extra hardware is not installed")
+SOON = 2.0
+"""How long a busy machine may take for an answer [s]."""
+
+
+@contextmanager
+def served(links=(), *, clocked=True, sockets=False, trouble=None, made=None):
+    """Serve a robot whose servos are where they were sent, from a thread."""
+    body, done = Obedient(), threading.Event()
+    body.angles[:] = body.goals[:] = REST
+    server = Server(Emulator(made or wiring(), body, trouble or Trouble(), clocked=clocked), links, sockets=sockets)
+    thread = threading.Thread(target=server.serve, args=(done.is_set,), daemon=True)
+    thread.start()
+    try:
+        yield server
+    finally:
+        done.set()
+        thread.join(5.0)
+        server.close()
+
+
+def bus_to(server, baud=1_000_000):
+    return Bus(open_port(server.ports[0], baud), FRAMINGS["dynamixel"], wait=SOON, clocked=True)
+
+
+@pytest.mark.parametrize("sockets", [False, True])
+def test_it_is_driven_through_a_port(sockets, tmp_path):
+    with served([] if sockets else [tmp_path / "bus"], sockets=sockets) as server:
+        made = wiring()
+        made = replace(made, bus=(replace(made.bus[0], port=server.ports[0]),))
+        rig = Rig(ROBOT, made, clocked=True)
+        log = drive(rig, GAIT, settings=DriveSettings(duration=0.05, stop="off"), clock=BusClock(rig))
+        rig.close()
+        assert log.sizes["time"] == 6
+        assert log.servo_heard.values.all()
+        assert sockets == server.ports[0].startswith("socket://127.0.0.1:")
+    assert not (tmp_path / "bus").is_symlink()
+
+
+def test_servos_hear_nothing_at_another_bit_rate_and_the_one_that_answers_is_named(monkeypatch):
+    monkeypatch.setattr("suchus.hardware.rig.PATIENT", 0.05)
+    monkeypatch.setattr("suchus.hardware.rig._AGAIN", 1)
+    with served(clocked=False) as server:
+        made = wiring()
+        made = replace(made, bus=(replace(made.bus[0], port=server.ports[0], baud=2_000_000),))
+        rig = Rig(ROBOT, made, rate=20.0)
+        monkeypatch.setattr("suchus.hardware.rig.Bus", lambda port, framing: Bus(port, framing, wait=SOON))
+        monkeypatch.setattr("suchus.hardware.rig.TRIED", (57_600, 1_000_000))
+        with pytest.raises(BusFailure, match=r"nobody answers .* at 2000000 baud, but at 1000000 baud number 1 does"):
+            rig.check()
+
+
+def test_a_second_host_is_told_that_the_port_is_held():
+    with served() as server:
+        first = open_port(server.ports[0], 1_000_000)
+        with pytest.raises(BusFailure, match="held by another process"):
+            open_port(server.ports[0], 1_000_000)
+        first.close()
+
+
+def test_a_port_that_is_not_there_or_none_is_said(tmp_path):
+    with pytest.raises(BusFailure, match="there is no port"):
+        open_port(str(tmp_path / "nothing"), 1_000_000)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BusFailure, match="is no serial port but a file"):
+        open_port(str(tmp_path / "file"), 1_000_000)
+    with pytest.raises(BusFailure, match="nobody listens at"):
+        open_port("socket://127.0.0.1:9", 1_000_000)
+    for elsewhere in ("socket://192.0.2.1:5000", "socket://127.0.0.1", "socket://127.0.0.1:x"):
+        with pytest.raises(InvalidDesign, match="on this computer"):
+            open_port(elsewhere, 1_000_000)
+
+
+def test_an_emulator_that_ends_ends_the_bus():
+    with served(sockets=True) as server:
+        bus = bus_to(server)
+        assert bus.ping(3) is not None
+    with pytest.raises(BusGone, match=r"gone|ended"):
+        bus.port.receive(SOON)
+    bus.close()
+
+
+def test_a_link_of_an_emulator_that_was_killed_is_taken_over_and_a_file_is_not(tmp_path):
+    (tmp_path / "bus").symlink_to(tmp_path / "gone")
+    with served([tmp_path / "bus"]) as server:
+        bus = bus_to(server)
+        assert bus.ping(3) is not None
+        bus.close()
+    (tmp_path / "bus").write_text("mine")
+    with pytest.raises(Unwritable, match="cannot be linked"), served([tmp_path / "bus"]):
+        pass
+    assert (tmp_path / "bus").read_text() == "mine"
