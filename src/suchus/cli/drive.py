@@ -7,7 +7,7 @@ import termios
 import time
 import tty
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -18,6 +18,7 @@ from rich.console import Console
 
 from suchus.bus import FRAMINGS, Instruction, Packet, Port, Wiring
 from suchus.bus.packets import Framing
+from suchus.bus.pca9685 import Pulses, open_wires
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
@@ -28,7 +29,7 @@ from suchus.errors import BusFailure, UnknownName
 from suchus.experiments._driven import Driven
 from suchus.figures import styled
 from suchus.gaits import gait_of, own_gait, suits
-from suchus.hardware import BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_wiring
+from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
 from suchus.motion import START, Gait
 from suchus.record import check_writable
 from suchus.report import PAGE, check_place, save_outcome
@@ -51,8 +52,11 @@ class DriveOptions:
     """The robot that is driven."""
     hardware: Path = Path("hardware.toml")
     """Which servo hangs where, as suchus calibrate or suchus emulate write it."""
+    map: Path | None = None
+    """Servo map of hobby servos on PCA9685 boards, which tell nothing, in the place of --hardware; --port names their
+    I2C bus."""
     port: str | None = None
-    """Port of its only bus, in the place of the file's."""
+    """Port of its only bus, in the place of the file's; /dev/i2c-1 for --map."""
     clock: Literal["wall", "bus"] = "wall"
     """wall: this computer's time; bus: an emulator is told the time, and nothing is ever late."""
     control: Literal["open", "closed", "steered", "pattern", "stand", "swim"] = "open"
@@ -85,6 +89,8 @@ def run(words: Sequence[str]) -> int:
     folder = options.out or Path("out") / f"drive_{gait.name}"
     check_writable(folder.parent)
     check_place(folder)
+    if options.map is not None:
+        return _drive(options, gait, control, folder, words, lambda: _blind(options))
     wiring = read_wiring(options.hardware, options.robot)
     if options.port is not None:
         if len(wiring.bus) != 1:
@@ -92,11 +98,23 @@ def run(words: Sequence[str]) -> int:
                 f"--port names one port, and {options.hardware} has {len(wiring.bus)} buses: name them there."
             )
         wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
+    return _drive(options, gait, control, folder, words, lambda: _opened(options, wiring, gait))
+
+
+def _drive(
+    options: DriveOptions,
+    gait: Gait,
+    control: Control,
+    folder: Path,
+    words: Sequence[str],
+    opened: Callable[[], AbstractContextManager[tuple[Rig | BlindRig, Any]]],
+) -> int:
+    """Drive an opened robot, keep its log, and return 0."""
     settings = DriveSettings(duration=options.seconds, stop=options.stop)
     begun = time.perf_counter()
-    with _opened(options, wiring, gait) as (rig, clock):
+    told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
+    with opened() as (rig, clock):
         check_drive(rig, gait, control)
-        told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
         try:
             with _keys() as asked, working() as bars:
                 record = drive(
@@ -107,6 +125,38 @@ def run(words: Sequence[str]) -> int:
             raise
     _keep(told, record, folder, words, time.perf_counter() - begun)
     return 0
+
+
+@contextmanager
+def _blind(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
+    """Yield a robot of hobby servos and its clock; a dry run prints what would be written."""
+    assert options.map is not None
+    if options.clock == "bus":
+        raise BadCommand("hobby servos have no bus whose emulator could be told the time: leave out --clock bus.")
+    servo_map = read_map(options.map, options.robot)
+    wires = Shown() if options.dry_run else open_wires(options.port or "/dev/i2c-1")
+    pulses = Pulses(wires, sorted({line.board for line in servo_map.servos}), servo_map.rate)
+    rig = BlindRig(options.robot, servo_map, pulses)
+    try:
+        yield rig, WallClock(rig.period)
+    finally:
+        rig.close()
+
+
+class Shown:
+    """An I2C bus that is none: it prints the first things that are written to it."""
+
+    def __init__(self) -> None:
+        self._left = 24
+
+    def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
+        """Print what would be written."""
+        self._left -= 1
+        if self._left >= 0:
+            print(f"write {i2c_addr:#04x} {register:#04x}  {bytes(data).hex(' ')}")
+
+    def close(self) -> None:
+        """Do nothing."""
 
 
 def _movement(options: DriveOptions) -> tuple[Gait, Control]:

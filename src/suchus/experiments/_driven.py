@@ -92,6 +92,8 @@ class Driven(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided, in a sentence or two."""
+        if not np.isfinite(measures["error_worst"]):
+            return f"For {measures['duration']:.1f} s servos were sent where they were to be; they tell nothing of it."
         worst = max((name for name in measures if name.startswith("error_") and name != "error_worst"),
                     key=lambda name: measures[name])  # fmt: skip
         return (
@@ -102,6 +104,8 @@ class Driven(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw how far servos were off, how hot they got, and the delay of ticks."""
+        if not np.isfinite(outcome.measures["error_worst"].value):
+            return {}
         with styled():
             return {"drive": self._draw(outcome.record)}
 

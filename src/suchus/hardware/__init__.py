@@ -1,5 +1,6 @@
 """From a gait to the servos of a robot that stands on a table: angles, pulses, limits, files."""
 
+from suchus.hardware.blind import BlindRig
 from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text
 from suchus.hardware.drive import BusClock, Clock, DriveSettings, WallClock, about, check_drive, drive
 from suchus.hardware.guard import DriveLimits
@@ -18,6 +19,7 @@ from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, w
 from suchus.hardware.wiring import read_wiring, wiring_text, write_wiring
 
 __all__ = [
+    "BlindRig",
     "BusClock",
     "Clock",
     "Commands",

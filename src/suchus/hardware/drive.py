@@ -13,10 +13,10 @@ from suchus.control import Control, Controller, OpenLoop, needs
 from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.errors import BusFailure, OutsideLimits, SuchusError, UnsuitedRobot
+from suchus.hardware.blind import BlindRig
 from suchus.hardware.guard import DriveLimits, Guard
 from suchus.hardware.log import Log
-from suchus.hardware.rig import Rig, senses
-from suchus.hardware.wiring import wiring_text
+from suchus.hardware.rig import Rig
 from suchus.land import Run
 from suchus.land.loop import start
 from suchus.motion import Gait, check_limits, cycle_targets
@@ -117,7 +117,7 @@ class DriveSettings:
             check.number("approach", 0.01, 10.0, "rad/s")
 
 
-def check_drive(rig: Rig, gait: Gait, control: Control) -> None:
+def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
     """Refuse what the robot cannot do as it is wired, before anything moves.
 
     Raises:
@@ -125,7 +125,7 @@ def check_drive(rig: Rig, gait: Gait, control: Control) -> None:
         OutsideLimits: the gait goes beyond a joint, or beyond where a servo may be sent, or turns one too fast.
     """
     robot = rig.robot
-    lacking = [name for name in needs(control) if name not in senses(robot, rig.wiring.board)]
+    lacking = [name for name in needs(control) if name not in rig.senses]
     if lacking:
         words = " and ".join(name.replace("_", " ") for name in lacking)
         raise UnsuitedRobot(
@@ -137,20 +137,20 @@ def check_drive(rig: Rig, gait: Gait, control: Control) -> None:
     clock = np.arange(_PHASES) / _PHASES
     angles = cycle_targets(robot, gait, clock)
     rates = np.abs(np.roll(angles, -1, axis=0) - angles) * _PHASES / gait.period
-    for i, one in enumerate(rig.servos):
+    for i, (name, least, most) in enumerate(rig.bounds):
         low, high = angles[:, i].min(), angles[:, i].max()
-        if low < one.low - 1e-9 or high > one.high + 1e-9:
+        if low < least - 1e-9 or high > most + 1e-9:
             raise OutsideLimits(
-                f"gait {gait.name!r} turns {one.name} from {low:.2f} to {high:.2f} rad, and the hardware allows "
-                f"{one.low:g} "
-                f"to {one.high:g} rad: mount its horn with another zero, or take another gait."
+                f"gait {gait.name!r} turns {name} from {low:.2f} to {high:.2f} rad, and the hardware allows "
+                f"{least:g} "
+                f"to {most:g} rad: mount its horn with another zero, or take another gait."
             )
         if rates[:, i].max() > rig.speed[i]:
-            least = gait.period * rates[:, i].max() / rig.speed[i]
+            slower = gait.period * rates[:, i].max() / rig.speed[i]
             raise OutsideLimits(
-                f"gait {gait.name!r} turns {one.name} at {rates[:, i].max():.3g} rad/s, and up to {rig.speed[i]:g} "
+                f"gait {gait.name!r} turns {name} at {rates[:, i].max():.3g} rad/s, and up to {rig.speed[i]:g} "
                 "rad/s is "
-                f"allowed: lengthen its period to {least:.2g} s."
+                f"allowed: lengthen its period to {slower:.2g} s."
             )
 
 
@@ -159,7 +159,7 @@ class _Stopped(Exception):
 
 
 def drive(
-    rig: Rig,
+    rig: Rig | BlindRig,
     gait: Gait,
     control: Control | None = None,
     settings: DriveSettings | None = None,
@@ -208,7 +208,7 @@ class _Drive:
 
     def __init__(
         self,
-        rig: Rig,
+        rig: Rig | BlindRig,
         gait: Gait,
         controller: Controller,
         settings: DriveSettings,
@@ -223,7 +223,7 @@ class _Drive:
         self._log, self._guard = Log(rig.robot, gait), Guard(rig, settings.limits)
         self._told = 0
         self._tick = self._offset = 0
-        self._goal = np.zeros(len(rig.servos))
+        self._goal = np.zeros(len(rig.names))
         self._missed = self._clamped = 0
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
 
@@ -264,10 +264,10 @@ class _Drive:
                    if yes and not np.isfinite(one)]  # fmt: skip
         if unheard:
             raise BusFailure(f"{' and '.join(unheard[:4])} does not say where it is: the robot cannot be started.")
-        here = np.where(rig.asked, rig.now.angle, 0.0)
+        there = np.clip(self._controller.rest()[0], rig.low, rig.high)
+        here = np.where(rig.asked, rig.now.angle, there)
         self._goal = rig.ready(np.clip(here, rig.low, rig.high))
         rig.watch(True)
-        there = np.clip(self._controller.rest()[0], rig.low, rig.high)
         far = float(np.abs(there - here)[rig.asked].max(initial=0.0))
         count = int(max(far - _EARLY, 0.0) / self._settings.approach / rig.period)
         self._clock.begin()
@@ -312,12 +312,12 @@ class _Drive:
         step = rig.speed * rig.period * 1.0001
         within = np.clip(wanted, rig.low, rig.high)
         slewed = np.clip(within, self._goal - step, self._goal + step)
-        self._clamped += int((np.abs(slewed - wanted) > rig.steps.unit)[rig.asked].any())
+        self._clamped += int((np.abs(slewed - wanted) > rig.step)[rig.asked].any())
         if not why:
             self._goal = np.where(np.abs(slewed - within) > 0.0, slewed, within)
             sent = rig.aim(self._goal)
         else:
-            sent = np.full(len(rig.servos), np.nan)
+            sent = np.full(len(rig.names), np.nan)
         self._tick = tick
         felt: dict[str, np.ndarray] = {name: now.felt[name] for name in _BY_IMU if name in now.felt}
         if "foot_pressure" in now.felt:
@@ -385,7 +385,7 @@ class _Drive:
                 "broken": [bus.broken for bus in rig.buses],
                 "missing": [bus.counts.missing for bus in rig.buses],
                 "stale": [bus.counts.stale for bus in rig.buses],
-                "hardware": wiring_text(rig.wiring),
+                "hardware": rig.text,
                 "warnings": list(self._guard.warnings),
                 "gait_digest": digest({"gait": self._gait}),
                 "robot_digest": digest({"robot": rig.robot}),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.design.checks import Checks
+from suchus.hardware.blind import BlindRig
 from suchus.hardware.rig import JUMPS, Reading, Rig
 
 
@@ -50,7 +51,7 @@ class Guard:
         limits: when it says something.
     """
 
-    def __init__(self, rig: Rig, limits: DriveLimits) -> None:
+    def __init__(self, rig: Rig | BlindRig, limits: DriveLimits) -> None:
         self._rig, self._limits = rig, limits
         self._square = np.zeros(len(rig.servos))
         self._deaf = 0.0
@@ -63,6 +64,8 @@ class Guard:
     def look(self, now: Reading) -> str:
         """Return why the robot must be stopped, in a sentence; empty if it need not."""
         rig, limits, asked = self._rig, self._limits, self._rig.asked
+        if not asked.any():  # nobody tells anything
+            return ""
         silent = asked & (now.age > limits.silent)
         if silent.any():
             return f"{self._named(silent)} has not answered for {limits.silent} ticks."

@@ -101,9 +101,11 @@ def hinge_angles(robot: Robot, servos: np.ndarray) -> np.ndarray:
         if hinge >= 0:
             angles[..., hinge] = servos[..., servo]
         else:
-            cable = place.cable(servo)
+            cable, turned = place.cable(servo), servos[..., servo]
+            known = np.isfinite(turned)
+            bend = np.where(known, bend_of_servo(cable, np.where(known, turned, 0.0)), np.nan)
             for name in cable.hinges:
-                angles[..., place.hinges.index(name)] = bend_of_servo(cable, servos[..., servo]) / len(cable.hinges)
+                angles[..., place.hinges.index(name)] = bend / len(cable.hinges)
     return angles
 
 
@@ -116,7 +118,10 @@ def held(record: xr.Dataset, robot: Robot) -> xr.Dataset:
     """
     if "servo_heard" not in record or np.isfinite(record.position.values).any():
         return record
-    record = record.isel(time=np.isfinite(record.servo_angle.values).all(axis=-1))
+    told = record.servo_angle.values
+    angles = np.where(np.isfinite(told), told, record.servo_target.values)  # servos that tell nothing are where sent
+    record = record.assign(joint_angle=record.joint_angle.copy(data=hinge_angles(robot, angles)))
+    record = record.isel(time=np.isfinite(angles).all(axis=-1))
     count, place = record.sizes["time"], layout(robot)
     position = np.zeros((count, 3))
     level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))

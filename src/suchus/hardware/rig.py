@@ -25,6 +25,7 @@ from suchus.control import Sensed
 from suchus.design import Robot, layout
 from suchus.design.scale import control_period
 from suchus.errors import BusFailure, InvalidDesign, SuchusError
+from suchus.hardware.wiring import wiring_text
 
 BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""
@@ -154,6 +155,26 @@ class Rig:
         )
         self.jumps = np.zeros(count, dtype=int)
         """How often in a row a servo said that it is where it cannot be, shape (servo,) [-]."""
+
+    @property
+    def senses(self) -> tuple[str, ...]:
+        """What the robot senses: fields of ``control.Sensed``."""
+        return senses(self.robot, self.wiring.board)
+
+    @property
+    def bounds(self) -> Sequence[tuple[str, float, float]]:
+        """Name of each servo, and the least and greatest angle that it may be sent to [rad]."""
+        return [(one.name, one.low, one.high) for one in self.servos]
+
+    @property
+    def step(self) -> float:
+        """Step of its angles [rad]."""
+        return self.steps.unit
+
+    @property
+    def text(self) -> str:
+        """How it is wired, as its file says."""
+        return wiring_text(self.wiring)
 
     # --- before it moves ----------------------------------------------------------------------------------------------
 

@@ -286,7 +286,7 @@ class Rehearsal(Experiment):
             axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--")
         axes[0, 0].set_xticks(np.arange(len(wires)), [_words(str(wire)) for wire in wires])
         axes[0, 0].set_ylabel("displacement [%]")
-        axes[0, 0].legend(loc="best", ncols=len(rules))
+        axes[0, 0].legend(loc="lower right", ncols=len(rules))
         servos = [str(name).replace("_", " ") for name in record.servo.values]
         for marker, protocol in zip("ox", record.protocol.values, strict=False):
             off = np.degrees(record.angle_off.sel(protocol=protocol).values)

@@ -1,0 +1,113 @@
+"""A robot of hobby servos that tell nothing: pulses out, nothing back."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from suchus.bus import Bus, ServoPlace
+from suchus.bus.pca9685 import Pulses
+from suchus.control import Sensed
+from suchus.design import Robot, layout
+from suchus.hardware.rig import Reading
+from suchus.hardware.servo_map import ServoMap
+
+
+class BlindRig:
+    """What ``Rig`` is for servos that answer, for those that do not: the same calls, and NaN for every reading.
+
+    Args:
+        robot: the robot.
+        servo_map: which servo hangs on which channel, and what pulses it understands.
+        pulses: the open boards.
+    """
+
+    senses: tuple[str, ...] = ()
+    """Nothing."""
+    buses: tuple[Bus, ...] = ()
+    """None that answer."""
+    servos: tuple[ServoPlace, ...] = ()
+    """None that tell their heat."""
+
+    def __init__(self, robot: Robot, servo_map: ServoMap, pulses: Pulses) -> None:
+        self.robot, self._pulses = robot, pulses
+        self.names = layout(robot).servos
+        self._lines = servo_map.ordered(robot)
+        self._places = [(line.board, line.channel) for line in self._lines]
+        self._sign = np.array([line.direction for line in self._lines])
+        self._centre = np.array([line.pulse_centre for line in self._lines])
+        self._slope = np.array([line.pulse_per_radian for line in self._lines])
+        self._offset = np.array([line.offset for line in self._lines])
+        ends = np.array([[line.pulse_min, line.pulse_max] for line in self._lines])
+        reached = self._sign[:, None] * ((ends - self._centre[:, None]) / self._slope[:, None] - self._offset[:, None])
+        self.low, self.high = reached.min(axis=1), reached.max(axis=1)
+        self.speed = np.array([robot.servo(name).speed for name in self.names])
+        self.period = 1.0 / servo_map.rate
+        self.asked = np.zeros(len(self.names), dtype=bool)
+        self.step = float((1e6 / pulses.rate / 4096 / self._slope).max())
+        self.text = f"servo map {servo_map.name}"
+        count = len(self.names)
+        unknown = np.full((6, count), np.nan)
+        never = np.zeros((3, count), dtype=int)
+        self.now = Reading(
+            angle=unknown[0], velocity=unknown[1], torque=unknown[2], current=unknown[3], voltage=unknown[4],
+            temperature=unknown[5], error=never[0], heard=never[1], age=never[2],
+        )  # fmt: skip
+        self.jumps = np.zeros(count, dtype=int)
+
+    @property
+    def bounds(self) -> Sequence[tuple[str, float, float]]:
+        """Name of each servo, and the least and greatest angle that it may be sent to [rad]."""
+        return list(zip(self.names, self.low.tolist(), self.high.tolist(), strict=True))
+
+    def check(self) -> list[str]:
+        """Say what nobody can look at."""
+        return [
+            "These servos tell nothing: they go to the first posture at once, nobody sees one that is hot, stuck or "
+            "unplugged, "
+            "and they hold their last goal if this computer dies. Hold the robot off the ground, and put a switch "
+            "into the "
+            "supply."
+        ]
+
+    def read(self) -> Reading:
+        """Return that nothing is known."""
+        return self.now
+
+    def sensed(self, time: float) -> Sensed:
+        """Return that nothing is known, for a controller that asks for nothing."""
+        unknown, place = np.full((1, len(self.names)), np.nan), layout(self.robot)
+        return Sensed(
+            time=time, servo_position=unknown, servo_velocity=unknown, servo_torque=unknown,
+            foot_pressure=np.full((1, len(place.limbs)), np.nan),
+            belly_pressure=np.full((1, len(place.trunk)), np.nan), tail_pressure=np.full(1, np.nan),
+            orientation=np.full((1, 4), np.nan), angular_velocity=np.full((1, 3), np.nan),
+            acceleration=np.full((1, 3), np.nan),
+        )  # fmt: skip
+
+    def aim(self, angles: np.ndarray) -> np.ndarray:
+        """Send all servos to angles, and return those that their pulses mean, shape (servo,) [rad]."""
+        widths = self._centre + self._slope * (self._sign * angles + self._offset)
+        step = 1e6 / self._pulses.rate / 4096
+        whole = np.rint(widths / step) * step
+        self._pulses.send(dict(zip(self._places, whole.tolist(), strict=True)))
+        meant: np.ndarray = self._sign * ((whole - self._centre) / self._slope - self._offset)
+        return meant
+
+    def ready(self, goals: np.ndarray) -> np.ndarray:
+        """Let all servos pulse, which gives them their torque."""
+        return self.aim(goals)
+
+    def torque(self, on: bool) -> None:
+        """Take all pulses away; they come with the next goals."""
+        if not on:
+            self._pulses.off()
+
+    def limit(self, share: float) -> None:
+        """Do nothing: these servos have no such limit."""
+
+    def watch(self, on: bool) -> None:
+        """Do nothing: these servos watch nobody."""
+
+    def close(self) -> None:
+        """Let go of the boards."""
+        self._pulses.close()
