@@ -10,7 +10,7 @@ import pytest
 from shelf_loads import measured
 
 from suchus.gaits import GAITS, suits
-from suchus.hardware.limits import AT_LIMIT
+from suchus.hardware.loads import AT_LIMIT
 from suchus.robots import ROBOTS
 
 ROOT = Path(__file__).parents[2]
@@ -22,7 +22,7 @@ STATED = ROOT / "tests" / "docs" / "stated" / "servo_loads.json"
 PAGE = ROOT / "docs" / "servo_commands.md"
 SAID = re.compile(
     r"(\w+) is at its torque limit of [\d.]+ N m for \d+ % of the walk, first at [\d.]+ s, and up to [\d.]+ degrees "
-    r"from its commanded angle; a servo of \d+ kg cm \([\d.]+ N m\) would do\."
+    r"from its commanded angle; \S+ \([\d.]+ N m\) would do\."
 )
 
 

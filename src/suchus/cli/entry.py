@@ -101,6 +101,12 @@ COMMANDS = (
         "suchus.cli.export:export_robot",
     ),
     Subcommand(
+        "size",
+        "[ROBOT] [GAIT ...] [--family NAME]",
+        "find the servos that a robot needs",
+        "suchus.cli.size:size_servos",
+    ),
+    Subcommand(
         "export-commands",
         "GAIT [--map FILE.toml]",
         "write a gait as timed servo angles",

@@ -18,18 +18,21 @@ from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, own_gait, suits
 from suchus.hardware import (
     ServoLoad,
+    cases,
     check_commands,
     check_loads,
     commands,
     csv_text,
-    loads,
+    loads_of_each,
     overloaded,
     read_map,
     straight,
     trajectory_text,
+    with_better,
     write_map,
 )
-from suchus.hardware.limits import AT_LIMIT, TRACKING
+from suchus.hardware.limits import TRACKING
+from suchus.hardware.loads import AT_LIMIT
 from suchus.motion import Gait
 from suchus.progress import staged
 from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
@@ -88,7 +91,10 @@ def export_commands(words: Sequence[str]) -> int:
     samples = commands(options.robot, options.gait, servo_map, options.cycles)
     with working() as bars:
         move = bars.task(options.gait.name)
-        borne = loads(options.robot, options.gait, progress=staged(move, "walking", 0.0, 1.0))
+        asked = cases(options.robot, (options.gait,))
+        (borne,) = loads_of_each(options.robot, asked, progress=staged(move, "walking", 0.0, 0.7))
+        borne = with_better(options.robot, asked[0], borne)
+        move("walking", 1.0)
     try:
         check_commands(options.robot, options.gait, servo_map, samples)
         check_loads(options.robot, options.gait, borne, options.at_limit, options.tracking)
@@ -139,5 +145,5 @@ def _loads_text(borne: Mapping[str, ServoLoad], at_limit: float) -> str:
     for name, load in borne.items():
         first = "" if load.first != load.first else f"{load.first:.2f}"
         cells = f"{load.torque:.4f},{load.limit:g},{load.at_limit:.4f},{first},{load.off:.4f},{load.needed:.4f}"
-        lines.append(f"{name},{cells},{load.stock if load.at_limit > at_limit else ''}")
+        lines.append(f"{name},{cells},{load.other if load.at_limit > at_limit else ''}")
     return "\n".join(lines) + "\n"

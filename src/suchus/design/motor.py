@@ -1,6 +1,7 @@
 """A servo as it is bought, and what of its motor acts in the physics: line of torque over speed, supply, heat."""
 
 from dataclasses import dataclass
+from math import inf, log1p
 from typing import Literal
 
 from suchus.design.checks import Checks
@@ -52,6 +53,19 @@ class Heat:
         if left <= 0.0:
             return float("inf")
         return self.ambient + cold * (1.0 + COPPER * (self.ambient - ROOM)) / left
+
+    def reached_after(self, loss: float) -> float:
+        """Return how long a cold servo that turns so much into heat takes to its limit; infinite if never [s].
+
+        Args:
+            loss: what it would turn into heat with its winding at ``ROOM`` [W].
+        """
+        cold = loss * (1.0 + COPPER * (self.ambient - ROOM))
+        cools = (1.0 / self.resistance - COPPER * loss) * (self.limit - self.ambient)  # at the limit [W]
+        if cold <= cools:
+            return inf
+        time = self.capacity * (self.limit - self.ambient)
+        return time / cold if abs(cools) < 1e-9 * cold else -time / cools * log1p(-cools / cold)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,12 +1,13 @@
 """A whole robot with other servos or springs, wherever its parts hold one."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from suchus.design.article import remade
 from suchus.design.body import Robot
-from suchus.design.hinge import Hinge, Servo, Spring
+from suchus.design.hinge import Crank, Hinge, Servo, Spring
+from suchus.design.limb import Girdle
 from suchus.design.motor import LINE
 
 _LIMBS = ("girdles", "front_leg", "hind_leg")
@@ -39,6 +40,36 @@ def with_speed_lines(robot: Robot) -> Robot:
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
     """Return a robot with each of its servos changed."""
     return remade(robot, lambda design: _changed(design, change))
+
+
+def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
+    """Return a robot with other servos in some places.
+
+    Args:
+        robot: the robot; it stays as it is. The limbs of a girdle mirror each other, so that either name changes both.
+        servos: by the names of ``design.servo_names``; of two for one place the stronger counts.
+    """
+
+    def other(hinge: Hinge, names: Collection[str]) -> Hinge:
+        found = sorted((servos[name] for name in names if name in servos), key=lambda servo: servo.torque)
+        if not found or hinge.servo is None:
+            return hinge
+        return replace(
+            hinge, drive=replace(hinge.drive, servo=found[-1]) if isinstance(hinge.drive, Crank) else found[-1]
+        )
+
+    def limb(girdle: Girdle) -> Girdle:
+        links = tuple(
+            replace(
+                link, hinges=tuple(other(h, [f"{side}{girdle.name}_{h.name}" for side in "LR"]) for h in link.hinges)
+            )
+            for link in girdle.limb.links
+        )
+        return replace(girdle, limb=replace(girdle.limb, links=links))
+
+    axis = tuple(replace(one, hinges=tuple(other(hinge, [hinge.name]) for hinge in one.hinges)) for one in robot.axis)
+    cables = tuple(replace(one, servo=servos.get(one.name, one.servo)) for one in robot.cables)
+    return replace(robot, axis=axis, girdles=tuple(limb(one) for one in robot.girdles), cables=cables)
 
 
 def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robot:

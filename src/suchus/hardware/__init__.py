@@ -1,44 +1,43 @@
-"""From a gait to the servos of a robot that stands on a table: angles, pulses, limits, files."""
+"""From a gait to the servos of a robot that stands on a table: angles, pulses, loads, sizes, limits, files, driving."""
 
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text
 from suchus.hardware.drive import BusClock, Clock, DriveSettings, WallClock, about, check_drive, drive
 from suchus.hardware.guard import DriveLimits
-from suchus.hardware.limits import (
-    ServoLoad,
-    check_commands,
-    check_loads,
-    loads,
-    loads_of_each,
-    overloaded,
-    share_at_limit,
-)
+from suchus.hardware.limits import check_commands, check_loads, overloaded
+from suchus.hardware.loads import Case, ServoLoad, cases, loads, loads_of_each, share_at_limit
 from suchus.hardware.log import Log, held
 from suchus.hardware.rig import Reading, Rig, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
+from suchus.hardware.sizing import Family, Sizing, fitted, size, with_better
 from suchus.hardware.wiring import read_wiring, wiring_text, write_wiring
 
 __all__ = [
     "BlindRig",
     "BusClock",
+    "Case",
     "Clock",
     "Commands",
     "DriveLimits",
     "DriveSettings",
+    "Family",
     "Log",
     "Reading",
     "Rig",
     "ServoLine",
     "ServoLoad",
     "ServoMap",
+    "Sizing",
     "WallClock",
     "about",
+    "cases",
     "check_commands",
     "check_drive",
     "check_loads",
     "commands",
     "csv_text",
     "drive",
+    "fitted",
     "held",
     "loads",
     "loads_of_each",
@@ -47,9 +46,11 @@ __all__ = [
     "read_wiring",
     "senses",
     "share_at_limit",
+    "size",
     "straight",
     "trajectory_text",
     "wiring_text",
+    "with_better",
     "write_map",
     "write_wiring",
 ]

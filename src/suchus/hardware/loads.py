@@ -1,0 +1,319 @@
+"""What each servo of a robot bears: torque, speed, power, current and heat, from simulated walks, stands and swims."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import degrees, nan
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from suchus.control import Control, OpenLoop, Standing, Swimming
+from suchus.design import STANDING, Robot, Servo, check_needs, layout, with_servos
+from suchus.design.ground import Ground
+from suchus.fault import Fault
+from suchus.land import Lake, Run, simulate
+from suchus.metrics import between, whole
+from suchus.motion import START, Gait
+from suchus.progress import Progress, portion, silent
+from suchus.water import swim_of
+
+AT_LIMIT = 0.02
+"""Share of a walk that a servo may spend at its limit [-]; chosen so that the peak of a footfall passes."""
+FULL, FULL_WOUND = 0.999, 0.95
+"""Part of what a servo can give from which on it counts as being at its limit [-].
+
+With a winding that depends on its speed, and torque and speed of a sample are a physics step apart, which blurs it by
+up to 5 %; in walks at the limit hardly a sample lies between 0.5 and 0.9.
+"""
+STRONG = 4.0
+"""How many times as strong the servos are whose torques show what a movement asks for [-]."""
+_CYCLES, _HOLD = 2, 1.0  # of a gait, and of standing [s]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One thing that a robot does, for which its servos must be enough."""
+
+    name: str
+    """Its name in tables."""
+    gait: Gait
+    """The movement."""
+    ground: Ground = field(default_factory=Ground)
+    """Its ground."""
+    faults: tuple[Fault, ...] = ()
+    """What is broken."""
+    control: Control = field(default_factory=OpenLoop)
+    """What turns the gait into servo angles."""
+    lake: Lake | None = None
+    """Water; None on dry land."""
+    seconds: float = 0.0
+    """How long after the first second it goes on [s]; 0 for two cycles of the gait."""
+
+    @property
+    def end(self) -> float:
+        """When it ends [s]."""
+        return START + (self.seconds or _CYCLES * self.gait.period)
+
+    def run(self, robot: Robot) -> Run:
+        """Return it as a run of a robot."""
+        return Run(
+            robot=robot,
+            gait=self.gait,
+            ground=self.ground,
+            faults=self.faults,
+            control=self.control,
+            lake=self.lake,
+            label=self.name,
+        )
+
+    def slower(self, factor: float) -> "Case":
+        """Return it with a longer period of its gait."""
+        return replace(self, gait=replace(self.gait, period=factor * self.gait.period), seconds=factor * self.seconds)
+
+
+def cases(
+    robot: Robot,
+    gaits: Sequence[Gait],
+    *,
+    slopes: Sequence[float] = (),
+    faults: Sequence[Fault] = (),
+    standing: bool = False,
+    water: bool = False,
+) -> tuple[Case, ...]:
+    """Return what a robot shall do: its gaits on level ground, up slopes and with each fault, standing up, a swim.
+
+    Args:
+        robot: who.
+        gaits: how it walks.
+        slopes: uphill, for each gait [rad].
+        faults: one after the other, for each gait.
+        standing: whether it stands up, from the first gait.
+        water: whether it swims.
+
+    Raises:
+        UnsuitedRobot: it cannot stand up, or swim.
+    """
+    found = [Case(name=gait.name, gait=gait) for gait in gaits]
+    for gait in gaits:
+        for slope in slopes:
+            name = f"{gait.name}, {degrees(slope):.3g} degrees uphill"
+            found.append(Case(name=name, gait=gait, ground=Ground(uphill=slope)))
+        found += [Case(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
+    if standing:
+        check_needs(robot, STANDING, "suchus size --standing")
+        control = Standing(at=START, hold=_HOLD)
+        seconds = control.down_from(robot) - START
+        found.append(Case(name="standing up", gait=gaits[0], control=control, seconds=seconds))
+    if water:
+        swim = swim_of(check_needs(robot, ["axis"], "suchus size --water"))
+        found.append(Case(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServoLoad:
+    """Load of one servo over a walk."""
+
+    torque: float
+    """Greatest torque [N m]."""
+    limit: float
+    """Limit of its torque [N m]."""
+    at_limit: float
+    """Share of the walk that it spends at the limit, which falls with its speed if it has a winding [-]."""
+    first: float
+    """Time at which it first reaches its limit, from the beginning of the walk [s]; NaN if it does not."""
+    off: float
+    """Greatest error against its commanded angle, but for the worst 2 % of the walk [rad]."""
+    needed: float
+    """98th percentile of the torque of a servo four times as strong in the same walk [N m]."""
+    rms: float = 0.0
+    """Root of the mean square of its torque, by which it gets warm [N m]."""
+    speed: float = 0.0
+    """Greatest speed of its shaft [rad/s]."""
+    power: float = 0.0
+    """Greatest mechanical power that it gives [W]."""
+    line: float = 0.0
+    """Torque over what it can give at its speed, but for the worst 2 % of the walk [-]."""
+    current: float = nan
+    """Mean current from the supply [A]; NaN without a winding.
+
+    Heat of the winding and power against its back-EMF over the supply's voltage, as of a drive that chops it; nothing
+    is given back. All torque is counted as current, though dry friction of the gear holds a part: an upper bound.
+    """
+    peak_current: float = nan
+    """Greatest current from the supply [A]; NaN without a winding."""
+    steady: float = nan
+    """Temperature at which it stays if the walk goes on for ever [degC]; NaN where it does not warm up."""
+    warm_after: float = nan
+    """Time until it reaches its temperature limit [s]; infinite if it never does, NaN where it does not warm up."""
+    tension: float = nan
+    """Greatest tension of the cable that it pulls [N]; NaN where it pulls none."""
+    other: str = ""
+    """Name of the servo that is sold and does, if that was looked for."""
+    other_torque: float = nan
+    """Torque of that servo at standstill [N m]."""
+
+
+def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[str, ServoLoad]:
+    """Return what each servo bears in two cycles of a walk on level ground.
+
+    Raises:
+        Diverged: the simulation diverged.
+        OutsideLimits: the joints cannot follow the gait.
+    """
+    (borne,) = loads_of_each(robot, cases(robot, (gait,)), progress=progress)
+    return borne
+
+
+def loads_of_each(
+    robot: Robot, asked: Sequence[Case], *, timestep: float | None = None, progress: Progress = silent
+) -> list[Mapping[str, ServoLoad]]:
+    """Return what each servo bears in each of several cases, and what four times as strong ones would give.
+
+    Args:
+        robot: who.
+        asked: what it does.
+        timestep: of the physics [s]; that of the robot's size if None.
+        progress: told the share that is done.
+
+    Raises:
+        Diverged: the simulation diverged.
+        OutsideLimits: the joints cannot follow a gait.
+    """
+    pairs = [(one, case) for case in asked for one in (cold(robot), strong(robot))]
+    records = records_of_each(pairs, timestep=timestep, progress=progress)
+    return [borne(robot, own, needed) for own, needed in zip(records[::2], records[1::2], strict=True)]
+
+
+def records_of_each(
+    pairs: Sequence[tuple[Robot, Case]], *, timestep: float | None = None, progress: Progress = silent
+) -> list[xr.Dataset]:
+    """Return the record of each case after its first second, each with its robot; those of one duration at once.
+
+    Raises:
+        Diverged: a simulation diverged.
+        OutsideLimits: the joints cannot follow a gait.
+    """
+    ends = sorted({case.end for _, case in pairs})
+    found: dict[int, xr.Dataset] = {}
+    for number, end in enumerate(ends):
+        members = [i for i, (_, case) in enumerate(pairs) if case.end == end]
+        runs = [pairs[i][1].run(pairs[i][0]) for i in members]
+        share = portion(progress, number, len(ends))
+        record = whole(simulate(runs, duration=end, timestep=timestep, progress=share))
+        for i, member in enumerate(members):
+            found[member] = between(record.isel(run=i)).assign_attrs(step=record.timestep)
+    return [found[i] for i in range(len(pairs))]
+
+
+def strong(robot: Robot) -> Robot:
+    """Return a robot whose servos are four times as strong at any speed, which shows what a movement asks for."""
+    return with_servos(robot, lambda servo: replace(servo, torque=STRONG * servo.torque, winding=None))
+
+
+def cold(robot: Robot) -> Robot:
+    """Return a robot whose servos do not warm up: in some seconds they hardly do, and such robots share a batch."""
+
+    def cooled(servo: Servo) -> Servo:
+        return servo if servo.winding is None else replace(servo, winding=replace(servo.winding, heat=None))
+
+    return with_servos(robot, cooled)
+
+
+def borne(robot: Robot, walk: xr.Dataset, needed: xr.Dataset | None = None) -> Mapping[str, ServoLoad]:
+    """Return what each servo bears in a record.
+
+    Args:
+        robot: whose record it is, with its windings.
+        walk: the part that counts.
+        needed: the same of ``strong`` servos; that of the robot itself if None.
+    """
+    used, first = use_of_each(robot, walk), walk.time.values - START
+    asked = np.abs((walk if needed is None else needed).servo_torque)
+    off = np.abs(walk.servo_target - walk.servo_angle)
+    found = {}
+    for name in layout(robot).servos:
+        servo, one = robot.servo(name), walk.sel(servo=name)
+        torque, speed = one.servo_torque.values, one.servo_velocity.values
+        full = used.sel(servo=name).values >= full_from(servo)
+        pulled = [cable for cable in robot.cables if cable.name == name]
+        found[name] = ServoLoad(
+            torque=float(np.abs(torque).max()),
+            limit=servo.torque,
+            at_limit=float(full.mean()),
+            first=float(first[np.argmax(full)]) if full.any() else nan,
+            off=float(np.quantile(off.sel(servo=name), 1.0 - AT_LIMIT)),
+            needed=float(np.quantile(asked.sel(servo=name), 1.0 - AT_LIMIT)),
+            rms=float(np.sqrt((torque**2).mean())),
+            speed=float(np.abs(speed).max()),
+            power=float(max((torque * speed).max(), 0.0)),
+            line=float(np.quantile(used.sel(servo=name), 1.0 - AT_LIMIT)),
+            tension=float(np.abs(torque).max() / pulled[0].pulley) if pulled else nan,
+        )
+        found[name] = replace(found[name], **_electric(servo, torque, speed))
+    return found
+
+
+def _electric(servo: Servo, torque: np.ndarray, speed: np.ndarray) -> dict[str, Any]:
+    """Return currents and heat of a servo that gives these torques at these speeds; nothing without a winding."""
+    winding = servo.winding
+    if winding is None:
+        return {}
+    part = torque / servo.torque
+    drawn = winding.stall_current * np.maximum(part**2 + part * speed / servo.ideal_speed, 0.0)
+    currents = winding.idle_current + drawn
+    found = {"current": float(currents.mean()), "peak_current": float(currents.max())}
+    heat = winding.heat
+    if heat is None:
+        return found
+    loss = winding.volts * winding.stall_current * float((torque**2).mean()) / servo.torque**2
+    return {**found, "steady": heat.steady(loss), "warm_after": heat.reached_after(loss)}
+
+
+def full_from(servo: Servo) -> float:
+    """Return the part of what a servo can give from which on it counts as being at its limit [-]."""
+    return FULL if servo.winding is None else FULL_WOUND
+
+
+def use_of_each(robot: Robot, record: xr.Dataset) -> xr.DataArray:
+    """Return the torque of each servo over what it can give at its speed [-], over whatever else a record has.
+
+    A servo with a winding gives less at speed in the direction of its torque. The speed is that at which the torque was
+    given, a physics step before the sample.
+    """
+    dims = record.servo_torque.dims
+    torque, speed = record.servo_torque, record.servo_velocity
+    step = record.attrs.get("step", record.attrs.get("timestep", 0.0)) / float(record.time[1] - record.time[0])
+    before = speed.shift(time=1).fillna(speed)
+    along = np.sign(torque) * (speed - step * (speed - before))
+    limits = [
+        xr.DataArray(robot.servo(str(name)).given(along.sel(servo=name).values), dims=[d for d in dims if d != "servo"])
+        for name in record.servo.values
+    ]
+    given = xr.concat(limits, "servo").assign_coords(servo=record.servo).transpose(*dims)
+    return np.abs(torque) / np.maximum(given, 1e-9)
+
+
+def share_at_limit(robot: Robot, record: xr.Dataset) -> xr.DataArray:
+    """Return the share of the time that each servo spends at its limit [-], over whatever else a record has.
+
+    Args:
+        robot: whose record it is.
+        record: of the time that counts, as ``metrics.between`` cuts it.
+    """
+    full = xr.DataArray([full_from(robot.servo(str(name))) for name in record.servo.values], dims="servo")
+    return (use_of_each(robot, record) >= full).mean("time")
+
+
+def given_in(servo: Servo, torque: Float[np.ndarray, " time"], speed: Float[np.ndarray, " time"]) -> float:
+    """Return torque over what a servo can give at its speed, but for the worst 2 % of the time [-].
+
+    Args:
+        servo: another servo than that of the record.
+        torque: that a movement asks for [N m].
+        speed: of the shaft [rad/s].
+    """
+    given = servo.given(np.sign(torque) * speed)
+    return float(np.quantile(np.abs(torque) / np.maximum(given, 1e-9), 1.0 - AT_LIMIT))
