@@ -106,6 +106,7 @@ COMMANDS = (
         "find the servos that a robot needs",
         "suchus.cli.size:size_servos",
     ),
+    Subcommand("parts", "[ROBOT] [--out DIR]", "write what a robot is built of", "suchus.cli.parts:list_parts"),
     Subcommand(
         "export-commands",
         "GAIT [--map FILE.toml]",

@@ -97,13 +97,20 @@ def csv_text(samples: Commands) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trajectory_text(robot: Robot, samples: Commands) -> str:
+def trajectory_text(robot: Robot, samples: Commands, *, virtual: bool = False) -> str:
     """Return a ROS 2 ``trajectory_msgs/JointTrajectory`` as YAML, for the joints of the exported URDF.
 
     That has no cable: the bend that the pulley gives the tail is shared evenly by the hinges that the cable bends.
 
+    Args:
+        robot: who walks.
+        samples: the commands.
+        virtual: whether each cable is a joint of its own, that of its pulley, as in the URDF of ``hardware.ros``.
+
     Paper: Eq. (18).
     """
+    if virtual:
+        return _trajectory(samples.servos, samples.time, samples.angles, samples.speeds)
     place = layout(robot)
     direct = [i for i in range(len(place.servos)) if i not in place.cables]
     names = [place.servos[i] for i in direct]
@@ -117,6 +124,11 @@ def trajectory_text(robot: Robot, samples: Commands) -> str:
         places = np.column_stack([places, np.tile(bend[:, None] / len(hinges), len(hinges))])
         speeds = np.column_stack([speeds, np.tile(turned[:, None] / len(hinges), len(hinges))])
         names += hinges
+    return _trajectory(names, samples.time, places, speeds)
+
+
+def _trajectory(names: Sequence[str], times: np.ndarray, places: np.ndarray, speeds: np.ndarray) -> str:
+    """Return the message; places [rad] and speeds [rad/s] have the shape (sample, joint)."""
     lines = [
         "header:",
         "  stamp: {sec: 0, nanosec: 0}",
@@ -124,7 +136,7 @@ def trajectory_text(robot: Robot, samples: Commands) -> str:
         f"joint_names: [{', '.join(names)}]",
         "points:",
     ]
-    for time, angles, rates in zip(samples.time, places, speeds, strict=True):
+    for time, angles, rates in zip(times, places, speeds, strict=True):
         nanoseconds = round(time * 1e9)
         lines += [
             f"- positions: [{', '.join(f'{a + 0.0:.9f}' for a in angles)}]",

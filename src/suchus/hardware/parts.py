@@ -1,0 +1,475 @@
+"""What a robot is built of: parts and their masses, frames, cables, plates, wiring, foam; as numbers for a sheet."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import nan, pi
+
+import numpy as np
+
+from suchus.blueprint import motors as shipped
+from suchus.design import Cable, Motor, Robot, Rod, Servo, layout
+from suchus.design.body import servos_of
+from suchus.design.checks import require
+from suchus.design.measures import leg_of, spine_of, tail_of
+from suchus.design.physics import WATER_DENSITY
+from suchus.design.pieces import foam_centres, volumes
+from suchus.kinematics.tail import bend_limit, cable_changes, servo_angle
+from suchus.kinematics.tree import body_masses, centre_of_mass, frames
+
+PLASTIC = 1240.0
+"""Density of printed plastic (PLA) [kg/m3]."""
+WALL = 0.0012
+"""Thickness of a printed wall: three lines of a nozzle of 0.4 mm [m]."""
+SPARE = 1.25
+"""Length of a wire over the straight way between two servos [-]; chosen so that a joint can turn."""
+_STEPS = 9  # bends in the table of a cable
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """A part of a body: a rod, a shell, a foot, foam, or a servo that sits on it."""
+
+    body: str
+    """The body that it belongs to."""
+    name: str
+    """Its own name."""
+    kind: str
+    """``rod``, ``shell``, ``foot``, ``foam`` or ``servo``."""
+    size: tuple[float, float, float]
+    """Length, width and height [m]."""
+    mass: float
+    """Mass in the simulation [kg]; of a servo, that of the one that is bought; NaN where that is not known."""
+    centre: tuple[float, float, float]
+    """Centre of mass in the frame of its body [m]."""
+    about: str = ""
+    """What it is, in words."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """What one moving body weighs in the simulation, and what of that its servos and printed walls are."""
+
+    name: str
+    """Name of the body."""
+    simulated: float
+    """Mass in the simulation, foam included [kg]."""
+    servos: float
+    """Mass of the servos that sit on it [kg]; NaN where they are not known."""
+    printed: float
+    """Mass of a printed wall around its shapes [kg]."""
+
+    @property
+    def rest(self) -> float:
+        """What is left for battery, electronics, screws and brackets [kg]; below zero the body gets too heavy."""
+        return self.simulated - self.servos - self.printed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joint:
+    """Where a hinge is with all joints at zero: forward, left and up from the root's origin."""
+
+    name: str
+    """Name of the hinge."""
+    body: str
+    """The body that it turns."""
+    parent: str
+    """The body on which it sits."""
+    at: tuple[float, float, float]
+    """Its place [m]."""
+    axis: tuple[float, float, float]
+    """Direction of its axis [-]."""
+    range: tuple[float, float] | None
+    """Its limits [rad]; None for a crank."""
+    driven_by: str
+    """The servo that turns it, ``spring`` for a passive one."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """One row of a table of Denavit and Hartenberg, as the article's Tables I and II print them (Figs 6 and 8)."""
+
+    chain: str
+    """``hind leg``, ``front leg`` or ``spine``."""
+    number: int
+    """Number of the joint, from 1 [-]."""
+    a: float
+    """a_(n-1), along x of the frame before [m]."""
+    alpha: float
+    """alpha_(n-1), about x of the frame before [rad]."""
+    d: float
+    """d_n, along z [m]."""
+    turned_by: str
+    """What turns it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plate:
+    """One plate of a tail that cords pull, with its holes."""
+
+    name: str
+    """Name of the hinge in front of it."""
+    radius: float
+    """Radius of the plate [m]."""
+    thickness: float
+    """H of the article [m]."""
+    holes: tuple[tuple[float, float], ...]
+    """Middles of the two holes for the cords, sideways and up from the plate's middle [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cord:
+    """How long the two cords of a cable are, and what they do when the tail bends."""
+
+    name: str
+    """Name of the cable."""
+    section: float
+    """Length of a cord from the first plate to the last with the tail straight [m]."""
+    travel: float
+    """By how much a cord is drawn in at the greatest bend [m]."""
+    table: tuple[tuple[float, float, float, float], ...]
+    """Bend [rad], angle of the pulley [rad], change of the cord on the side of the bend and of the other one [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wire:
+    """One servo on its bus, after the one before it."""
+
+    servo: str
+    """Name of the servo."""
+    number: int
+    """Number (id) on the bus [-]."""
+    bus: str
+    """Name of the bus: the family of the servo."""
+    after: str
+    """The servo before it in the chain, or ``controller``."""
+    length: float
+    """Length of the wire from there [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floating:
+    """What keeps a robot up in water."""
+
+    mass: float
+    """Of the robot [kg]."""
+    bare: float
+    """Volume of its bodies without foam [m3]."""
+    foam: tuple[tuple[str, float, float], ...]
+    """Body, volume of its foam [m3], and by how much it is raised [m]."""
+    air: float
+    """Air that can be let out [m3]."""
+    chambers: tuple[tuple[str, float], ...]
+    """Body and share of the air [-]."""
+
+    @property
+    def lacking(self) -> float:
+        """Volume that it lacks to float [m3]; below zero it floats with so much above the surface."""
+        return self.mass / WATER_DENSITY - self.bare - sum(volume for _, volume, _ in self.foam)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sheet:
+    """All that a robot is built of."""
+
+    robot: Robot
+    """The robot."""
+    bought: Mapping[str, Motor]
+    """The servos that are bought, by place; empty for those of which only numbers are known."""
+    parts: tuple[Part, ...]
+    """Its parts, body by body."""
+    bodies: tuple[Body, ...]
+    """Its bodies."""
+    centre: tuple[float, float, float]
+    """Centre of mass in the simulation, all joints at zero, from the root's origin [m]."""
+    built: tuple[float, float, float]
+    """The same with servos where they sit and printed walls, without what is left for battery and electronics [m]."""
+    joints: tuple[Joint, ...]
+    """Its hinges."""
+    links: tuple[Link, ...]
+    """Tables of Denavit and Hartenberg of the chains that have one."""
+    plates: tuple[Plate, ...]
+    """Plates of its tail."""
+    cords: tuple[Cord, ...]
+    """Cords of its cables."""
+    wires: tuple[Wire, ...]
+    """Its buses."""
+    floating: Floating
+    """What keeps it up."""
+
+
+def sheet(
+    robot: Robot,
+    *,
+    motors: Mapping[str, Motor] | None = None,
+    wall: float = WALL,
+    density: float = PLASTIC,
+) -> Sheet:
+    """Return what a robot is built of.
+
+    Args:
+        robot: whose servos' windings name the servos that are bought.
+        motors: the servos that are sold; those that suchus knows if None.
+        wall: thickness of printed walls [m].
+        density: of what is printed [kg/m3].
+    """
+    require("parts", "wall", wall, 1e-5, 0.1, "m")
+    require("parts", "density", density, 1.0, 2e4, "kg/m3")
+    sold = shipped() if motors is None else motors
+    bought = {
+        name: sold[servo.winding.motor]
+        for name, servo in servos_of(robot).items()
+        if servo.winding is not None and servo.winding.motor in sold
+    }
+    seats = _seats(robot)
+    parts = (*_shapes(robot), *_foam(robot), *_servos(robot, bought, seats))
+    bodies = _bodies(robot, bought, seats, parts, wall * density)
+    still = np.zeros(len(layout(robot).hinges))
+    return Sheet(
+        robot=robot,
+        bought=bought,
+        parts=parts,
+        bodies=bodies,
+        centre=_point(centre_of_mass(robot, still)),
+        built=_built(robot, parts, wall * density),
+        joints=_joints(robot),
+        links=_links(robot),
+        plates=_plates(robot),
+        cords=tuple(_cord(robot, cable) for cable in robot.cables),
+        wires=_wires(robot, bought, seats),
+        floating=_floating(robot),
+    )
+
+
+def area(kind: str, size: Sequence[float]) -> float:
+    """Return the surface of a part [m2]: of a rod with round ends, a ball, or an ellipsoid (Thomsen, within 1.1 %).
+
+    Args:
+        kind: ``rod``, ``foot`` or ``shell``.
+        size: length, width and height, ends included [m].
+    """
+    length, width, height = size
+    if kind == "rod":
+        return pi * width * length  # a cylinder and two half balls
+    a, b, c = ((side / 2) ** 1.6075 for side in (length, width, height))
+    return float(4 * pi * ((a * b + a * c + b * c) / 3) ** (1 / 1.6075))
+
+
+def _point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = (round(float(value), 12) + 0.0 for value in values)
+    return x, y, z
+
+
+def _shapes(robot: Robot) -> list[Part]:
+    place = layout(robot)
+    segments = {segment.name: segment for segment in place.robot.axis}
+    found = []
+    for body in place.bodies:
+        for shape in segments[body.name].shapes if body.name in segments else ():
+            centre = _point((shape.centre[0] + body.shift, *shape.centre[1:]))
+            if isinstance(shape, Rod):
+                length = float(np.linalg.norm(np.subtract(shape.end, shape.start)))
+                size = (length + 2 * shape.radius, 2 * shape.radius, 2 * shape.radius)
+                about = f"rod of {1000 * length:.1f} mm between the middles of its round ends"
+                found.append(Part(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
+                                  centre=centre, about=about))  # fmt: skip
+            else:
+                a, b, c = shape.half
+                found.append(Part(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
+                                  mass=shape.mass, centre=centre, about="shell, an ellipsoid"))  # fmt: skip
+    for limb in place.limbs:
+        links = limb.girdle.limb.links
+        for i, link in enumerate(links):
+            carrier = place.bodies[limb.tip - len(links) + 1 + i].name
+            end = (link.end[0], limb.side * link.end[1], link.end[2])
+            size = (link.length + 2 * link.radius, 2 * link.radius, 2 * link.radius)
+            about = f"rod of {1000 * link.length:.1f} mm from joint to {'foot' if i == len(links) - 1 else 'joint'}"
+            found.append(Part(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size, mass=link.mass,
+                              centre=_point(np.array(end) / 2), about=about))  # fmt: skip
+            if i == len(links) - 1:
+                foot = limb.girdle.limb.foot
+                ball = 2 * foot.radius
+                found.append(Part(body=carrier, name=f"{limb.name}_foot", kind="foot", size=(ball, ball, ball),
+                                  mass=foot.mass, centre=_point(end), about="rubber ball"))  # fmt: skip
+    return found
+
+
+def _foam(robot: Robot) -> list[Part]:
+    hull = robot.hull
+    if hull is None:
+        return []
+    centres = foam_centres(robot)
+    found = []
+    for one in (foam for foam in hull.foam if foam.volume > 0.0):
+        side = one.volume ** (1 / 3)
+        about = f"{1e6 * one.volume:.0f} cm3 around the body, raised by {1000 * one.raised:.0f} mm"
+        found.append(Part(body=one.body, name=f"{one.body}_foam", kind="foam", size=(side, side, side),
+                          mass=hull.density * one.volume, centre=_point(centres[one.body]), about=about))  # fmt: skip
+    return found
+
+
+def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
+    """Return the body on which each servo sits and where: that ahead of its hinge in the chain from the root."""
+    place = layout(robot)
+    found = {}
+    for body in place.bodies:
+        parent = place.bodies[body.parent] if body.parent >= 0 else body
+        for _, name, _ in body.hinges:
+            found[name] = (parent.name, _point(body.offset))
+    for cable in place.robot.cables:
+        found[cable.name] = found[cable.hinges[0]]
+        root = next((b for b in place.bodies if b.name == found[cable.name][0] and b.parent >= 0), None)
+        if root is not None:  # the pulley sits ahead of the section that it bends
+            found[cable.name] = (place.bodies[root.parent].name, _point(root.offset))
+    return {name: found[name] for name in place.servos}
+
+
+def _servos(
+    robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
+) -> list[Part]:
+    found = []
+    for name, servo in ((name, robot.servo(name)) for name in layout(robot).servos):
+        body, at = seats[name]
+        motor = bought.get(name)
+        found.append(
+            Part(
+                body=body,
+                name=name,
+                kind="servo",
+                size=(nan, nan, nan) if motor is None else motor.size,
+                mass=nan if motor is None else motor.mass,
+                centre=at,
+                about=f"servo of {servo.torque:g} N m and {servo.speed:g} rad/s" if motor is None else motor.name,
+            )
+        )
+    return found
+
+
+def _bodies(
+    robot: Robot,
+    bought: Mapping[str, Motor],
+    seats: Mapping[str, tuple[str, tuple[float, float, float]]],
+    parts: Sequence[Part],
+    skin: float,
+) -> tuple[Body, ...]:
+    masses, _ = body_masses(robot)
+    found = []
+    for body, mass in zip(layout(robot).bodies, masses, strict=True):
+        own = [part for part in parts if part.body == body.name]
+        sitting = [
+            bought[name].mass if name in bought else nan for name, (seat, _) in seats.items() if seat == body.name
+        ]
+        printed = sum(skin * area(part.kind, part.size) for part in own if part.kind in ("rod", "shell", "foot"))
+        foam = sum(part.mass for part in own if part.kind == "foam")
+        found.append(Body(name=body.name, simulated=float(mass), servos=float(sum(sitting)), printed=printed + foam))
+    return tuple(found)
+
+
+def _built(robot: Robot, parts: Sequence[Part], skin: float) -> tuple[float, float, float]:
+    """Return the centre of mass of servos, walls and foam, all joints at zero [m]; NaN if servos are unknown."""
+    place = layout(robot)
+    origins = frames(robot, np.zeros(len(place.hinges))).places
+    where = {body.name: origins[i] for i, body in enumerate(place.bodies)}
+    weights, points = [], []
+    for part in parts:
+        weights.append(skin * area(part.kind, part.size) if part.kind in ("rod", "shell", "foot") else part.mass)
+        points.append(where[part.body] + np.array(part.centre))
+    total = float(np.sum(weights))
+    return _point(np.array(weights) @ np.array(points) / total)
+
+
+def _joints(robot: Robot) -> tuple[Joint, ...]:
+    place = layout(robot)
+    origins = frames(robot, np.zeros(len(place.hinges))).places
+    pulled = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
+    found = []
+    for i, body in enumerate(place.bodies):
+        parent = place.bodies[body.parent].name if body.parent >= 0 else ""
+        for hinge, name, axis in body.hinges:
+            drive = name if isinstance(hinge.servo, Servo) else pulled.get(name, "spring")
+            found.append(Joint(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
+                               range=hinge.range, driven_by=drive))  # fmt: skip
+    return tuple(found)
+
+
+def _links(robot: Robot) -> tuple[Link, ...]:
+    """Return the tables of Denavit and Hartenberg of the chains that are of the article's kind.
+
+    Paper: Tables I and II, Figs 6 and 8.
+    """
+    found = []
+    chains = (("front leg", 0), ("hind leg", -1)) if len(robot.girdles) > 1 else (("hind leg", -1),)
+    for chain, girdle in chains if robot.girdles else ():
+        leg = leg_of(robot.girdles[girdle])
+        if leg is not None:
+            lengths = (leg.hip_offset, 0.0, leg.femur, leg.tibia)
+            names = ("yaw", "pitch", "knee", "foot")
+            for i, (a, alpha) in enumerate(zip(lengths, (0.0, pi / 2, 0.0, 0.0), strict=True)):
+                found.append(Link(chain=chain, number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=names[i]))
+    spine = spine_of(robot) if robot.girdles else None
+    if spine is not None:
+        for i, name in enumerate(spine.names):
+            alpha = 0.0 if i == 0 else (-pi / 2 if i % 2 else pi / 2)
+            a = spine.base if i == 0 else spine.link
+            found.append(Link(chain="spine", number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=name))
+    return tuple(found)
+
+
+def _plates(robot: Robot) -> tuple[Plate, ...]:
+    tail = tail_of(robot)
+    if tail is None or not tail.cabled:
+        return ()
+    half = tail.cord_spacing / 2
+    holes = ((-half, 0.0), (half, 0.0))
+    return tuple(
+        Plate(name=name, radius=max(radius, 1.2 * half), thickness=tail.plate, holes=holes)
+        for name, radius in zip(tail.driven, tail.radii, strict=False)
+    )
+
+
+def _cord(robot: Robot, cable: Cable) -> Cord:
+    tail = tail_of(robot)
+    if tail is None or not tail.cabled or cable.hinges != tail.driven:
+        half = cable.cord_spacing / 2
+        bent = np.linspace(0.0, cable.bend_limit, _STEPS).tolist()
+        straight = tuple((b, b * half / cable.pulley, -b * half, b * half) for b in bent)
+        return Cord(name=cable.name, section=nan, travel=cable.bend_limit * half, table=straight)
+    most = min(cable.bend_limit, bend_limit(tail))
+    bends = np.linspace(0.0, most, _STEPS)
+    toward, away = cable_changes(tail, bends)
+    turns = servo_angle(tail, bends)
+    table = tuple(zip(bends.tolist(), turns.tolist(), toward.tolist(), away.tolist(), strict=True))
+    return Cord(name=cable.name, section=tail.joints * tail.pitch, travel=float(-toward[-1]), table=table)
+
+
+def _wires(
+    robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
+) -> tuple[Wire, ...]:
+    """Return the chain of each bus from the root outward: every servo hangs on the nearest one wired already."""
+    place = layout(robot)
+    origins = frames(robot, np.zeros(len(place.hinges))).places
+    where = {body.name: origins[i] for i, body in enumerate(place.bodies)}
+    at = {name: where[body] + np.array(point) for name, (body, point) in seats.items()}
+    found: list[Wire] = []
+    for bus in dict.fromkeys(bought[name].family if name in bought else "servos" for name in place.servos):
+        members = [n for n in place.servos if (bought[n].family if n in bought else "servos") == bus]
+        wired: dict[str, np.ndarray] = {"controller": np.zeros(3)}
+        while members:
+            name, after = min(
+                ((name, one) for name in members for one in wired),
+                key=lambda pair: float(np.linalg.norm(at[pair[0]] - wired[pair[1]])),
+            )
+            straight = float(np.linalg.norm(at[name] - wired[after]))
+            number = place.servos.index(name) + 1
+            found.append(Wire(servo=name, number=number, bus=bus, after=after, length=max(SPARE * straight, 0.05)))
+            wired[name] = at[name]
+            members.remove(name)
+    return tuple(found)
+
+
+def _floating(robot: Robot) -> Floating:
+    hull = robot.hull
+    whole = sum(volumes(robot).values())
+    foam = () if hull is None else tuple((one.body, one.volume, one.raised) for one in hull.foam)
+    chambers = () if hull is None else tuple((one.body, one.share) for one in hull.chambers)
+    bare = whole - sum(volume for _, volume, _ in foam)
+    return Floating(mass=robot.mass, bare=bare, foam=foam, air=0.0 if hull is None else hull.air, chambers=chambers)
