@@ -44,7 +44,7 @@ def test_the_default_gait_is_exported_and_what_its_servos_lack_is_said(tmp_path,
     assert main(["export-commands"]) == 0
     out = capsys.readouterr().out
     assert "warning: spine_yaw_1 is at its torque limit of 2.5 N m for 2" in out
-    assert "a servo of 35 kg cm (3.43 N m) would do." in out
+    assert "STS3250 (4.9 N m) would do." in out
     table = (tmp_path / "export" / "belly_crawl_commands" / "loads.csv").read_text()
     assert "spine_yaw_1,2.5000,2.5,0.2" in table
     assert (tmp_path / "export" / "belly_crawl_commands" / "commands.csv").exists()

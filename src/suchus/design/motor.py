@@ -129,7 +129,7 @@ class Motor:
     idle_current: float
     """Current without load, electronics included [A]."""
     continuous_torque: float
-    """Torque that it gives for ever [N m]: the maker's rated torque where there is one, else a part of the stall."""
+    """Torque that it can give continuously [N m]: the maker's rated torque if there is one, else a share of stall."""
     temperature_limit: float
     """Temperature at which it switches off, or should be switched off [degC]."""
     play: float
@@ -187,7 +187,7 @@ class Motor:
 
     @property
     def heat(self) -> Heat:
-        """How it warms up: so that it stays at its limit when it gives its continuous torque for ever."""
+        """How it warms up: so that it stays at its limit when it gives its continuous torque all the time."""
         cold = self.volts * self.stall_current * (self.continuous_torque / self.stall_torque) ** 2
         hot = cold * (1.0 + COPPER * (self.temperature_limit - ROOM))
         resistance = (self.temperature_limit - ROOM) / hot

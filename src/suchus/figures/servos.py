@@ -18,7 +18,7 @@ class Used(NamedTuple):
     torque: float
     """Torque over what it can give at its speed, but for the worst 2 % of the time [-]."""
     heat: float
-    """Root mean square of the torque over the torque that it gives without end [-]."""
+    """Root mean square of the torque over the torque that it can give continuously [-]."""
 
 
 def draw_use(used: Sequence[Used], title: str) -> Figure:
@@ -51,6 +51,6 @@ def draw_use(used: Sequence[Used], title: str) -> Figure:
     return captioned(
         figure,
         "What each servo uses of its torque at its speed, but for the worst 2 % of the time, and of the torque that it "
-        f"gives without end, in the movement that asks most of it: {most.servo} uses most. The dashed line is all "
+        f"gives continuously, in the movement that asks most of it: {most.servo} uses most. The dashed line is all "
         "there is.",
     )

@@ -330,7 +330,7 @@ class _Search:
         return case.gait.name, (
             f"{motor.name} at {names[0]} is at its limit for {100 * load.at_limit:.0f} % of {name} with a period of "
             f"{case.gait.period:.3g} s, and gives {load.rms:.2f} N m root mean square, where "
-            f"{motor.continuous_torque:.2f} N m can be given without end"
+            f"{motor.continuous_torque:.2f} N m can be given continuously"
         )
 
     def _weak(self, family: Family) -> list[tuple[tuple[str, ...], str]]:
