@@ -57,7 +57,7 @@ def test_bends_and_phases_are_those_of_the_walk(walk, name):
 
 def test_lengths_go_with_the_trunk(walk):
     robot, base = ROBOTS["salamander"], own_gait(ROBOTS["salamander"])
-    captured = to_gait(walk, robot, base, name="seen")
+    captured = to_gait(walk, robot, base, name="seen", time="own")
     trunk, reach = hips_ahead(robot, 0), robot.girdles[0].limb.reach
     if not any("do not reach" in note for note in captured.notes):
         expected = trunk * np.mean([walk.value(f"stroke_{leg}") for leg in ("LF", "RF", "LH", "RH")]) / reach

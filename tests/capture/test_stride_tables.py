@@ -123,7 +123,7 @@ def test_a_walk_in_a_curve_is_as_long_and_turns_as_much_as_it_does(animal, filme
     assert abs(numbers["turning"].value) > 5 * abs(observe(straight).numbers["turning"].value)
 
 
-def test_from_the_side_bends_up_and_down_and_steps_are_measured(animal, filmed):
+def test_from_the_side_bends_up_and_down_and_steps_are_measured(animal, caiman):
     side = film_animal(animal, _camera(heights=True), cycles=5)
     seen = replace(side, position=side.position[..., [0, 2]] * [-1.0, 1.0], view="side")
     walk = observe(seen)
@@ -132,6 +132,8 @@ def test_from_the_side_bends_up_and_down_and_steps_are_measured(animal, filmed):
     assert "spine_vertical" in walk.numbers
     assert "spine_lateral" not in walk.numbers
     assert any("seen from the side" in note for note in walk.notes)
+    with pytest.raises(UnusableTracks, match="film from above"):
+        to_gait(walk, caiman, GAITS["belly_crawl"], name="x")
 
 
 def _camera(**options):

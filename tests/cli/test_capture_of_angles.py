@@ -3,14 +3,16 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from suchus import blueprint
-from suchus.capture import is_angle_table
+from suchus.capture import is_angle_table, read_angles
 from suchus.cli.capture import capture
 from suchus.errors import UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
 from suchus.motion import Gait
+from suchus.record import load
 
 TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
 
@@ -26,6 +28,18 @@ def test_a_robot_without_those_joints_is_refused_and_nothing_is_written(tmp_path
     with pytest.raises(UnknownName, match="joint of robot 'strider'"):
         capture([str(TABLE), "--robot", "strider", "--out", str(tmp_path / "walk.toml")])
     assert not list(tmp_path.iterdir())
+
+
+def test_a_table_of_angles_is_measured_too(tmp_path, capsys):
+    assert capture([str(TABLE), "--tables", str(tmp_path / "out")]) == 0
+    data = load(tmp_path / "out" / "measured.nc")
+    cycle = read_angles(TABLE)
+    assert list(data.joint.values) == list(cycle.joints)
+    np.testing.assert_allclose(data.angle.values[3], cycle.at(data.phase.values)[:, 3])
+    peak = data.amplitude.values * np.cos(2 * np.pi * (data.phase.values[:, None] - data.phase_of_peak.values))
+    first = np.fft.fft(data.angle.values, axis=1)[:, 1]
+    np.testing.assert_allclose(np.fft.fft(peak, axis=0)[1], first, atol=1e-9)
+    assert [one.name for one in tmp_path.iterdir() if not one.name.startswith(".")] == ["out"]
 
 
 def test_tables_of_keypoints_are_told_from_tables_of_angles(tmp_path):

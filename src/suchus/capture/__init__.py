@@ -7,7 +7,7 @@ from suchus.capture.film import Camera, film, keypoints
 from suchus.capture.reading import ReadingOptions, read_tracks, summary, write_gait
 from suchus.capture.retarget import NEEDED, Captured, driven_share, to_curves, to_gait
 from suchus.capture.table import AngleCycle, is_angle_table, read_angles, write_table
-from suchus.capture.tables import tables
+from suchus.capture.tables import angle_tables, tables
 from suchus.capture.tracks import Tracks, UnusableTracks, View
 from suchus.capture.walk import Seen, Walk, observe
 
@@ -23,6 +23,7 @@ __all__ = [
     "UnusableTracks",
     "View",
     "Walk",
+    "angle_tables",
     "beside",
     "beside_lines",
     "driven_share",

@@ -45,13 +45,13 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
     return Tracks(
         time=np.arange(len(place)) / rate,
         points=ours,
-        position=UNITS[unit] * _upright(place, ours, path.name),
+        position=UNITS[unit] * upright(place, ours, path.name),
         unit="m",
         source=path.name,
     )
 
 
-def _upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
+def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
     """Return the places with the axis that is up last, right-handed."""
     trunk = [points.index(point) for point in _TRUNK if point in points]
     feet = [points.index(leg) for leg in LEGS if leg in points]

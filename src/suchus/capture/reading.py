@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from suchus import blueprint
-from suchus.capture.markers import SUFFIXES, read_markers
+from suchus.capture.markers import SUFFIXES, read_markers, upright
 from suchus.capture.retarget import Captured
 from suchus.capture.table import is_table, read_table
 from suchus.capture.tracks import UNITS, Tracks, UnusableTracks, View, renamed
@@ -70,11 +70,11 @@ def read_poses(
     position[np.isnan(position).any(axis=-1)] = np.nan
     if position.shape[-1] == 2 if y_down is None else y_down:
         position[..., 1] *= -1
-    points = tuple(str(name) for name in data[dims[0]].values)
+    points = renamed(tuple(str(name) for name in data[dims[0]].values), names, path.name)
     return Tracks(
         time=data.time.values.astype(float),
-        points=renamed(points, names, path.name),
-        position=position,
+        points=points,
+        position=upright(position, points, path.name) if position.shape[-1] == 3 else position,
         unit="px",
         source=path.name,
     )

@@ -115,6 +115,11 @@ def to_gait(
             f"read from{''.join(f'; {note}' for note in why)}: rename with --names THEIRS=OURS, or track them; suchus "
             "capture --tables DIR measures what the others show."
         )
+    if not {"spine_lateral", "tail_lateral"} <= set(walk.bends):
+        raise UnusableTracks(
+            f"{walk.source} does not show how trunk and tail bend to the sides, which a gait is read from: film from "
+            "above; suchus capture --tables DIR measures what it shows."
+        )
     check_limits(robot, base)
     if not base.limbs or not all(isinstance(limb, FootPath) for limb in base.limbs):
         raise OutsideLimits(

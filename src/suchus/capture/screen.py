@@ -21,8 +21,8 @@ from suchus.capture.tracks import LOST, Tracks, UnusableTracks
 _SWAY = 0.1  # share of its length by which a link between neighbours may vary: skin slides over bones
 _NOISES = 4.0  # standard deviations of noise that it may vary beyond that
 _ASTRAY = 0.25  # the same share in a single frame
-_ROUNDS = 4  # keypoints that may be misplaced in one frame, and still be told from the others
-_TOLD = 0.02  # share of the frames in which a keypoint leaps or is misplaced from which on it is named
+_ROUNDS = 4  # keypoints that may be elsewhere in one frame, and still be told from the others
+_TOLD = 0.02  # share of the frames in which a keypoint leaps or is elsewhere from which on it is named
 _SHAKES = 3.0  # times the usual noise from which on a keypoint is named
 _QUIET = 0.003  # [trunk]; noise that is never named
 _HIDES = 0.15  # [trunk]; noise in which nothing is seen

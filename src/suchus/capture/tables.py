@@ -3,6 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from suchus.capture.strides import PHASES
+from suchus.capture.table import AngleCycle
 from suchus.capture.walk import Walk
 
 _MEANINGS = {
@@ -60,6 +62,31 @@ def tables(walk: Walk) -> xr.Dataset:
         "notes": "\n".join(walk.notes),
         "intervals": "hold the truth in 95 of 100 cases",
     }
+    return data
+
+
+def angle_tables(cycle: AngleCycle) -> xr.Dataset:
+    """Return a table of joint angles as what it shows of each joint, over ``joint`` and ``phase``.
+
+    Args:
+        cycle: as ``read_angles`` returns it.
+    """
+    phase, first = np.arange(PHASES) / PHASES, cycle.harmonics[:, 1]
+    data = xr.Dataset(coords={"joint": ("joint", list(cycle.joints)), "phase": ("phase", phase, {"units": "1"})})
+    about = {
+        "mean": (cycle.harmonics[:, 0].real, "rad", "mean angle"),
+        "amplitude": (np.abs(first), "rad", "amplitude of the first harmonic"),
+        "phase_of_peak": (
+            -np.angle(first) / (2 * np.pi) % 1.0,
+            "cycle",
+            "phase at which the first harmonic is greatest",
+        ),
+        "residual": (cycle.residual, "rad", "root mean square of what the harmonics leave of the table"),
+    }
+    for name, (value, unit, meaning) in about.items():
+        data[name] = ("joint", value, {"units": unit, "long_name": meaning})
+    data["angle"] = (("joint", "phase"), cycle.at(phase).T, {"units": "rad", "long_name": "angle over the mean cycle"})
+    data.attrs["title"] = f"joint angles of {cycle.source}"
     return data
 
 

@@ -15,6 +15,7 @@ from suchus.capture import (
     Tracks,
     View,
     Walk,
+    angle_tables,
     beside,
     beside_lines,
     driven_share,
@@ -117,7 +118,7 @@ def capture(words: Sequence[str]) -> int:
         check_writable(out.parent)
         check_replaceable(out)
     if is_angle_table(options.tracks):
-        return _play(options, out or Path("captured.toml"), _asked(words))
+        return _play(options, out, _asked(words))
     robot = options.robot
     if out:
         check_needs(robot, NEEDED, "a gait from tracked keypoints")
@@ -128,12 +129,8 @@ def capture(words: Sequence[str]) -> int:
         move("looking for the cycle", 0.3)
         driven = driven_share(robot) if out else 1.0
         walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
-        said, notes = [*summary(walk)], walk.notes
-        if options.tables:
-            move("measuring", 0.6)
-            said += _measured(walk, tracks, options.tables, options.video)
+        lines, notes, said = summary(walk), walk.notes, list[str]()
         if out:
-            move("writing", 0.8)
             base = options.base or own_gait(robot)
             captured = to_gait(
                 walk,
@@ -145,15 +142,20 @@ def capture(words: Sequence[str]) -> int:
                 time=options.time,
                 trunk=options.trunk,
             )
-            write_gait(captured, walk, out)
-            notes, picture = captured.notes, _draw(walk, out.parent, out.stem)
             apart = beside(walk, robot, captured.gait)
-            said = [captured.timing, *said, *beside_lines(apart, robot.name)]
+            lines, notes = [captured.timing, *lines], captured.notes
+        if options.tables:
+            move("measuring", 0.6)
+            said += _measured(walk, tracks, options.tables, options.video)
+        if out:
+            move("writing", 0.8)
             if options.tables:
                 write_tables(apart, options.tables / "beside_the_robot")
+            write_gait(captured, walk, out)
+            picture = _draw(walk, out.parent, out.stem)
+            said += beside_lines(apart, robot.name)
             said += [f"gait: {out}", f"diagram: {picture}", *run_it(robot, _asked(words), out)]
-    seen = len(summary(walk)) + bool(out)
-    print(*said[:seen], *(f"note: {note}" for note in notes), *said[seen:], sep="\n")
+    print(*lines, *(f"note: {note}" for note in notes), *said, sep="\n")
     return 0
 
 
@@ -183,11 +185,19 @@ def _asked(words: Sequence[str]) -> str:
     return ""
 
 
-def _play(options: CaptureOptions, out: Path, asked: str) -> int:
-    """Write the gait that plays a table of joint angles, say what it is, and return 0."""
+def _play(options: CaptureOptions, out: Path | None, asked: str) -> int:
+    """Write the gait that plays a table of joint angles, its tables, say what they are, and return 0."""
     cycle = read_angles(options.tracks)
-    gait = to_curves(cycle, options.robot, name=out.stem, period=options.period)
-    check_limits(options.robot, gait)
+    gait = to_curves(cycle, options.robot, name=out.stem, period=options.period) if out else None
+    if gait:
+        check_limits(options.robot, gait)
+    if options.tables:
+        data = angle_tables(cycle)
+        write_tables(data, options.tables)
+        save_record(data, options.tables / "measured.nc")
+        print(f"tables: {options.tables}, {data.sizes['joint']} joints over one cycle")
+    if out is None or gait is None:
+        return 0
     blueprint.write(gait, out)
     left = max(zip(cycle.residual, cycle.joints, strict=True))
     print(f"{len(gait.curves)} servos of {options.robot.name} play {options.tracks.name}; closing the cycle changed")
