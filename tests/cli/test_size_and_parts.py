@@ -1,0 +1,45 @@
+"""``suchus size`` and ``suchus parts`` from the command line."""
+
+import csv
+
+import pytest
+
+from suchus.cli import main
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("size caiman belly_crawl --fault limp", "--fault limp is no fault; say KIND:PART"),
+        ("size caiman belly_crawl --fault limp:XX_yaw", "XX_yaw"),
+        ("size caiman no_gait", "no_gait"),
+        ("size strider --standing", "strider"),
+        ("size caiman --slope 80", "size.slope is 80 degrees"),
+        ("size caiman --motors none.toml", "none.toml"),
+        ("parts no_robot", "no_robot"),
+        ("parts caiman --no-outlines --wall 0", "parts.wall is 0 m"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_a_sentence_and_nothing_is_written(words, said, tmp_path, capsys):
+    assert main(words.split()) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "export").exists()
+
+
+def test_a_building_sheet_of_a_foreign_body_is_written_with_its_tables_and_what_ros_needs(tmp_path, capsys):
+    assert main(["parts", "strider", "--no-outlines"]) == 0
+    out = capsys.readouterr().out
+    folder = tmp_path / "export" / "strider_parts"
+    assert "suchus size chooses some" in out
+    assert str(folder.relative_to(tmp_path)) in out
+    assert not (folder / "outlines").exists()
+    with (folder / "wiring.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 20
+    assert (folder / "ros2" / "strider.urdf").read_text().startswith("<?xml")
+    assert "<h1>What is it built of?</h1>" in (folder / "index.html").read_text()
+    assert 'id="cord-' not in (folder / "index.html").read_text()
