@@ -8,7 +8,7 @@ import pytest
 from suchus.bus import BusPlace, straight
 from suchus.control import OpenLoop
 from suchus.design import layout
-from suchus.emulator import Body, Trouble, body
+from suchus.emulator import EmulatedBody, Trouble, body
 from suchus.experiments.rehearsal.experiment import ENOUGH, LOSES, TURNS, Rehearsal, flagged, rehearse
 from suchus.gaits import GAITS
 from suchus.land import Lake, crawl
@@ -21,7 +21,7 @@ TICKS = 130
 
 def driven(ticks=TICKS, **settings):
     """Return a body that was sent the gait, without steps or wires."""
-    one = Body(ROBOT, GAIT, timestep=0.005, **settings)
+    one = EmulatedBody(ROBOT, GAIT, timestep=0.005, **settings)
     goals = intended(ROBOT, GAIT, 0.01 * np.arange(ticks)).targets
     for tick in range(ticks):
         one.aim(dict(enumerate(goals[tick].tolist())))
@@ -51,7 +51,7 @@ def test_goals_that_are_late_by_whole_ticks_shift_the_commands_and_part_of_a_tic
 
 
 def test_a_servo_without_torque_hangs_and_with_a_fifth_of_it_gives_no_more():
-    one = Body(ROBOT, GAIT, timestep=0.005)
+    one = EmulatedBody(ROBOT, GAIT, timestep=0.005)
     i = layout(ROBOT).servos.index("LH_pitch")
     one.power(i, 0.2)
     for _ in range(30):
@@ -64,7 +64,7 @@ def test_a_servo_without_torque_hangs_and_with_a_fifth_of_it_gives_no_more():
 
 
 def test_in_a_lake_it_floats_and_feels_the_water():
-    one = Body(ROBOTS["floating_caiman"], GAIT, lake=Lake(level=0.6))
+    one = EmulatedBody(ROBOTS["floating_caiman"], GAIT, lake=Lake(level=0.6))
     for _ in range(3):
         one.step()
     assert 0.3 < float(one.now["share_under"]) < 1.0

@@ -49,6 +49,7 @@ COLUMNS = {
     "kernel_cache.py": "letters of a digest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",
+    "bus/wiring.py": "letters of a digest",
     "record/provenance.py": "letters of a digest",
     "jobs/made_by.py": "letters of a digest",
     "sources.py": "letters of a digest",

@@ -2,7 +2,7 @@
 
 from suchus.bus.bus import WAIT, Bus, Counts, NoAnswer
 from suchus.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
-from suchus.bus.ports import BusGone, Port, Stream, bit_rate, latency_timer, open_port
+from suchus.bus.ports import BusGone, FilePort, Port, bit_rate, latency_timer, open_port
 from suchus.bus.tables import STEPS, TABLES, Register, Table
 from suchus.bus.wiring import (
     CLOCK,
@@ -32,6 +32,7 @@ __all__ = [
     "BusPlace",
     "Counts",
     "Decoder",
+    "FilePort",
     "Framing",
     "Instruction",
     "NoAnswer",
@@ -40,7 +41,6 @@ __all__ = [
     "Register",
     "ServoPlace",
     "Steps",
-    "Stream",
     "Table",
     "Wiring",
     "bit_rate",

@@ -52,7 +52,7 @@ def _framed(servo: int, body: bytes) -> bytes:
     return head + body + crc(head + body).to_bytes(2, "little")
 
 
-class _Decoder(Decoder):
+class _DynamixelFrames(Decoder):
     """Takes frames of either direction; a reply is one whose instruction is 0x55."""
 
     def __init__(self, *, replies: bool) -> None:
@@ -109,8 +109,8 @@ class Dynamixel(Framing):
 
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""
-        return _Decoder(replies=False)
+        return _DynamixelFrames(replies=False)
 
     def replies(self) -> Decoder:
         """Return a decoder of what the servos say; the host's own echo is passed over."""
-        return _Decoder(replies=True)
+        return _DynamixelFrames(replies=True)

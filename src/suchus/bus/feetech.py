@@ -14,7 +14,7 @@ def checksum(data: bytes) -> int:
     return ~sum(data) & 0xFF
 
 
-class _Decoder(Decoder):
+class _FeetechFrames(Decoder):
     """Takes frames of either direction, which look alike."""
 
     def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
@@ -63,8 +63,8 @@ class Feetech(Framing):
 
     def requests(self) -> Decoder:
         """Return a decoder of what the host says."""
-        return _Decoder()
+        return _FeetechFrames()
 
     def replies(self) -> Decoder:
         """Return a decoder of what the servos say."""
-        return _Decoder()
+        return _FeetechFrames()

@@ -52,7 +52,7 @@ class Port(Protocol):
         """Let go of it; it may be called twice."""
 
 
-class Stream:
+class FilePort:
     """A port over a file descriptor that does not block.
 
     Args:
@@ -143,7 +143,7 @@ def _socket(name: str) -> Port:
             f"nobody listens at {name} ({error.strerror or error}): start suchus emulate first, which prints its port."
         ) from error
     made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    return Stream(name, made.fileno(), made)
+    return FilePort(name, made.fileno(), made)
 
 
 def _serial(name: str, baud: int) -> Port:
@@ -170,7 +170,7 @@ def _serial(name: str, baud: int) -> Port:
             ) from error
         raise BusFailure(f"{name} cannot be opened at {baud} baud as a serial port: {error}.") from error
     _lower_latency(made)
-    return Stream(name, made.fileno(), made)
+    return FilePort(name, made.fileno(), made)
 
 
 def _there() -> str:

@@ -24,7 +24,7 @@ from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming
 from suchus.design import Robot
-from suchus.emulator import Body, Emulator, MemoryPort
+from suchus.emulator import EmulatedBody, Emulator, MemoryPort
 from suchus.errors import BusFailure, UnknownName
 from suchus.experiments._driven import Driven
 from suchus.figures import styled
@@ -190,7 +190,7 @@ def _opened(options: DriveOptions, wiring: Wiring, gait: Gait) -> Iterator[tuple
     ports: list[Port] = []
     clocked = options.clock == "bus" or options.dry_run
     if options.dry_run:
-        emulator = Emulator(wiring, Body(options.robot, gait), clocked=True)
+        emulator = Emulator(wiring, EmulatedBody(options.robot, gait), clocked=True)
         ports = [
             Telling(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
             for number, bus in enumerate(wiring.bus)

@@ -14,7 +14,7 @@ from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.view import pages_of_viewer
 from suchus.design import Robot
-from suchus.emulator import Body, Emulator, Server, Trouble
+from suchus.emulator import EmulatedBody, Emulator, Server, Trouble
 from suchus.faults import FAULTS, from_table
 from suchus.gaits import own_gait
 from suchus.hardware import read_wiring, write_wiring
@@ -104,7 +104,7 @@ def emulate(words: Sequence[str]) -> int:
         hot=options.hot, wet=options.wet, sag=options.sag, at=options.at, seed=options.seed,
     )  # fmt: skip
     clocked = options.clock == "bus"
-    body = Body(
+    body = EmulatedBody(
         options.robot,
         options.gait or own_gait(options.robot),
         ground=Ground(uphill=radians(options.slope)),
@@ -167,13 +167,13 @@ def _fault(text: str, at: float) -> Any:
     return from_table({"kind": kind, "joint": part, "at": at})
 
 
-def _viewer(options: EmulateOptions, server: Server, body: Body) -> Any:
+def _viewer(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
     pages = pages_of_viewer()
     level = options.lake
 
     def look() -> Any:
         torque = "with its torque on" if (body.powered > 0.0).any() else "limp: nobody drives it"
-        return pages.Seen(body.time, body.now, level, f"{', '.join(server.ports)}, {torque}")
+        return pages.WatchedRobot(body.time, body.now, level, f"{', '.join(server.ports)}, {torque}")
 
     return pages.Viewer(
         lambda client: pages.WatchPage(client, options.robot, look), port=options.port,

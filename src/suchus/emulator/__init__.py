@@ -1,6 +1,6 @@
 """Servos that are not there: buses with control tables, and behind them the simulated robot, on land or in the lake."""
 
-from suchus.emulator.body import Body, Commanded
+from suchus.emulator.body import Commanded, EmulatedBody
 from suchus.emulator.devices import Board, Device, EmulatedServo
 from suchus.emulator.emulator import Emulator, MemoryPort
 from suchus.emulator.server import Server
@@ -8,9 +8,9 @@ from suchus.emulator.trouble import Trouble
 
 __all__ = [
     "Board",
-    "Body",
     "Commanded",
     "Device",
+    "EmulatedBody",
     "EmulatedServo",
     "Emulator",
     "MemoryPort",

@@ -32,13 +32,13 @@ class Commanded:
         return False
 
     @staticmethod
-    def start(runs: Runs, period: float) -> "Held":
+    def start(runs: Runs, period: float) -> "HeldCommands":
         """Start it in the posture in which an open loop would begin."""
         del period
-        return Held(runs)
+        return HeldCommands(runs)
 
 
-class Held:
+class HeldCommands:
     """The commands of a batch of ``Commanded``."""
 
     def __init__(self, runs: Runs) -> None:
@@ -57,7 +57,7 @@ class Held:
         return Command(np.array(self.targets), self._phase)
 
 
-class Body:
+class EmulatedBody:
     """One simulated robot, one control period at a time; its servos can lose their torque, and all of it.
 
     Args:
@@ -101,7 +101,7 @@ class Body:
         self.latency = self._late * timestep
         """Latency of goals in the end [s]."""
         held = self._loop.controller
-        assert isinstance(held, Held)
+        assert isinstance(held, HeldCommands)
         self._held = held
         self._coming: list[tuple[int, np.ndarray]] = []  # physics step from which goals act, and the goals
         self._goals = held.rest()[0]

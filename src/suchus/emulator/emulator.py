@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.bus import BROADCAST, CLOCK, FRAMINGS, BusGone, Decoder, Framing, Instruction, Packet, Wiring
 from suchus.control import Sensed
-from suchus.emulator.body import Body
+from suchus.emulator.body import EmulatedBody
 from suchus.emulator.devices import OK, Board, Device, EmulatedServo
 from suchus.emulator.trouble import Trouble
 from suchus.errors import Diverged
@@ -39,7 +39,9 @@ class Emulator:
         clocked: whether its time passes when its clock is told to, and not by itself.
     """
 
-    def __init__(self, wiring: Wiring, body: Body, trouble: Trouble | None = None, *, clocked: bool = False) -> None:
+    def __init__(
+        self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
+    ) -> None:
         self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
         self.wiring = wiring
         self.diverged: Diverged | None = None

@@ -2,12 +2,12 @@
 
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text
-from suchus.hardware.drive import BusClock, Clock, DriveSettings, WallClock, about, check_drive, drive
+from suchus.hardware.drive import BusClock, DriveSettings, TickClock, WallClock, about, check_drive, drive
 from suchus.hardware.guard import DriveLimits
 from suchus.hardware.limits import check_commands, check_loads, overloaded
 from suchus.hardware.loads import Case, ServoLoad, cases, loads, loads_of_each, share_at_limit
-from suchus.hardware.log import Log, held
-from suchus.hardware.rig import Reading, Rig, senses
+from suchus.hardware.log import DriveLog, held
+from suchus.hardware.rig import Rig, RigReading, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
 from suchus.hardware.sizing import Family, Sizing, fitted, size, with_better
 from suchus.hardware.wiring import read_wiring, wiring_text, write_wiring
@@ -16,18 +16,18 @@ __all__ = [
     "BlindRig",
     "BusClock",
     "Case",
-    "Clock",
     "Commands",
     "DriveLimits",
+    "DriveLog",
     "DriveSettings",
     "Family",
-    "Log",
-    "Reading",
     "Rig",
+    "RigReading",
     "ServoLine",
     "ServoLoad",
     "ServoMap",
     "Sizing",
+    "TickClock",
     "WallClock",
     "about",
     "cases",

@@ -8,7 +8,7 @@ from suchus.bus import Bus, ServoPlace
 from suchus.bus.pca9685 import Pulses
 from suchus.control import Sensed
 from suchus.design import Robot, layout
-from suchus.hardware.rig import Reading
+from suchus.hardware.rig import RigReading
 from suchus.hardware.servo_map import ServoMap
 
 
@@ -48,7 +48,7 @@ class BlindRig:
         count = len(self.names)
         unknown = np.full((6, count), np.nan)
         never = np.zeros((3, count), dtype=int)
-        self.now = Reading(
+        self.now = RigReading(
             angle=unknown[0], velocity=unknown[1], torque=unknown[2], current=unknown[3], voltage=unknown[4],
             temperature=unknown[5], error=never[0], heard=never[1], age=never[2],
         )  # fmt: skip
@@ -69,7 +69,7 @@ class BlindRig:
             "supply."
         ]
 
-    def read(self) -> Reading:
+    def read(self) -> RigReading:
         """Return that nothing is known."""
         return self.now
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus.bus import Wiring
 from suchus.errors import BusFailure, IncompatibleRecord, InvalidDesign
-from suchus.hardware.drive import Clock
+from suchus.hardware.drive import TickClock
 from suchus.hardware.rig import Rig
 
 NUDGE = radians(5.0)
@@ -23,7 +23,7 @@ Answer = Callable[[int, int], tuple[str, int]]
 positive sense, -1 where not."""
 
 
-def find_wiring(rig: Rig, clock: Clock, answer: Answer) -> Wiring:
+def find_wiring(rig: Rig, clock: TickClock, answer: Answer) -> Wiring:
     """Move each servo alone, there and back, and return the wiring by what moved.
 
     All others are without torque meanwhile, and it too in the end.
@@ -78,7 +78,7 @@ def find_wiring(rig: Rig, clock: Clock, answer: Answer) -> Wiring:
     return replace(rig.wiring, servo=tuple(found[name] for name in rig.names))
 
 
-def _through(rig: Rig, clock: Clock, tick: int, i: int, steps: list[int]) -> int:
+def _through(rig: Rig, clock: TickClock, tick: int, i: int, steps: list[int]) -> int:
     """Send one servo through steps, one a tick, and return the tick that comes next."""
     for step in steps:
         rig.write("goal_position", {i: step})

@@ -15,7 +15,7 @@ from suchus.design.checks import Checks
 from suchus.errors import BusFailure, OutsideLimits, SuchusError, UnsuitedRobot
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.guard import DriveLimits, Guard
-from suchus.hardware.log import Log
+from suchus.hardware.log import DriveLog
 from suchus.hardware.rig import Rig
 from suchus.land import Run
 from suchus.land.loop import start
@@ -31,7 +31,7 @@ _BY_IMU = ("orientation", "angular_velocity", "acceleration")
 _PHASES = 64  # of a cycle, at which a gait is looked at before
 
 
-class Clock(Protocol):
+class TickClock(Protocol):
     """Tells a drive when its ticks are."""
 
     def begin(self) -> None:
@@ -154,7 +154,7 @@ def check_drive(rig: Rig | BlindRig, gait: Gait, control: Control) -> None:
             )
 
 
-class _Stopped(Exception):
+class _Halted(Exception):
     """The robot is to be stopped: the sentence says why."""
 
 
@@ -164,7 +164,7 @@ def drive(
     control: Control | None = None,
     settings: DriveSettings | None = None,
     *,
-    clock: Clock | None = None,
+    clock: TickClock | None = None,
     asked: Callable[[], str] = lambda: "",
     say: Callable[[str], None] = lambda _: None,
     progress: Progress = silent,
@@ -212,7 +212,7 @@ class _Drive:
         gait: Gait,
         controller: Controller,
         settings: DriveSettings,
-        clock: Clock,
+        clock: TickClock,
         asked: Callable[[], str],
         say: Callable[[str], None],
         progress: Progress,
@@ -220,7 +220,7 @@ class _Drive:
         self._rig, self._gait, self._controller = rig, gait, controller
         self._settings, self._clock, self._asked, self._say = settings, clock, asked, say
         self._progress = progress
-        self._log, self._guard = Log(rig.robot, gait), Guard(rig, settings.limits)
+        self._log, self._guard = DriveLog(rig.robot, gait), Guard(rig, settings.limits)
         self._told = 0
         self._tick = self._offset = 0
         self._goal = np.zeros(len(rig.names))
@@ -234,7 +234,7 @@ class _Drive:
             self._approach()
             self._go(ticks)
             ended = True
-        except _Stopped as stop:
+        except _Halted as stop:
             cause = str(stop)
         except BusFailure as error:
             cause, failed = str(error), error
@@ -335,9 +335,9 @@ class _Drive:
             },
         )  # fmt: skip
         if why:
-            raise _Stopped(why)
+            raise _Halted(why)
         if asked := self._asked():
-            raise _Stopped(f"{ASKED}{asked}")
+            raise _Halted(f"{ASKED}{asked}")
 
     def _end(self, how: Stop) -> None:
         """Leave the robot safe; whatever fails, its torque is taken away, three times."""

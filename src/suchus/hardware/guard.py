@@ -6,7 +6,7 @@ import numpy as np
 
 from suchus.design.checks import Checks
 from suchus.hardware.blind import BlindRig
-from suchus.hardware.rig import JUMPS, Reading, Rig
+from suchus.hardware.rig import JUMPS, Rig, RigReading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ class Guard:
         self._stall = np.array([one.table.stall_torque for one in rig.servos])
         self._limit = np.array([one.table["temperature_limit"].initial for one in rig.servos])
 
-    def look(self, now: Reading) -> str:
+    def look(self, now: RigReading) -> str:
         """Return why the robot must be stopped, in a sentence; empty if it need not."""
         rig, limits, asked = self._rig, self._limits, self._rig.asked
         if not asked.any():  # nobody tells anything
@@ -97,7 +97,7 @@ class Guard:
         self._warn(now)
         return ""
 
-    def _warn(self, now: Reading) -> None:
+    def _warn(self, now: RigReading) -> None:
         limits, names = self._limits, self._rig.names
         keep = np.exp(-self._rig.period / limits.memory)
         square = np.nan_to_num(now.torque) ** 2

@@ -13,7 +13,7 @@ from suchus.record import DRIVEN, VARIABLES, dataset
 from suchus.skin import poses
 
 
-class Log:
+class DriveLog:
     """Keeps ticks and makes them a record.
 
     Args:

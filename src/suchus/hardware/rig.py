@@ -48,7 +48,7 @@ _OF_SERVOS = ("servo_position", "servo_velocity", "servo_torque")
 
 
 @dataclass(slots=True)
-class Reading:
+class RigReading:
     """What servos and boards said last."""
 
     angle: np.ndarray
@@ -142,7 +142,7 @@ class Rig:
         self._turn = 0
         count = len(self.servos)
         angle, velocity, torque, current, voltage, temperature = np.full((6, count), np.nan)
-        self.now = Reading(
+        self.now = RigReading(
             angle=angle,
             velocity=velocity,
             torque=torque,
@@ -352,7 +352,7 @@ class Rig:
 
     # --- while it moves -----------------------------------------------------------------------------------------------
 
-    def read(self) -> Reading:
+    def read(self) -> RigReading:
         """Ask all, take what comes in time, and keep what was said before of those that are silent."""
         for number, bus in enumerate(self.buses):
             if self._members[number]:

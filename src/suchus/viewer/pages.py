@@ -6,17 +6,17 @@ from suchus.viewer.server import CannotServe, Viewer
 from suchus.viewer.stage import camera
 from suchus.viewer.swim_page import CAMERA as FROM_ABOVE
 from suchus.viewer.swim_page import SwimPage, VortexPage
-from suchus.viewer.watch_page import Seen, WatchPage
+from suchus.viewer.watch_page import WatchedRobot, WatchPage
 
 __all__ = [
     "FROM_ABOVE",
     "CannotServe",
     "LivePage",
     "ReplayPage",
-    "Seen",
     "SwimPage",
     "Viewer",
     "VortexPage",
     "WatchPage",
+    "WatchedRobot",
     "camera",
 ]

@@ -17,7 +17,7 @@ _DRAWN = 3  # frames for one renewal of numbers and track
 _PLOT = 0.3  # [s]; between two redraws of the plots
 
 
-class Seen(NamedTuple):
+class WatchedRobot(NamedTuple):
     """What is seen of a robot now."""
 
     time: float
@@ -39,7 +39,7 @@ class WatchPage(BrowserPage):
         look: returns what is seen now; called from a thread of the browser's.
     """
 
-    def __init__(self, client: Any, robot: Robot, look: Callable[[], Seen]) -> None:
+    def __init__(self, client: Any, robot: Robot, look: Callable[[], WatchedRobot]) -> None:
         super().__init__(client)
         self._look = look
         with client.gui.add_folder("Look"):
@@ -75,7 +75,7 @@ class WatchPage(BrowserPage):
             self._plots.draw(self._history.table())
 
 
-def _status(seen: Seen, forward: float, aside: float) -> str:
+def _status(seen: WatchedRobot, forward: float, aside: float) -> str:
     """Return the head of the page as HTML."""
     cells = "".join(
         f'<div style="white-space:nowrap"><div style="font-size:11px;color:#666">{label}</div>'

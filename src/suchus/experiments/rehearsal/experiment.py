@@ -13,7 +13,7 @@ from suchus.bus import BusPlace, Wiring, straight
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.emulator import Body, Emulator, MemoryPort, Trouble
+from suchus.emulator import EmulatedBody, Emulator, MemoryPort, Trouble
 from suchus.errors import Diverged
 from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -77,7 +77,7 @@ def rehearse(
     """
     wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], MODELS[protocol], boards=True)  # type: ignore[arg-type]
     trouble = trouble or Trouble()
-    emulator = Emulator(built or wiring, Body(robot, gait, latency=trouble.latency), trouble, clocked=True)
+    emulator = Emulator(built or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, clocked=True)
     rig = Rig(robot, wiring, [MemoryPort(emulator)], clocked=True)
     settings = DriveSettings(duration=duration, stop="hold", limits=_UNHEARD)
     log = drive(rig, gait, control, settings, clock=BusClock(rig))
