@@ -405,7 +405,7 @@ def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     uphill = part.sel(disturbance="uphill")
     load = {arm: abs(float(_ending(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")}
     pitch = uphill.tail_pitch.sel(arm="tail")
-    before = pitch.sel(time=slice(None, float(pitch.time[-1]) - gait.period))
+    before = pitch.sel(time=slice(None, max(float(pitch.time[-1]) - gait.period, float(pitch.time[0]))))
     drift = abs(float(_ending(pitch, gait.period).mean() - _ending(before, gait.period).mean()))
     return measures | {
         "tail_load_open": Measure(load["open"], "N m"),
