@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 from importlib import resources
 
@@ -13,6 +14,7 @@ from suchus.design.drawing import Drawing
 from suchus.design.scale import swim_servo_for
 from suchus.league import Contestant, Family, Found, Given, Numbers, Quantity, Rung, known
 from suchus.league.swims import Asked, Swimmer, Swum, rungs, waters
+from suchus.motion import Gait
 from suchus.progress import Progress
 from suchus.water import FilmedWave, fit
 
@@ -69,14 +71,17 @@ def build(numbers: Numbers, frequency: float | None) -> Swimmer:
     robot = _body(
         length, numbers["mass"] * length**3, 0.9995 * numbers["density"], numbers["wide"], numbers["tail_height"]
     )
-    wave = FilmedWave(
-        length=length, frequency=often, wavelength=numbers["wavelength"], head=0.5 * numbers["head"],
-        tail=0.5 * numbers["tail"],
-    )  # fmt: skip
+    gait = _gait(robot, numbers["wavelength"], 0.5 * numbers["head"], 0.5 * numbers["tail"])
     return Swimmer(
-        robot=robot, gait=fit(robot, wave, name="catshark_film", most=0.4).gait, water=waters(numbers),
-        shedding=numbers["shedding"], added_mass=numbers["added_mass"], ramp=1.0,
+        robot=robot, gait=replace(gait, period=1.0 / often), water=waters(numbers), shedding=numbers["shedding"],
+        added_mass=numbers["added_mass"], ramp=1.0,
     )  # fmt: skip
+
+
+@lru_cache(maxsize=256)
+def _gait(robot: Robot, wavelength: float, head: float, tail: float) -> Gait:
+    wave = FilmedWave(length=robot.length, frequency=1.0, wavelength=wavelength, head=head, tail=tail)
+    return fit(robot, wave, name="catshark_film", most=0.4).gait
 
 
 def held(numbers: Numbers) -> float:

@@ -148,7 +148,9 @@ def _by_theory(model: Model, asked: Asked, choices: Sequence[Numbers], progress:
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
         try:
-            swimmer, swum = _held(asked, numbers, partial(theory, model, coasts=asked.coasts))
+            swimmer, swum = _held(
+                asked, numbers, partial(theory, model, coasts=asked.coasts, starts=asked.held is None)
+            )
             found.append(asked.read(numbers, swimmer, swum))
         except (NotConverged, OutsideLimits, InvalidDesign):  # this choice: no forward speed, or no beat so fast
             found.append({})
@@ -182,13 +184,14 @@ def _at_speed(swum: Swum, wanted: float) -> Swum:
     return swum._replace(frequency=factor * swum.frequency, speed=wanted, power=factor**3 * swum.power)
 
 
-def theory(model: Model, swimmer: Swimmer, *, coasts: bool = False) -> Swum:
+def theory(model: Model, swimmer: Swimmer, *, coasts: bool = False, starts: bool = True) -> Swum:
     """Return what a slender-body model says of a swim, from rest by its mean thrust at each speed.
 
     Args:
         model: resistive or reactive.
         swimmer: who swims, how and in which water.
         coasts: whether to read how it coasts.
+        starts: whether to read its periods from rest.
 
     Raises:
         NotConverged: thrust and drag never balance.
@@ -201,7 +204,7 @@ def theory(model: Model, swimmer: Swimmer, *, coasts: bool = False) -> Swum:
         frequency=bent.frequency,
         speed=free.speed,
         power=free.power,
-        periods=_from_rest(outline, bent, shed, swimmer, free.speed),
+        periods=_from_rest(outline, bent, shed, swimmer, free.speed) if starts else (),
         swing=float(np.ptp(curve.y[:, -1])),
         coast=_coast(outline, bent, model, swimmer, free.speed) if coasts else np.nan,
     )
@@ -267,7 +270,7 @@ def _by_sections(asked: Asked, choices: Sequence[Numbers], progress: Progress) -
     frequencies = []
     for numbers in choices:
         try:
-            frequencies.append(_held(asked, numbers, partial(theory, resistive))[1].frequency)
+            frequencies.append(_held(asked, numbers, partial(theory, resistive, starts=False))[1].frequency)
         except (NotConverged, OutsideLimits, InvalidDesign):
             frequencies.append(asked.start)
     for i in range(3):
@@ -430,9 +433,9 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
     thick = [replace(swimmer, water=replace(swimmer.water, viscosity=_viscosity(swimmer, n))) for n in SPACE_CELLS]
     answers: list[Swum] = []
     for model in (resistive, reactive):
-        real = theory(model, swimmer)
+        real = theory(model, swimmer, starts=asked.held is None)
         for grid, water in zip(grids, thick, strict=True):
-            slow = theory(model, water)
+            slow = theory(model, water, starts=False)
             if real.speed > 0.0 and slow.speed > 0.0:  # a tail that ends in a point sheds nothing there
                 answers.append(_brought(grid, real, slow))
         if real.speed > 0.0:
@@ -442,7 +445,7 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
     middle = answers[0]._replace(
         speed=_mean([one.speed for one in answers]),
         power=_mean([one.power for one in answers]),
-        periods=tuple(_mean(row) for row in zip(*(one.periods for one in answers), strict=True)),
+        periods=tuple(_mean(row) for row in zip(*(one.periods for one in answers), strict=False)),
     )
     return [_answer(asked, numbers, swimmer, one) for one in (middle, *answers)]
 
