@@ -101,3 +101,14 @@ def test_contestants_are_found_by_their_names():
     with pytest.raises(InvalidDesign, match=r"0.5 to 6 can be asked"):
         find(shelf, "stone_7")
     assert known(1.0, "m", "x").low == known(1.0, "m", "x").high == 1.0
+
+
+def test_some_models_are_asked_and_the_others_are_named():
+    some = stone().asking(["formula", "slice"])
+    assert list(some.rungs) == ["formula"]
+    assert some.left_out == {"film": "it was not asked"}
+    assert stone().asking([]) == stone()
+    with pytest.raises(InvalidDesign, match="takes the interval of formula"):
+        stone().asking(["film"])
+    with pytest.raises(InvalidDesign, match="has none of the models slice; it has formula, film"):
+        stone().asking(["slice"])

@@ -4,13 +4,16 @@ from functools import partial
 import numpy as np
 import pytest
 
-from suchus.contestants import CONTESTANTS, alligator_slope, salamander, swimming_law
+from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, salamander, swimming_law
+from suchus.control import Swimming
 from suchus.design.drawing import Drawing
 from suchus.design.pieces import masses, volumes
+from suchus.design.scale import servo_for
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
+from suchus.land import Run, simulate
 from suchus.league import find
-from suchus.league.swims import Swimmer, _coasting, _from_rest, _held, theory
+from suchus.league.swims import Swimmer, _coasting, _from_rest, _held, _lake, theory
 from suchus.motion.swim import still, swimming_gait
 from suchus.water import Outline, reactive, resistive, undulation
 from suchus.water.slender import Effort
@@ -119,3 +122,21 @@ def test_in_thin_water_drag_with_the_square_gives_the_turbulent_exponent():
     numbers = {"cross_drag": 1.1, "thickening": 1e-6, "thick": 1e-4, "thin": 1e-7}
     (found,) = swimming_law.law(resistive, [numbers], lambda *_: None)
     assert found["turbulent"] == pytest.approx(found["laminar"], abs=1e-3)
+
+
+@pytest.mark.parametrize(("made", "follows"), [(None, True), (servo_for, False)])
+def test_a_servo_that_holds_the_water_follows_within_two_degrees_and_one_by_weight_swings_on(made, follows):
+    """AmphiBot's motors follow within 2 degrees; a servo in proportion to the weight overshoots in its body."""
+    one = amphibot.build(find(CONTESTANTS, "amphibot").likely, None)
+    if made is not None:
+        servo = made(one.robot.mass, one.robot.length)
+        hinges = {hinge.name: replace(hinge, drive=servo) for hinge in one.robot.axis_hinges}
+        axis = [replace(part, hinges=tuple(hinges[each.name] for each in part.hinges)) for part in one.robot.axis]
+        one = replace(one, robot=replace(one.robot, axis=tuple(axis)))
+    run = Run(robot=one.robot, gait=one.gait, lake=_lake(one), control=Swimming(ramp=0.3))
+    record = simulate([run], duration=6 * one.gait.period).isel(run=0)
+    last = record.time > 4 * one.gait.period
+    angles = record.joint_angle.sel(joint=record.servo.values).isel(time=last.values)
+    swing = np.degrees(np.ptp(angles.transpose("joint", "time").values, axis=1)) / 2
+    asked = np.degrees(np.ptp(record.servo_target.transpose("servo", "time").values[:, last.values], axis=1)) / 2
+    assert bool(np.abs(swing - asked).max() < 2.0) is follows

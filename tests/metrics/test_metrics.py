@@ -19,10 +19,12 @@ from suchus.metrics import (
     line_distance,
     line_distance_max,
     path_length,
+    path_speed,
     peak_torque,
     roll_peak_to_peak,
     sensed_phase,
     slip,
+    speed,
     spine_sine_share,
     spine_swings,
     support_distance,
@@ -36,6 +38,7 @@ from suchus.metrics import (
     two_feet_share,
     work,
 )
+from suchus.motion import START
 
 TIME = np.arange(0, 901) * 0.01
 LEGS = ["LF", "RF", "LH", "RH"]
@@ -89,6 +92,18 @@ def test_path_length_counts_turns_but_not_the_sway_within_a_cycle():
     record = hand_made(centre_of_mass=moving(x=there_and_back, y=sway))
     assert float(path_length(record)) == pytest.approx(8.0)
     assert displacement(record).values[0] == pytest.approx(0.0)
+
+
+def test_a_path_that_closes_on_itself_has_a_speed_along_it():
+    """A circle of radius 1 m, once in eight seconds, two cycles long: the chords of half circles are 2 m each."""
+    angle = 2 * np.pi * (TIME - 1.0) / 8.0
+    record = hand_made(centre_of_mass=moving(x=np.sin(angle), y=1.0 - np.cos(angle)))
+    assert float(speed(record)) == pytest.approx(0.0, abs=1e-9)
+    assert float(path_speed(record)) == pytest.approx(4.0 / 8.0)
+    assert float(path_speed(record, START, START + 4.0)) == pytest.approx(2.0 / 4.0)
+    assert float(path_speed(record, START, START + 6.0)) == pytest.approx(2.0 / 4.0)  # one whole cycle and a half
+    both = path_speed(xr.concat([record, record.assign(period=2.0)], "run"))
+    assert both.values == pytest.approx([0.5, 4 * 2**0.5 / 8.0])
 
 
 def test_each_run_of_a_batch_is_sampled_at_its_own_period():
@@ -145,8 +160,8 @@ def test_a_foot_slips_by_what_it_slides_times_what_it_carries():
 
 def test_work_counts_braking_as_much_as_driving():
     torque = np.column_stack([np.full(len(TIME), 2.0), np.full(len(TIME), -1.0)])
-    speed = np.column_stack([np.full(len(TIME), 0.5), np.full(len(TIME), 0.25)])
-    record = hand_made(servo_torque=torque, servo_velocity=speed, centre_of_mass=moving(x=0.2 * TIME))
+    rate = np.column_stack([np.full(len(TIME), 0.5), np.full(len(TIME), 0.25)])
+    record = hand_made(servo_torque=torque, servo_velocity=rate, centre_of_mass=moving(x=0.2 * TIME))
     assert float(work(record)) == pytest.approx(8 * 1.25)
     assert float(cost_of_transport(record)) == pytest.approx(10.0 / (2.0 * 9.81 * 1.6))
     assert peak_torque(record).values == pytest.approx([2.0, 1.0])

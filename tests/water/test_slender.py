@@ -115,6 +115,11 @@ def test_recoil_leaves_no_lateral_momentum_at_rest(outline, forward):
 def test_it_swims_slower_than_its_wave(robot, forward):
     record = suchus.swim(robot, forward)
     assert np.all((record.slip > 0) & (record.slip < 1))
+    thick = suchus.swim(robot, forward, water=Water(viscosity=1e-3))
+    for swum, viscosity in ((record, 1e-6), (thick, 1e-3)):
+        np.testing.assert_allclose(swum.reynolds, swum.speed * robot.length / viscosity)
+        np.testing.assert_allclose(swum.froude, swum.speed / np.sqrt(9.81 * robot.length), rtol=1e-3)
+        np.testing.assert_allclose(swum.swimming_number, 2 * np.pi * swum.strouhal * swum.reynolds)
     assert np.all(record.power > 0)
 
 

@@ -29,6 +29,8 @@ class LeagueOptions:
     """Folder of the predictions, a folder for each contestant, and of the page. What is sealed there is kept."""
     jobs: int | None = None
     """Models that are asked side by side; by default one for each thread."""
+    models: tuple[str, ...] = ()
+    """Models that are asked, as resistive reactive sections; all if there are none. The page names the others."""
     measured: Path | None = None
     """What was measured of a single contestant, a JSON file of your own; see docs/league.md."""
 
@@ -45,7 +47,7 @@ def league(words: Sequence[str]) -> int:
     )
     options = parse(LeagueOptions, "suchus league", words, about)
     names = list(dict.fromkeys(options.names)) or list(every(CONTESTANTS))
-    contestants = [find(CONTESTANTS, name) for name in names]
+    contestants = [find(CONTESTANTS, name).asking(options.models) for name in names]
     if options.jobs is not None and options.jobs < 1:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 model at a time is needed.")
     if options.measured is not None and len(names) != 1:

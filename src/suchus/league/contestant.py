@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import NamedTuple
 
@@ -112,6 +112,28 @@ class Contestant:
     def likely(self) -> dict[str, float]:
         """The most likely value of each number."""
         return {name: number.value for name, number in self.given.items()}
+
+    def asking(self, models: Sequence[str]) -> "Contestant":
+        """Return the same with some of its models alone, of which the others say that they were not asked.
+
+        Args:
+            models: names of rungs; those that it has not are left to other contestants. None asks all.
+
+        Raises:
+            InvalidDesign: it has none of them, or one takes the interval of a model that is not asked.
+        """
+        if not models:
+            return self
+        asked = {name: rung for name, rung in self.rungs.items() if name in models}
+        if not asked:
+            raise InvalidDesign(
+                f"contestant {self.name!r} has none of the models {', '.join(models)}; it has {', '.join(self.rungs)}."
+            )
+        for name, rung in asked.items():
+            if rung.like and rung.like not in asked:
+                raise InvalidDesign(f"{name} of {self.name!r} takes the interval of {rung.like}: ask that too.")
+        silent = {name: "it was not asked" for name in self.rungs if name not in asked}
+        return replace(self, rungs=asked, left_out={**self.left_out, **silent})
 
 
 class Entrant(ABC):

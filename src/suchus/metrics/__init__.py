@@ -27,7 +27,7 @@ from suchus.metrics.gait import (
     two_feet_share,
 )
 from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
-from suchus.metrics.progress import displacement, heading, heading_change, loss, path_length, slip, speed
+from suchus.metrics.progress import displacement, heading, heading_change, loss, path_length, path_speed, slip, speed
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
 from suchus.metrics.stability import (
@@ -67,6 +67,7 @@ __all__ = [
     "loss",
     "mean_cycle",
     "path_length",
+    "path_speed",
     "peak_torque",
     "reach",
     "roll_angle",

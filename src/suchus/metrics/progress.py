@@ -20,6 +20,8 @@ def speed(record: xr.Dataset, start: float = START, end: float | None = None) ->
     """Return the mean speed of the centre of mass along the world's x, where the robot faced at first [m/s].
 
     Gaits of different cycle times are compared by it: the displacement over equal times counts other numbers of cycles.
+    Whoever turns on the way comes less far than the way is long, and on a circle nowhere: see ``path_speed``, and
+    ``heading_change`` beside it.
     """
     part = between(record, start, end)
     return displacement(record, start, end).sel(xyz="x", drop=True) / float(part.time[-1] - part.time[0])
@@ -56,6 +58,21 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
     return ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
 
 
+def path_speed(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
+    """Return the mean speed of the centre of mass along its path on the ground, cycle by cycle [m/s].
+
+    As ``path_length``, of which it is the part of each second, it does not count the swaying within a cycle; it tells
+    neither forward from backward nor whether the path closes on itself.
+    """
+    if "run" in record.dims:  # each run is sampled at its own period
+        speeds = [path_speed(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
+        return xr.concat(speeds, "run", coords="different", compat="equals")
+    part = between(record, start, end)
+    every = max(1, round(float(part.period) / float(part.time[1] - part.time[0])))
+    last = every * ((part.sizes["time"] - 1) // every) or -1  # a part of a cycle at the end is not in the path's length
+    return path_length(record, start, end) / float(part.time[last] - part.time[0])
+
+
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the feet slide under load, over the displacement of the centre of mass [-].
 
@@ -69,7 +86,7 @@ def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> 
     return slid / (displaced**2).sum("xyz") ** 0.5
 
 
-measures = (displacement, heading_change, path_length, slip, speed)
+measures = (displacement, heading_change, path_length, path_speed, slip, speed)
 
 
 def loss(distance: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:

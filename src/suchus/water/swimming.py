@@ -55,7 +55,7 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
         free = cruise(outline, bent, model, around)
         curve = cycle(outline, bent, free.sway, free.turn)
         curves.append(curve)
-        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power)
+        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, around)
         for name, value in {"thrust_held": model(outline, held, 0.0, around).thrust, **values}.items():
             per_model[name].append(value)
     return _record(outline, motion, around, curves, per_model)
@@ -70,11 +70,17 @@ _PER_MODEL = {
     "strouhal": ("1", "frequency times the peak-to-peak amplitude of the tail's tip, over speed"),
     "cost_of_transport": ("1", "power over displaced weight and speed"),
     "head_yaw": ("rad", "amplitude of the head's direction"),
+    "reynolds": ("1", "speed times length over the viscosity"),
+    "froude": ("1", "speed over the root of gravity times length"),
+    "swimming_number": (
+        "1",
+        "angular frequency times the tail's way from side to side times length over the viscosity",
+    ),
 }
 
 
 def _numbers(
-    robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float
+    robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float, water: Water
 ) -> dict[str, float]:
     swing = float(np.ptp(curve.y[:, -1]))
     weight = GRAVITY * displaced(outline)
@@ -87,6 +93,9 @@ def _numbers(
         "strouhal": motion.frequency * swing / abs(speed) if moving else float("nan"),
         "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
         "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
+        "reynolds": abs(speed) * robot.length / water.viscosity,
+        "froude": abs(speed) / (GRAVITY * robot.length) ** 0.5,
+        "swimming_number": 2.0 * np.pi * motion.frequency * swing * robot.length / water.viscosity,
     }
 
 
