@@ -194,6 +194,8 @@ def page(standings: Sequence[Standing], picture: str) -> str:
         "",
         f"![Predictions over what was measured, by model; the interval should reach across 1]({picture})",
         "",
+        _TRIALS,
+        "",
         "## Misses",
         "",
         *_misses(every),
@@ -213,8 +215,33 @@ def page(standings: Sequence[Standing], picture: str) -> str:
             lines += ["", f"Measured: {'; '.join(sorted(sources))}."]
         if seal.refused:
             lines += ["", *(f"* No word from {rung}: {why}" for rung, why in seal.refused.items())]
-        lines += ["", "<details><summary>What it rests on</summary>", "", *_given(seal), "", "</details>"]
-    return "\n".join(lines) + "\n"
+        lines += ["", "### What it rests on", "", *_given(seal)]
+    return "\n".join([*lines, "", *_OWN]) + "\n"
+
+
+_TRIALS = (
+    "Two things were changed after trials in which the public measurements of the catshark had been opened: the "
+    "range of its "
+    "friction, to what was seen on swimming dogfish, and how the flow in space is brought to real water. What "
+    "was measured "
+    "of AmphiBot, and of the catshark at other speeds, is not in this repository and was not seen."
+)
+_OWN = (
+    "## A measurement and a contestant of your own",
+    "",
+    "`suchus league NAME --measured FILE.json` judges by what you measured, which is opened after the seal:",
+    "",
+    "```json",
+    '{"steady_speed": {"value": 0.4, "low": 0.38, "high": 0.42, "unit": "m/s", "source": "film of 3 May"}}',
+    "```",
+    "",
+    "A contestant is one file, in the folder `contestants` of a [project](projects.md) too: a "
+    "`league.Contestant` with its "
+    "numbers, each with a range and a source, what is predicted, and its models; `league.swims.rungs` are those of any "
+    "swimmer. A number without a source, a unit that differs and a prediction that was changed are refused in a "
+    "sentence. "
+    "`--models resistive reactive sections` leaves out the flows, which take minutes each.",
+)
 
 
 def _misses(every: Sequence[tuple[Standing, str, str, Interval, Measured, Judgement]]) -> list[str]:

@@ -107,7 +107,7 @@ def sealed_prediction(
         rooms=_ROOMS, progress=progress, jobs=jobs,
     )  # fmt: skip
     prediction, refused = predicted(contestant, dict(zip(names, answers, strict=True)))
-    text = prediction_text(contestant, prediction)
+    text = prediction_text({name: one.unit for name, one in contestant.predicts.items()}, prediction)
     write(folder / PREDICTION, text)
     seal = Seal(
         contestant=contestant.name,
@@ -177,11 +177,16 @@ def _rows(said: xr.Dataset, quantity: str) -> list[Found]:
     return rows
 
 
-def prediction_text(contestant: Contestant, prediction: Prediction) -> str:
-    """Return a prediction as its file has it: ``{quantity: {rung: {value, low, high, unit}}}``."""
+def prediction_text(units: Mapping[str, str], prediction: Prediction) -> str:
+    """Return a prediction as its file has it: ``{quantity: {rung: {value, low, high, unit}}}``.
+
+    Args:
+        units: of the quantities.
+        prediction: by quantity and rung.
+    """
     data = {
         quantity: {
-            rung: {"value": one.value, "low": one.low, "high": one.high, "unit": contestant.predicts[quantity].unit}
+            rung: {"value": one.value, "low": one.low, "high": one.high, "unit": units[quantity]}
             for rung, one in rungs.items()
         }
         for quantity, rungs in prediction.items()
