@@ -5,12 +5,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from toys import failing, stone
+from toys import failing, silent, stone
 
 from suchus.cli import main
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.errors import InvalidDesign, NotConverged, UnreadableFile
-from suchus.league import Single, every, find, sealing
+from suchus.league import Rung, Single, every, find, sealing
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
 from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
 
@@ -108,6 +108,11 @@ def test_a_rung_that_cannot_answer_says_why_and_the_others_speak(tmp_path):
     assert seal.refused == {"other": "it does not fall."}
     assert set(read_prediction(tmp_path / "stone")["speed"]) == {"formula"}
     assert "No word from other: it does not fall." in page([standing(failing(None), tmp_path, tmp_path / "none")], "x")
+
+
+def test_a_rung_without_an_answer_to_the_most_likely_numbers_says_so(tmp_path):
+    seal = sealed_prediction(stone(rungs={"none": Rung(words="says nothing", work=silent, draws=3)}), tmp_path)
+    assert seal.refused == {"none": "it gave no answer with the most likely numbers."}
 
 
 def test_the_page_says_misses_first_and_keeps_what_it_is_made_of(tmp_path):

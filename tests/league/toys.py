@@ -19,6 +19,10 @@ def slow(choices, progress):
     return [{"speed": 3.0}, {"speed": 2.0}]
 
 
+def silent(choices, progress):
+    return [{} for _ in choices]
+
+
 def broken(error, choices, progress):
     raise error
 

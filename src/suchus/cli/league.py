@@ -32,7 +32,7 @@ class LeagueOptions:
     models: tuple[str, ...] = ()
     """Models that are asked, as resistive reactive sections; all if there are none. The page names the others."""
     measured: Path | None = None
-    """What was measured of a single contestant, a JSON file of your own; see docs/league.md."""
+    """What was measured of a single contestant, a JSON file: {quantity: {value, low, high, unit, source}}."""
 
 
 def league(words: Sequence[str]) -> int:

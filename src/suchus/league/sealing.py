@@ -166,6 +166,8 @@ def predicted(contestant: Contestant, answers: Mapping[str, xr.Dataset]) -> tupl
                 continue
             if interval is not None:
                 found[quantity][name] = interval
+        if name not in refused and not any(name in rungs for rungs in found.values()):
+            refused[name] = "it gave no answer with the most likely numbers."
     return found, refused
 
 
