@@ -111,8 +111,8 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
     frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
     inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
-    the beat, with a damping of 0.7 of the critical one. Torque and speed are never short: on a servo so stiff that meets
-    its limit the body rattles, and what the water asks of it stands in the record.
+    the beat, with a damping of 0.7 of the critical one. Torque and speed are never short: on a servo so stiff that
+    meets its limit the body rattles, and what the water asks of it stands in the record.
 
     Args:
         mass: of the whole body [kg].
