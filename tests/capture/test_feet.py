@@ -5,6 +5,7 @@ import pytest
 
 from suchus.capture import film_animal
 from suchus.capture.feet import GRID, FootContact, contact, grid, path_shape, sweep
+from suchus.capture.swings import Swing
 from suchus.motion.limbs import foot_path
 
 
@@ -29,8 +30,19 @@ def test_the_speed_of_a_standing_foot_is_nearly_nothing(lizard, clean):
 
 
 def test_a_stance_across_the_end_of_the_cycle():
-    unsure = {"middle_error": 0.0, "duty_error": 0.0, "scatter": 0.0, "hidden": 0.0}
-    edges = FootContact(np.zeros(GRID), np.zeros(GRID, dtype=bool), lift_off=0.2, touch_down=0.8, middle=0.0, **unsure)
+    none = Swing._make(np.empty(0) for _ in Swing._fields)
+    edges = FootContact(
+        speed=np.zeros(GRID),
+        stance=np.zeros(GRID, dtype=bool),
+        lift_off=0.2,
+        touch_down=0.8,
+        middle=0.0,
+        middle_error=0.0,
+        duty_error=0.0,
+        scatter=0.0,
+        hidden=0.0,
+        swings=none,
+    )
     np.testing.assert_allclose(edges.duty, 0.4, atol=1e-12)
 
 
