@@ -1,6 +1,7 @@
 """Robot and water solved together: one ladder of runs, from forces section by section to a flow in space."""
 
+from suchus.coupling.residual import residual_table
 from suchus.coupling.simulation import simulate
 from suchus.coupling.swim import Swim
 
-__all__ = ["Swim", "simulate"]
+__all__ = ["Swim", "residual_table", "simulate"]

@@ -5,11 +5,11 @@ the kernel of the runs says what the water does (``hydro``). So the section mode
 same body moves in the same manner. Names and signs are those of ``water.resolved`` in space, held and free.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 from math import cos, sin, tau
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -20,7 +20,8 @@ from scipy.integrate import solve_ivp
 from suchus import hydro
 from suchus.design import Robot
 from suchus.design.pieces import pieces
-from suchus.hydro import column, unpacked
+from suchus.hydro import column, packed, unpacked
+from suchus.hydro.table import HEADER, WIDTH
 from suchus.land import wetting
 from suchus.land.lake import DEEPEST, Lake
 from suchus.model.build import SNOUT
@@ -122,6 +123,52 @@ def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Datas
     )
 
 
+class SectionLoads(NamedTuple):
+    """What sections feel along a motion, in the world; arrays along its samples."""
+
+    links: Float[np.ndarray, "sample link 3"]
+    """Force along x and y on each link between two lateral joints, and torque about the vertical through the root [N,
+    N m]."""
+    joints: Float[np.ndarray, "sample joint"]
+    """Moment of the water about each lateral joint [N m]."""
+
+
+def sections_along(
+    robot: Robot,
+    joints: Sequence[str],
+    place: Float[np.ndarray, "sample coordinate"],
+    rate: Float[np.ndarray, "sample coordinate"],
+    push: Float[np.ndarray, "sample coordinate"],
+    lake: Lake,
+) -> SectionLoads:
+    """Return what the section model says of a motion of root and joints in the plane, such as one that was recorded.
+
+    Args:
+        robot: whose body, limbs left out.
+        joints: lateral joints, from the head on.
+        place: of the root (x, y, yaw) and of these joints [m, rad].
+        rate: their rates.
+        push: their accelerations.
+        lake: the water; its level does not matter.
+    """
+    body = _Submerged(robot, lake)
+    order = [joints.index(name) for name in body.names]
+    count = len(place)
+    links, moments = np.zeros((count, len(joints) + 1, 3)), np.zeros((count, len(joints)))
+    for i in range(count):
+        where = body.qpos(place[i, :3], place[i, 3:][order])
+        moving, gaining = (body.rates(one[i, :3], one[i, 3:][order]) for one in (rate, push))
+        forces = body.joint_forces(where, moving, gaining)
+        moments[i, order] = forces[3:]
+    for link, members in enumerate(body.links(joints)):
+        one = body.only(members)
+        for i in range(count):
+            where = one.qpos(place[i, :3], place[i, 3:][order])
+            moving, gaining = (one.rates(part[i, :3], part[i, 3:][order]) for part in (rate, push))
+            links[i, link] = one.joint_forces(where, moving, gaining)[:3]
+    return SectionLoads(links, moments)
+
+
 class _Submerged:
     """The model of a robot without limbs, wholly under water and without weight."""
 
@@ -135,7 +182,8 @@ class _Submerged:
         self._hinges = yaw_hinges(robot)
         self._places = [int(self._model.joint(name).qposadr[0]) for name in self._hinges.names]
         self._dofs = [int(self._model.joint(name).dofadr[0]) for name in self._hinges.names]
-        self.joints = len(self._hinges.names)
+        self.names = tuple(self._hinges.names)
+        self.joints = len(self.names)
         self.still = np.zeros(self._model.nv)
 
     def amplitudes(self, gait: Gait) -> np.ndarray:
@@ -173,6 +221,47 @@ class _Submerged:
         data.userdata[:] = self._lake.numbers(np.array([0.0, 0.0, 1.0]))
         mujoco.mj_fwdPosition(self._model, data)
         mujoco.mj_fwdVelocity(self._model, data)
+
+    def joint_forces(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, " coordinate"]:
+        """Return the generalised forces of the water alone on root in the plane and lateral joints [N, N m]."""
+        both = []
+        for density in (1.0, 0.0):
+            self._data.qacc[:] = qacc
+            self.move(qpos, qvel, qacc)
+            if density == 0.0:
+                self._data.userdata[:] = 0.0
+                self._data.userdata[hydro.LEVEL] = -DEEPEST
+                mujoco.mj_fwdPosition(self._model, self._data)
+                mujoco.mj_fwdVelocity(self._model, self._data)
+            whole = np.zeros((self._model.nv, self._model.nv))
+            mujoco.mj_fullM(self._model, self._data, whole)
+            both.append(self._data.qfrc_passive - whole @ qacc)
+        acts: np.ndarray = both[0] - both[1]
+        return np.concatenate([acts[_PLANE], acts[self._dofs]])
+
+    def links(self, joints: Sequence[str]) -> list[list[int]]:
+        """Return the bodies of each link between two of the lateral joints, from the head on."""
+        model, robot = self._model, self._robot
+        names = [segment.name for segment in robot.axis]
+        found: list[list[int]] = [[]]
+        for segment, name in zip(robot.axis, names, strict=True):
+            found[-1].append(int(model.body(name).id))
+            if any(hinge.name in joints for hinge in segment.hinges):
+                found.append([])
+        return found
+
+    def only(self, bodies: Sequence[int]) -> "_Submerged":
+        """Return the same where water acts on some of the bodies alone."""
+        other = copy(self)
+        other._model = copy(self._model)
+        other._data = mujoco.MjData(other._model)
+        numbers = other._model.numeric_data
+        table = unpacked(numbers)
+        away = ~np.isin(table[:, 0].astype(int), bodies)
+        for name in ("volume", "added", "area", "skin", "end", "roll", "shed"):
+            column(table, name)[away] = 0.0
+        numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)
+        return other
 
     def freed(self, qpos: np.ndarray, qvel: np.ndarray, qacc: np.ndarray) -> Float[np.ndarray, "3"]:
         """Return the acceleration of a root in the plane that nothing holds, whatever ``qacc`` has for it."""

@@ -17,9 +17,14 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
+from suchus.experiments.swim_free.flow_figure import draw_in_flow
+from suchus.experiments.swim_free.in_flow import flow_measures, flow_runs, residual_text, swum, water_of
+from suchus.figures.vortices import film_vortices
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
+from suchus.land.waters import Form
 from suchus.motion import LIMBS_BACK, Gait, suits
+from suchus.record import WATER
 from suchus.robots import ROBOTS
 from suchus.water import Outline, swim, swim_of
 from suchus.water.sections import likely
@@ -45,6 +50,12 @@ class SwimFree(Experiment):
     the air for it dives and swims below the surface, neutrally buoyant: with the air in the chambers of the design,
     with its pitch held or used to dive by air that moves between them, and with the air in the foam, where it lies
     without chambers.
+
+    With ``water`` "slice" or "space" the robot swims, beside all this, in a flow that is solved with it, deep
+    below the surface and in its plane: the same servos, cable and passive end, but the water is that of the
+    Navier-Stokes equations. ``speed_space`` is then set beside the speeds above, ``coupling_residual`` is the force
+    that a step left over and ``energy_error`` what is missing in the robot's balance of energy. The section model is
+    held against that flow link by link and joint by joint along the motion that the robot took there.
     """
 
     title = "How does it swim in six degrees of freedom, at the surface?"
@@ -85,6 +96,18 @@ class SwimFree(Experiment):
     """Depth of the root in the swims below the surface [m]."""
     dive: int = 24
     """Cycles that are swum in those before anything is measured; as many are measured as at the surface [-]."""
+    water: Form = "sections"
+    """Rung of the water: "sections" alone, or beside it a flow solved with the robot, a "slice" of it or in "space"."""
+    in_flow: tuple[str, ...] = ("whole", "tail_only", "whole_stiff", "tail_only_stiff")
+    """Swims that are repeated in the flow, of those that the robot has; the whole wave always."""
+    cells: int = 80
+    """Cells per body length of the flow [-]."""
+    reynolds: float = 7000.0
+    """Frequency times length squared over viscosity in the flow [-], chosen for what the cells carry."""
+    flow_cycles: int = 4
+    """Cycles that are swum in the flow, from rest; speeds are of the last [-]."""
+    tail_height: float = 0.0
+    """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -103,12 +126,22 @@ class SwimFree(Experiment):
                 f"swim_free.depth is {self.depth:g} m in water {self.level:g} m deep; at least a fifth of the robot's "
                 f"length, {0.2 * self.robot.length:.2g} m, must be below it",
             )
+            check.whole("cells", 32, 4096)
+            check.number("reynolds", 10.0, 1e7, "")
+            check.whole("flow_cycles", 2, 1000)
+            check.number("tail_height", 0.0, 1.0, "m")
+            swims = [name + ending for name in MOTIONS for ending in ("", "_stiff")]
+            odd = [name for name in self.in_flow if name not in swims]
+            check.that(not odd, f"in_flow names {', '.join(odd)}; there is {', '.join(swims)}")
             unknown = [name for name in self.spread if name not in _SPREAD]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_SPREAD)}")
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
-        return replace(self, settle=0, cycles=1, spread=(), dive=0)
+        return replace(
+            self, settle=0, cycles=1, spread=(), dive=0, in_flow=("whole",), cells=min(self.cells, 60),
+            reynolds=min(self.reynolds, 3000.0), flow_cycles=2,
+        )  # fmt: skip
 
     @property
     def _duration(self) -> float:
@@ -121,6 +154,7 @@ class SwimFree(Experiment):
             self.robot, frequency=self.frequency, reading=self.reading, limbs=(LIMBS_BACK[0], self.limb_pitch)
         )
         motions = _motions(motion)
+        flow = self._flow_runs(motions)
         by_table = self._by_table(motion)
         runs = self._runs(motions, _ends(self.spread, by_table))
         record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.7))
@@ -143,7 +177,34 @@ class SwimFree(Experiment):
             meant=motion.number("tail_bend") / max(len(self._cable), 1),
             **{f"{name}_by_table": factor for name, factor in by_table.items()},
         )
-        return Simulated(record=record, replays=self._replays(record))
+        if not flow:
+            return Simulated(record=record, replays=self._replays(record))
+        found, first = swum(flow, self.flow_cycles, progress)
+        record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
+        record.attrs["flow"] = self.water
+        films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else {}
+        return Simulated(
+            record=record, replays=self._replays(record) | self._flow_replay(first), films=films,
+            tables={"residual.md": residual_text(record)},
+        )  # fmt: skip
+
+    def _flow_runs(self, motions: Mapping[str, Gait]) -> list[Run]:
+        """Return the runs in a flow; none on the rung of sections."""
+        if self.water == "sections":
+            return []
+        water = water_of(self.water, self.cells, self.reynolds, self.tail_height)
+        return flow_runs(self._joints, motions, ("whole", *self.in_flow), water)
+
+    def _flow_replay(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the page of the first swim in the flow."""
+        return replayed(
+            "swim_in_flow_replay.html",
+            record.drop_vars([*WATER, "swims_in"]),
+            self.robot,
+            title="Swimming in a flow that is solved with the robot",
+            caption=f"The whole wave of (20) on the robot's own servos, in the {self.water} of water around it at "
+            f"f L² / ν = {self.reynolds:.0f}, from rest.",
+        )
 
     @property
     def _cable(self) -> tuple[str, ...]:
@@ -163,16 +224,20 @@ class SwimFree(Experiment):
         side = np.ptp(cycle(outline, motion, swum.sway, swum.turn).y, axis=0) / 2
         return dict(zip(("cross_drag", "added_mass"), likely(*outline.silhouette, side), strict=True))
 
+    @property
+    def _joints(self) -> Mapping[str, Robot]:
+        """The robot by the ending of its swims' names: as it is, and with stiffer joints if it has a cable."""
+        if not self._cable:
+            return {"": self.robot}
+        return {"": self.robot, "_stiff": with_spring(self.robot, self._cable, self.stiffness)}
+
     def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
         lake, whole = Lake(level=self.level), motions["whole"]
         control = Swimming(ramp=1.0 / self.frequency)
-        joints = {"": self.robot}
-        if self._cable:
-            joints["_stiff"] = with_spring(self.robot, self._cable, self.stiffness)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
-            for ending, robot in joints.items()
+            for ending, robot in self._joints.items()
             for name, gait in motions.items()
         ]
         steered = _steered(self.robot, whole, tail=self.turn, trunk=self.trunk_turn)
@@ -253,6 +318,7 @@ class SwimFree(Experiment):
                 "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
             }
             | _shares(part, labels)
+            | flow_measures(record)
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -260,7 +326,9 @@ class SwimFree(Experiment):
         speeds = {name: measure.value for name, measure in self.measure(outcome.record).items()}
         motions = [name for name in MOTIONS if f"speed_{name}" in speeds]
         found = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
-        return found | ({"below": draw_below(outcome.record, submerged.DEEP)} if "dive" in outcome.record else {})
+        if "dive" in outcome.record:
+            found["below"] = draw_below(outcome.record, submerged.DEEP)
+        return found | (draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})
 
 
 def _motions(motion: Gait) -> dict[str, Gait]:

@@ -1,0 +1,149 @@
+"""How far the section model is from the flow, link by link and joint by joint, along the motion that the robot took.
+
+The section model says of the recorded motion what it would have done; no second run is made. Its force is a part by
+the acceleration and a part by the speed, and the two factors with which they come nearest to the flow's are fitted on
+some cycles and judged on the others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+from scipy.signal import savgol_filter
+
+from suchus import rotation
+from suchus.design import Robot, with_values
+from suchus.design.water import Water
+from suchus.land import Lake
+from suchus.land.prescribed import SectionLoads, sections_along
+
+DRAWS = 400
+"""Draws of the bootstrap, blocks of half a cycle [-]."""
+COVERED = 0.95
+"""Share of the draws that lies in an interval [-]."""
+_SMOOTHED, _ORDER = 9, 4
+"""Samples and order of the polynomials by which places become rates and accelerations [-]."""
+
+
+class Motion(NamedTuple):
+    """Root and lateral joints along a record."""
+
+    place: Float[np.ndarray, "sample coordinate"]
+    """[m, rad]."""
+    rate: Float[np.ndarray, "sample coordinate"]
+    """[m/s, rad/s]."""
+    push: Float[np.ndarray, "sample coordinate"]
+    """[m/s2, rad/s2]."""
+
+
+def motion_of(record: xr.Dataset, joints: Sequence[str]) -> Motion:
+    """Return the motion in a record of one run, differentiated by local polynomials."""
+    yaw = np.unwrap(rotation.yaw(record.orientation.values))
+    bends = record.joint_angle.sel(joint=list(joints)).transpose("time", "joint").values
+    place = np.column_stack([record.position.values[:, :2], yaw, bends])
+    step = float(record.time[1] - record.time[0])
+    rate, push = (savgol_filter(place, _SMOOTHED, _ORDER, deriv=order, delta=step, axis=0) for order in (1, 2))
+    return Motion(place, rate, push)
+
+
+def residual_table(
+    robot: Robot, record: xr.Dataset, *, period: float, first: float, viscosity: float
+) -> xr.Dataset:  # fmt: skip
+    """Return how far the section model is from the flow that a record holds.
+
+    Args:
+        robot: that swam.
+        record: of one run in a flow, see ``record.COUPLED``.
+        period: of a cycle [s].
+        first: time from which samples count [s].
+        viscosity: kinematic, of the flow's water [m2/s].
+
+    Returns:
+        Along ``part``, the links by the force across them and the joints by their moments: ``rms`` of the flow's and of
+        the section model's, ``r2`` as the model is shipped, factors ``added`` and ``drag`` on its two parts that are
+        fitted to the first half of the cycles, with their intervals, and ``r2_held_out`` of the fit in the second half.
+    """
+    joints = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
+    motion = motion_of(record, joints)
+    bare = with_values(robot, {"hull": None})
+    lake = Lake(level=0.0, water=replace(Water(), viscosity=viscosity))
+    still = replace(lake, added_mass=0.0)
+    whole, dragged = (_across(sections_along(bare, joints, *motion, one), motion) for one in (lake, still))
+    time = record.time.values
+    flow = _across(_flow_loads(record, joints), motion)
+    keep = (time >= first) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
+    halves = keep & (time < 0.5 * (first + time[-1])), keep & (time >= 0.5 * (first + time[-1]))
+    parts = [str(name) for name in record.link.values] + joints
+    rows = [
+        _row(flow[:, k], whole[:, k] - dragged[:, k], dragged[:, k], keep, halves, period / float(time[1] - time[0]))
+        for k in range(len(parts))
+    ]
+    names = (
+        "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_fitted",
+        "r2_held_out",
+    )  # fmt: skip
+    data = {f"residual_{name}": ("part", [row[k] for row in rows]) for k, name in enumerate(names)}
+    kind = ["link"] * record.sizes["link"] + ["joint"] * len(joints)
+    return xr.Dataset({**data, "part_kind": ("part", kind)}, coords={"part": parts})
+
+
+def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
+    """Return what the flow did, at the samples: means over the control period before each, half a period late."""
+    links = np.concatenate([record.link_force.values[..., :2], record.link_torque.values[..., None]], axis=2)
+    moments = record.joint_water_torque.sel(joint=list(joints)).transpose("time", "joint").values
+
+    def centred(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([0.5 * (values[1:] + values[:-1]), values[-1:]])
+
+    return SectionLoads(centred(links), centred(moments))
+
+
+def _across(loads: SectionLoads, motion: Motion) -> np.ndarray:
+    """Return the force across each link, to the left of the root's heading, and the moments, shape (sample, part)."""
+    yaw = motion.place[:, 2, None]
+    aside = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]
+    return np.column_stack([aside, loads.joints])
+
+
+def r2(values: np.ndarray, model: np.ndarray) -> float:
+    """Return the share of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
+    spread = float(((values - values.mean()) ** 2).sum())
+    return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
+
+
+def _fitted(values: np.ndarray, added: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    found, *_ = np.linalg.lstsq(np.column_stack([added, drag]), values, rcond=None)
+    return np.asarray(found)
+
+
+def _row(
+    values: np.ndarray, added: np.ndarray, drag: np.ndarray, keep: np.ndarray, halves: tuple[np.ndarray, np.ndarray],
+    cycle: float,
+) -> list[float]:  # fmt: skip
+    one, other = halves
+    factors = _fitted(values[one], added[one], drag[one])
+    draws = _drawn(values[one], added[one], drag[one], max(round(0.5 * cycle), 2))
+    low, high = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+
+    def fit(where: np.ndarray) -> float:
+        return r2(values[where], factors[0] * added[where] + factors[1] * drag[where])
+
+    return [
+        float(np.sqrt((values[keep] ** 2).mean())), float(np.sqrt(((added + drag)[keep] ** 2).mean())),
+        r2(values[keep], (added + drag)[keep]), factors[0], low[0], high[0], factors[1], low[1], high[1], fit(one),
+        fit(other),
+    ]  # fmt: skip
+
+
+def _drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
+    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2)."""
+    rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)
+    out = np.empty((DRAWS, 2))
+    for k in range(DRAWS):
+        start = rng.integers(max(len(values) - block, 0) + 1, size=count)
+        index = (start[:, None] + np.arange(min(block, len(values)))).ravel()
+        out[k] = _fitted(values[index], added[index], drag[index])
+    return out

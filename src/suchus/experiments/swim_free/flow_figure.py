@@ -1,0 +1,142 @@
+"""Swims in a flow that is solved with the robot: speeds, joints, what the links feel, and the balances."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.figures.style import COLOURS, captioned, panels, styled
+
+_LINES = (COLOURS["coordinated"], COLOURS["tail_still"], COLOURS["ours"], COLOURS["neutral"], "#666666", "#AAAAAA")
+
+
+def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
+    """Draw what the swims of a record did in the flow.
+
+    Args:
+        record: of the experiment ``swim_free`` with a flow; see ``in_flow``.
+    """
+    return {
+        "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
+        "flow_balance": _balance(record),
+    }  # fmt: skip
+
+
+def _called(name: object) -> str:
+    return str(name).replace("_", " ")
+
+
+def _where(record: xr.Dataset) -> str:
+    return f"a {record.attrs['flow']} of water at f L² / ν = {float(record.reynolds):.0f}"
+
+
+def _speeds(record: xr.Dataset) -> Figure:
+    time, period = record.flow_time.values, float(record.flow_period)
+    with styled():
+        figure, axes = panels(1, 2, width=9.5, height=4.0)
+        left, right = axes[0]
+        every = max(round(period / float(time[1] - time[0])), 1)
+        for k, name in enumerate(record.flow_run.values):
+            x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values[::every]
+            cycles = np.arange(1, x.size)
+            left.plot(
+                cycles, np.diff(x) / period, "o-", color=_LINES[k % len(_LINES)], label=str(name).replace("_", " ")
+            )
+        left.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
+        left.set(xlabel="cycle", ylabel="speed of the centre of mass [m/s]", xticks=cycles)
+        left.legend()
+        cable = list(record.attrs["cable"]) or [str(name) for name in record.part.values[record.part_kind == "joint"]]
+        last = time > time[-1] - period - 1e-9
+        for k, name in enumerate(cable):
+            angle = record.flow_joint_angle.isel(flow_run=0).sel(joint=name).values[last]
+            phase, shade = (time[last] - time[last][0]) / period, str(0.75 - 0.75 * k / len(cable))
+            right.plot(phase, np.degrees(angle), color=shade, label=_called(name))
+        right.set(xlabel="phase of the last cycle", ylabel="angle of the joint [degree]")
+        right.legend(fontsize="small")
+    return captioned(
+        figure,
+        f"Left: speed of each cycle from rest in {_where(record)}, robot and flow solved together. Right: angles that "
+        + ("the joints of the cable take in the last cycle; the cable holds their sum alone."
+           if record.attrs["cable"] else "the joints take in the last cycle."),
+    )  # fmt: skip
+
+
+def _links(record: xr.Dataset) -> Figure:
+    period, time = float(record.flow_period), record.flow_time.values
+    last = time > time[-1] - period - 1e-9
+    force = record.flow_link_force.isel(flow_run=0).sel(xyz="y").values[last]
+    joints = [str(name) for name in record.part.values[record.part_kind.values == "joint"]]
+    moment = record.flow_joint_water_torque.isel(flow_run=0).sel(joint=joints).values[last]
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 2, width=10.5, height=4.4)
+        for ax, values, names, unit in (
+            (
+                axes[0, 0],
+                force,
+                [str(name).replace("link_", "") for name in record.link.values],
+                "force to the left [N]",
+            ),
+            (axes[0, 1], moment, [name.replace("_", " ") for name in joints], "moment of the water [N m]"),
+        ):
+            limit = float(np.abs(values).max()) or 1.0
+            shown = ax.imshow(values.T, aspect="auto", cmap="RdBu_r", vmin=-limit, vmax=limit,
+                              extent=(0.0, 1.0, len(names) - 0.5, -0.5), interpolation="nearest")  # fmt: skip
+            ax.set_yticks(range(len(names)), names)
+            ax.set_xlabel("phase of the last cycle")
+            figure.colorbar(shown, ax=ax, label=unit)
+        axes[0, 0].set_ylabel("link, from the head on")
+    return captioned(
+        figure,
+        f"What the water does to each link between two lateral joints, and about each of these joints, over the last "
+        f"cycle of the whole wave in {_where(record)}.",
+    )
+
+
+def _residual(record: xr.Dataset) -> Figure:
+    with styled():
+        figure, axes = panels(1, 2, width=10.5, height=4.4)
+        for ax, kind, unit in ((axes[0, 0], "link", "N"), (axes[0, 1], "joint", "N m")):
+            part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
+            names = [str(name).replace("_", " ") for name in part.part.values]
+            at = np.arange(len(names))
+            ax.bar(at - 0.2, part.residual_rms, 0.4, color=COLOURS["ours"], label="flow")
+            ax.bar(at + 0.2, part.residual_rms_sections, 0.4, color=COLOURS["neutral"], label="sections, as shipped")
+            top = np.maximum(part.residual_rms, part.residual_rms_sections)
+            for x, r2, high in zip(at, part.residual_r2.values, top, strict=True):
+                ax.annotate(f"{r2:.2f}", (x, float(high)), ha="center", va="bottom", fontsize=7)
+            ax.set_xticks(at, names, rotation=60, ha="right", fontsize=8)
+            ax.set_ylabel(f"rms over the measured cycles [{unit}]")
+            ax.margins(y=0.12)
+        axes[0, 0].legend()
+    return captioned(
+        figure,
+        f"Force across each link and moment about each joint in {_where(record)}, and what the section model says of "
+        "the same motion in the same water. Numbers are R², the share of the variance that the section model explains; "
+        "below 0 a constant would be nearer.",
+    )
+
+
+def _balance(record: xr.Dataset) -> Figure:
+    time, period = record.flow_time.values, float(record.flow_period)
+    with styled():
+        figure, axes = panels(1, 2, width=9.5, height=4.0)
+        left, right = axes[0]
+        first, after = (record[name].isel(flow_run=0).values for name in ("coupling_first", "coupling_residual"))
+        left.semilogy(time / period, np.maximum(first, 1e-7), color=COLOURS["neutral"], label="before the correction")
+        left.semilogy(time / period, np.maximum(after, 1e-7), color=COLOURS["ours"], label="after it")
+        left.set(xlabel="cycle", ylabel="force left over, over the greatest so far")
+        left.legend()
+        for name, colour, label in (
+            ("energy_error", COLOURS["ours"], "missing in the robot's balance, over its servos' work"),
+            ("power_error", COLOURS["tail_still"], "force times way against the flow's own power"),
+        ):
+            right.plot(time / period, record[name].isel(flow_run=0).values, color=colour, label=label)
+        right.set(xlabel="cycle", ylabel="error [-]", ylim=(-0.1, 0.1))
+        right.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
+        right.legend(fontsize="small")
+    return captioned(
+        figure,
+        f"How well robot and flow came to terms in {_where(record)}: the force that each step left over, and the "
+        "energy that is missing so far.",
+    )

@@ -1,0 +1,204 @@
+"""The swims of ``swim_free`` in a flow that is solved with the robot: servos, cable and passive end as they are."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.control import Swimming
+from suchus.coupling import Swim, residual_table
+from suchus.design import Robot
+from suchus.errors import Diverged
+from suchus.experiment import Measure, Progress, staged
+from suchus.land import Run
+from suchus.land.waters import Slice, Space
+from suchus.motion import Gait
+from suchus.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
+from suchus.water.samples import Samples
+
+_KEPT = (
+    "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
+    "link_force", "link_torque", "joint_water_torque",
+)  # fmt: skip
+"""What is kept of each swim as ``flow_NAME``, over a time of its own."""
+_COUPLING = ("coupling_residual", "coupling_first", "coupling_iterations", "energy_error", "power_error")
+FRAMES = 24
+"""Instants of the last cycle that are filmed [-]."""
+_GROWN = 1.0
+"""Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
+
+
+def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: Sequence[str], water: Any) -> list[Run]:
+    """Return the runs in a flow that are asked for, of those that the robot has.
+
+    Args:
+        joints: the robot by the ending of its swims' names, as it is and with stiffer joints.
+        motions: by name.
+        asked: names of swims.
+        water: a ``Slice`` or a ``Space``.
+    """
+    period = motions["whole"].period
+    return [
+        Run(robot=robot, gait=gait, water=water, control=Swimming(ramp=period), label=name + ending)
+        for ending, robot in joints.items()
+        for name, gait in motions.items()
+        if name + ending in asked
+    ]
+
+
+def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return what is kept of swims in a flow, and the record of the first.
+
+    A swim that diverges ends there, with NaN beyond.
+
+    Args:
+        runs: of ``flow_runs``.
+        cycles: that are swum [-].
+        progress: told the share that is done.
+    """
+    swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
+    records, seen = [], xr.Dataset()
+    for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
+        part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
+        film = _Film(swim, cycles) if number == 0 else None
+        with suppress(Diverged):
+            swim.go(swim.ticks * swim.stepper.period, progress=part, watch=film)
+        records.append(swim.record().isel(run=0))
+        seen = film.dataset() if film is not None else seen
+        del swim.sim
+    first = records[0]
+    units = {name: first[name].attrs for name in (*_KEPT, *_COUPLING)}
+    data = {
+        (name if name in _COUPLING else f"flow_{name}"): (
+            ("flow_run", *("flow_time" if dim == "time" else dim for dim in first[name].dims)),
+            np.stack([record[name].values for record in records]), units[name],
+        )
+        for name in (*_KEPT, *_COUPLING)
+    }  # fmt: skip
+    coords = {
+        "flow_run": [run.label for run in runs],
+        "flow_time": ("flow_time", first.time.values, {"units": "s"}),
+        "link": first.link.values, "joint": first.joint.values, "xyz": first.xyz.values, "wxyz": first.wxyz.values,
+    }  # fmt: skip
+    water = runs[0].solved
+    assert water is not None
+    period = runs[0].gait.period
+    valid = first.isel(time=np.flatnonzero(np.isfinite(first.coupling_residual.values)))
+    table = residual_table(
+        runs[0].robot, valid, period=period, first=_GROWN * period, viscosity=swims[0].viscosity
+    )  # fmt: skip
+    numbers = {
+        "flow_period": ((), period, {"units": "s"}),
+        "flow_radius": ("flow_run", [float(record.radius) for record in records], {"units": "1"}),
+        "cells": ("grid", [water.cells], {"units": "1"}),
+        "reynolds": ((), water.reynolds, {"units": "1"}),
+        "added_mass": (
+            ("coordinate", "coordinate_too"), first.added_mass.values, first.added_mass.attrs,
+        ),
+    }  # fmt: skip
+    names = {"coordinate": first.coordinate.values, "coordinate_too": first.coordinate_too.values}
+    return xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(seen), first
+
+
+class _Film:
+    """Looks at the last cycle of a swim: vortices in space, fields in the plane."""
+
+    def __init__(self, swim: Swim, cycles: int) -> None:
+        self._swim, self._samples = swim, Samples()
+        self._end, frequency = cycles * swim.run.gait.period, 1.0 / swim.run.gait.period
+        self._frequency = frequency
+        self._vortices = VortexSampler(frequency, self._end, FRAMES)
+        length = swim.run.robot.length
+        self._window = FieldWindow(swim.sim.setup.grid, length, 2.0, 0.6) if swim.sim.axes == 2 else None
+
+    def __call__(self, swim: Swim) -> None:
+        """Take a frame if one is due."""
+        if self._window is None:
+            self._vortices.sample(swim.sim, self._samples)
+            return
+        left = (self._end - swim.sim.time) * self._frequency
+        if left < 1.0 - (self._samples.count("frames") + 1) / FRAMES + 1e-6:
+            values = {**self._window.fields(swim.sim), **midline_values(midline(swim.sim))}
+            self._samples.add("frames", swim.sim.time, **values)
+
+    def dataset(self) -> xr.Dataset:
+        """Return what was seen; nothing of a swim that ended too soon."""
+        if not self._samples.count("frames"):
+            return xr.Dataset()
+        if self._window is None:
+            return wake(self._swim.sim).merge(self._vortices.record(self._samples))
+        series = self._samples.series("frames")
+        phase = (series["time"] - self._end) * self._frequency + 1.0
+        return self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
+
+
+def flow_speed(record: xr.Dataset, name: str) -> float:
+    """Return the mean speed of the centre of mass along its first heading in the last cycle of a swim [m/s]."""
+    x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x")
+    end = float(record.flow_time[-1])
+    last = x.sel(flow_time=slice(end - float(record.flow_period) - 1e-9, None))
+    return float((last[-1] - last[0]) / (last.flow_time[-1] - last.flow_time[0]))
+
+
+def flow_measures(record: xr.Dataset) -> dict[str, Measure]:
+    """Return speeds in the flow, how well robot and flow came to terms, and how far the section model is from it."""
+    if "flow_run" not in record:
+        return {}
+    rung = record.attrs["flow"]
+    period, found = float(record.flow_period), dict[str, Measure]()
+    later = record.sel(flow_time=slice(_GROWN * period, None))
+    last = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
+    for name in (str(one) for one in record.flow_run.values):
+        ending = rung if name == "whole" else f"{rung}_{name}"
+        found[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
+        found[f"servo_power_{ending}"] = Measure(float(last.flow_servo_power.sel(flow_run=name).mean()), "W")
+        if record.attrs["cable"]:
+            angles = last.flow_joint_angle.sel(flow_run=name, joint=record.attrs["cable"]).values
+            half = np.ptp(angles, axis=0) / 2
+            found[f"tail_spread_{ending}"] = Measure(float(half.max() / half.mean()), "-")
+    end = record.isel(flow_time=-1)
+    found["coupling_residual"] = Measure(float(later.coupling_residual.max()), "-")
+    found["coupling_first"] = Measure(float(later.coupling_first.max()), "-")
+    found["energy_error"] = Measure(float(abs(end.energy_error).max()), "-")
+    found["power_error"] = Measure(float(abs(end.power_error).max()), "-")
+    found["added_mass_radius"] = Measure(float(record.flow_radius.max()), "-")
+    for kind in ("link", "joint"):
+        part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
+        felt = part.isel(part=np.flatnonzero(part.residual_rms.values > 0.1 * float(part.residual_rms.max())))
+        for name, unit in (("r2", "-"), ("r2_held_out", "-"), ("added", "-"), ("drag", "-")):
+            found[f"{kind}_{name}"] = Measure(float(felt[f"residual_{name}"].median()), unit)
+    return found
+
+
+def residual_text(record: xr.Dataset) -> str:
+    """Return the table of the section model beside the flow, as Markdown."""
+    head = (
+        "| part | rms in the flow | rms by sections | R2 | added mass x | drag x | R2 fitted | R2 held out |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|\n"
+    )
+    rows = []
+    for k, name in enumerate(record.part.values):
+        one = {key: float(record[f"residual_{key}"][k]) for key in (
+            "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high",
+            "r2_fitted", "r2_held_out")}  # fmt: skip
+        unit = "N" if record.part_kind.values[k] == "link" else "N m"
+        rows.append(
+            f"| {name} | {one['rms']:.3g} {unit} | {one['rms_sections']:.3g} | {one['r2']:.2f} | {one['added']:.2f} "
+            f"({one['added_low']:.2f} to {one['added_high']:.2f}) | {one['drag']:.2f} ({one['drag_low']:.2f} to "
+            f"{one['drag_high']:.2f}) | {one['r2_fitted']:.2f} | {one['r2_held_out']:.2f} |\n"
+        )
+    return (
+        f"# The section model beside the flow\n\nAt f L2 / nu = {float(record.reynolds):.0f}, along the motion that "
+        "the robot took in the flow. Links by the force across them, joints by the moment of the water; added mass and "
+        "drag are factors on the two parts of the section model's force, fitted to the first half of the measured "
+        "cycles and held against the second.\n\n" + head + "".join(rows)
+    )
+
+
+def water_of(rung: str, cells: int, reynolds: float, tail_height: float) -> Slice | Space:
+    """Return the flow of a rung, "slice" or "space"."""
+    if rung == "slice":
+        return Slice(cells=cells, reynolds=reynolds)
+    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height)

@@ -1,0 +1,54 @@
+"""The section model beside a flow: R2, fits on blocks, and that the model is found again where it made the forces."""
+
+import numpy as np
+import pytest
+
+from suchus.coupling.residual import _row, r2
+from suchus.design import with_values
+from suchus.land import Lake
+from suchus.land.prescribed import sections_along
+from suchus.motion.axis import yaw_hinges
+from suchus.robots import ROBOTS
+
+TIME = np.arange(400) / 100.0
+ALL = np.ones(400, bool)
+HALVES = TIME < 2.0, TIME >= 2.0
+
+
+def test_the_share_that_a_model_explains():
+    values = np.sin(2 * np.pi * TIME)
+    assert r2(values, values) == 1.0
+    assert r2(values, 0 * values) == pytest.approx(0.0, abs=1e-9)
+    assert r2(values, -values) == pytest.approx(-3.0)
+    assert np.isnan(r2(0 * values, values))
+
+
+def test_factors_are_found_with_intervals_that_hold_them():
+    rng = np.random.default_rng(0)
+    added, drag = np.sin(2 * np.pi * TIME), np.cos(2 * np.pi * TIME) * np.abs(np.cos(2 * np.pi * TIME))
+    values = 2.0 * added + 4.0 * drag + 0.05 * rng.normal(size=400)
+    rms, _, as_shipped, a, a_low, a_high, d, d_low, d_high, fitted, held = _row(values, added, drag, ALL, HALVES, 100.0)
+    assert rms == pytest.approx(np.sqrt((values**2).mean()))
+    assert a_low < a < a_high
+    assert d_low < d < d_high
+    assert (a, d) == pytest.approx((2.0, 4.0), abs=0.05)
+    assert as_shipped < 0.8 < 0.99 < min(fitted, held)
+    *_, held = _row(np.where(HALVES[0], values, -values), added, drag, ALL, HALVES, 100.0)
+    assert held < 0.0  # what does not hold in other cycles is seen
+
+
+def test_links_and_joints_of_the_sections_add_up():
+    """A body that is pushed aside feels in sum what its links feel, and more where more of it bends."""
+    robot = with_values(ROBOTS["floating_caiman"], {"hull": None})
+    joints = tuple(yaw_hinges(robot).names)
+    place = np.zeros((2, 3 + len(joints)))
+    rate, push = place.copy(), place.copy()
+    push[0, 1], rate[1, 1] = 1.0, 0.5
+    found = sections_along(robot, joints, place, rate, push, Lake(level=0.0))
+    total = found.links[:, :, 1].sum(axis=1)
+    assert (total < 0).all()
+    assert -total[0] == pytest.approx(1.9, rel=0.05)  # kg, aside: shared/design/coupling.md
+    assert np.abs(found.links[:, :, 0].sum(axis=1)).max() < 0.02 * np.abs(total).max()
+    still = sections_along(robot, joints, place, rate, push, Lake(level=0.0, added_mass=0.0))
+    assert np.abs(still.links[0]).max() < 1e-9
+    assert still.links[1, :, 1].sum() == pytest.approx(total[1], rel=0.2)
