@@ -52,3 +52,26 @@ def test_links_and_joints_of_the_sections_add_up():
     still = sections_along(robot, joints, place, rate, push, Lake(level=0.0, added_mass=0.0))
     assert np.abs(still.links[0]).max() < 1e-9
     assert still.links[1, :, 1].sum() == pytest.approx(total[1], rel=0.2)
+
+
+def test_a_joint_that_nothing_drives_feels_the_water_too():
+    robot = with_values(ROBOTS["floating_caiman"], {"hull": None})
+    joints = tuple(hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw")
+    assert joints[-1] not in yaw_hinges(robot).names
+    place = np.zeros((1, 3 + len(joints)))
+    push = place.copy()
+    push[0, -1] = 10.0
+    found = sections_along(robot, joints, place, place, push, Lake(level=0.0))
+    assert np.abs(found.links[0, :-1]).max() < 1e-9  # the links ahead of it rest
+    assert abs(found.links[0, -1, 1]) > 1e-4
+    assert found.joints[0, -1] < -1e-6
+
+
+def test_a_record_that_is_too_short_has_no_interval():
+    wave = np.sin(2 * np.pi * TIME), np.cos(2 * np.pi * TIME)
+    *_, a, low, high, _, _, _, _, _ = _row(wave[0] + wave[1], *wave, ALL, (TIME < 1.4, TIME >= 1.4), 100.0)
+    assert a == pytest.approx(1.0)
+    assert np.isnan([low, high]).all()
+    *_, low, high, _, _, _, _, _ = _row(wave[0] + wave[1], *wave, ALL, (TIME < 1.6, TIME >= 1.6), 100.0)
+    assert low <= 1.0 + 1e-9
+    assert high >= 1.0 - 1e-9

@@ -22,6 +22,8 @@ from suchus.land.prescribed import SectionLoads, sections_along
 
 DRAWS = 400
 """Draws of the bootstrap, blocks of half a cycle [-]."""
+BLOCKS = 3
+"""Blocks without which no interval is given [-]: the draws of fewer say nothing of how cycles differ."""
 COVERED = 0.95
 """Share of the draws that lies in an interval [-]."""
 _SMOOTHED, _ORDER = 9, 4
@@ -139,7 +141,9 @@ def _row(
 
 
 def _drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
-    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2)."""
+    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2); NaN of too few blocks."""
+    if len(values) < BLOCKS * block:
+        return np.full((DRAWS, 2), np.nan)
     rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)
     out = np.empty((DRAWS, 2))
     for k in range(DRAWS):

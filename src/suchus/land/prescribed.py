@@ -151,20 +151,19 @@ def sections_along(
         push: their accelerations.
         lake: the water; its level does not matter.
     """
-    body = _Submerged(robot, lake)
-    order = [joints.index(name) for name in body.names]
+    body = _Submerged(robot, lake, joints)
     count = len(place)
     links, moments = np.zeros((count, len(joints) + 1, 3)), np.zeros((count, len(joints)))
     for i in range(count):
-        where = body.qpos(place[i, :3], place[i, 3:][order])
-        moving, gaining = (body.rates(one[i, :3], one[i, 3:][order]) for one in (rate, push))
+        where = body.qpos(place[i, :3], place[i, 3:])
+        moving, gaining = (body.rates(one[i, :3], one[i, 3:]) for one in (rate, push))
         forces = body.joint_forces(where, moving, gaining)
-        moments[i, order] = forces[3:]
+        moments[i] = forces[3:]
     for link, members in enumerate(body.links(joints)):
         one = body.only(members)
         for i in range(count):
-            where = one.qpos(place[i, :3], place[i, 3:][order])
-            moving, gaining = (one.rates(part[i, :3], part[i, 3:][order]) for part in (rate, push))
+            where = one.qpos(place[i, :3], place[i, 3:])
+            moving, gaining = (one.rates(part[i, :3], part[i, 3:]) for part in (rate, push))
             links[i, link] = one.joint_forces(where, moving, gaining)[:3]
     return SectionLoads(links, moments)
 
@@ -172,7 +171,8 @@ def sections_along(
 class _Submerged:
     """The model of a robot without limbs, wholly under water and without weight."""
 
-    def __init__(self, robot: Robot, lake: Lake) -> None:
+    def __init__(self, robot: Robot, lake: Lake, joints: Sequence[str] | None = None) -> None:
+        """Build it; ``joints`` are the lateral joints that move, from the head on, all driven ones if None."""
         self._robot, bare = robot, replace(robot, girdles=(), hull=None)
         wetting.install()
         self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))
@@ -180,10 +180,10 @@ class _Submerged:
         self._data = mujoco.MjData(self._model)
         self._lake = replace(lake, level=DEEPEST)
         self._hinges = yaw_hinges(robot)
-        self._places = [int(self._model.joint(name).qposadr[0]) for name in self._hinges.names]
-        self._dofs = [int(self._model.joint(name).dofadr[0]) for name in self._hinges.names]
-        self.names = tuple(self._hinges.names)
-        self.joints = len(self.names)
+        names = self._hinges.names if joints is None else joints
+        self._places = [int(self._model.joint(name).qposadr[0]) for name in names]
+        self._dofs = [int(self._model.joint(name).dofadr[0]) for name in names]
+        self.joints = len(names)
         self.still = np.zeros(self._model.nv)
 
     def amplitudes(self, gait: Gait) -> np.ndarray:

@@ -17,7 +17,7 @@ from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Si
 from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
-from suchus.experiments.swim_free.flow_figure import draw_in_flow
+from suchus.experiments.swim_free.flow_figure import draw_in_flow, film_slice
 from suchus.experiments.swim_free.in_flow import flow_measures, flow_runs, residual_text, swum, water_of
 from suchus.figures.vortices import film_vortices
 from suchus.land import Lake, Run, simulate
@@ -182,9 +182,9 @@ class SwimFree(Experiment):
         found, first = swum(flow, self.flow_cycles, progress)
         record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs["flow"] = self.water
-        films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else {}
+        films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
         return Simulated(
-            record=record, replays=self._replays(record) | self._flow_replay(first), films=films,
+            record=record, replays={**self._replays(record), **self._flow_replay(first)}, films=films,
             tables={"residual.md": residual_text(record)},
         )  # fmt: skip
 
@@ -328,7 +328,7 @@ class SwimFree(Experiment):
         found = {"swim_speeds": draw_speeds(speeds, motions, _MODELS), "tail_shares": draw_tail(outcome.record)}
         if "dive" in outcome.record:
             found["below"] = draw_below(outcome.record, submerged.DEEP)
-        return found | (draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})
+        return {**found, **(draw_in_flow(outcome.record) if "flow_run" in outcome.record else {})}
 
 
 def _motions(motion: Gait) -> dict[str, Gait]:

@@ -6,6 +6,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.figures.fields import VORTICITY, draw_body, draw_field, move_body, smooth, span
+from suchus.figures.film import film
 from suchus.figures.style import COLOURS, captioned, panels, styled
 
 _LINES = (COLOURS["coordinated"], COLOURS["tail_still"], COLOURS["ours"], COLOURS["neutral"], "#666666", "#AAAAAA")
@@ -21,6 +23,31 @@ def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
         "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
         "flow_balance": _balance(record),
     }  # fmt: skip
+
+
+def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
+    """Return the last cycle of the first swim in a slice as a film of its vorticity; nothing if it was not seen."""
+    if "field_vorticity" not in record:
+        return {}
+    values, phase = record.field_vorticity.values, record.field_frame.values
+    with styled(axes__grid=False, figure__dpi=68):
+        figure, axes = panels(1, 1, width=9.6, height=4.3)
+        ax = axes[0, 0]
+        image = draw_field(ax, record, "field", "vorticity", 0, span(values, 0.97), VORTICITY)
+        body = draw_body(ax, record, "field", 0)
+        ax.set(xlabel="x [m]; it swims to the left", ylabel="y [m]")
+        figure.colorbar(image, ax=ax, label="vorticity [1/s]", shrink=0.85, extend="both")
+
+        def show(i: int) -> None:
+            image.set_data(smooth(values[i]))
+            move_body(body, record, "field", i)
+            ax.set_title(f"t = {phase[i]:.2f} T", fontsize=12)
+
+        caption = (
+            f"Vorticity over the last cycle of the whole wave in {_where(record)}, red counter-clockwise; the picture "
+            "travels with the body."
+        )
+        return {"swim_in_flow.gif": film(figure, show, len(values), seconds=2.4, caption=caption)}
 
 
 def _called(name: object) -> str:
@@ -44,7 +71,7 @@ def _speeds(record: xr.Dataset) -> Figure:
                 cycles, np.diff(x) / period, "o-", color=_LINES[k % len(_LINES)], label=str(name).replace("_", " ")
             )
         left.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
-        left.set(xlabel="cycle", ylabel="speed of the centre of mass [m/s]", xticks=cycles)
+        left.set(xlabel="cycle", ylabel="speed [m/s]", xticks=cycles)
         left.legend()
         cable = list(record.attrs["cable"]) or [str(name) for name in record.part.values[record.part_kind == "joint"]]
         last = time > time[-1] - period - 1e-9
@@ -52,11 +79,12 @@ def _speeds(record: xr.Dataset) -> Figure:
             angle = record.flow_joint_angle.isel(flow_run=0).sel(joint=name).values[last]
             phase, shade = (time[last] - time[last][0]) / period, str(0.75 - 0.75 * k / len(cable))
             right.plot(phase, np.degrees(angle), color=shade, label=_called(name))
-        right.set(xlabel="phase of the last cycle", ylabel="angle of the joint [degree]")
-        right.legend(fontsize="small")
+        right.set(xlabel="phase of the last cycle", ylabel="joint angle [degree]")
+        right.legend(fontsize="small", ncols=3)
     return captioned(
         figure,
-        f"Left: speed of each cycle from rest in {_where(record)}, robot and flow solved together. Right: angles that "
+        f"Left: mean speed of each cycle from rest in {_where(record)}, robot and flow solved together. "
+        "Right: angles that "
         + ("the joints of the cable take in the last cycle; the cable holds their sum alone."
            if record.attrs["cable"] else "the joints take in the last cycle."),
     )  # fmt: skip
@@ -83,6 +111,7 @@ def _links(record: xr.Dataset) -> Figure:
             shown = ax.imshow(values.T, aspect="auto", cmap="RdBu_r", vmin=-limit, vmax=limit,
                               extent=(0.0, 1.0, len(names) - 0.5, -0.5), interpolation="nearest")  # fmt: skip
             ax.set_yticks(range(len(names)), names)
+            ax.grid(visible=False)
             ax.set_xlabel("phase of the last cycle")
             figure.colorbar(shown, ax=ax, label=unit)
         axes[0, 0].set_ylabel("link, from the head on")
@@ -106,12 +135,13 @@ def _residual(record: xr.Dataset) -> Figure:
             for x, r2, high in zip(at, part.residual_r2.values, top, strict=True):
                 ax.annotate(f"{r2:.2f}", (x, float(high)), ha="center", va="bottom", fontsize=7)
             ax.set_xticks(at, names, rotation=60, ha="right", fontsize=8)
-            ax.set_ylabel(f"rms over the measured cycles [{unit}]")
+            ax.set_ylabel(f"rms [{unit}]")
             ax.margins(y=0.12)
         axes[0, 0].legend()
     return captioned(
         figure,
-        f"Force across each link and moment about each joint in {_where(record)}, and what the section model says of "
+        "Root mean square, over the measured cycles, of the force across each link and of the moment about each joint "
+        f"in {_where(record)}, and what the section model says of "
         "the same motion in the same water. Numbers are R², the share of the variance that the section model explains; "
         "below 0 a constant would be nearer.",
     )
@@ -125,11 +155,11 @@ def _balance(record: xr.Dataset) -> Figure:
         first, after = (record[name].isel(flow_run=0).values for name in ("coupling_first", "coupling_residual"))
         left.semilogy(time / period, np.maximum(first, 1e-7), color=COLOURS["neutral"], label="before the correction")
         left.semilogy(time / period, np.maximum(after, 1e-7), color=COLOURS["ours"], label="after it")
-        left.set(xlabel="cycle", ylabel="force left over, over the greatest so far")
+        left.set(xlabel="cycle", ylabel="force left over [-]")
         left.legend()
         for name, colour, label in (
             ("energy_error", COLOURS["ours"], "missing in the robot's balance, over its servos' work"),
-            ("power_error", COLOURS["tail_still"], "force times way against the flow's own power"),
+            ("power_error", COLOURS["tail_still"], "force times velocity against the flow's own power"),
         ):
             right.plot(time / period, record[name].isel(flow_run=0).values, color=colour, label=label)
         right.set(xlabel="cycle", ylabel="error [-]", ylim=(-0.1, 0.1))
@@ -137,6 +167,6 @@ def _balance(record: xr.Dataset) -> Figure:
         right.legend(fontsize="small")
     return captioned(
         figure,
-        f"How well robot and flow came to terms in {_where(record)}: the force that each step left over, and the "
-        "energy that is missing so far.",
+        f"How well robot and flow came to terms in {_where(record)}: the force that each step left over, as a "
+        "share of the greatest so far, and the energy that is missing so far.",
     )

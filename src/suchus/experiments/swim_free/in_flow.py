@@ -51,19 +51,22 @@ def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: S
 def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
     """Return what is kept of swims in a flow, and the record of the first.
 
-    A swim that diverges ends there, with NaN beyond.
+    A later swim that diverges ends there, with NaN beyond.
 
     Args:
         runs: of ``flow_runs``.
         cycles: that are swum [-].
         progress: told the share that is done.
+
+    Raises:
+        Diverged: the first swim did.
     """
     swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
     records, seen = [], xr.Dataset()
     for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
         part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
         film = _Film(swim, cycles) if number == 0 else None
-        with suppress(Diverged):
+        with suppress(*([Diverged] if number else [])):
             swim.go(swim.ticks * swim.stepper.period, progress=part, watch=film)
         records.append(swim.record().isel(run=0))
         seen = film.dataset() if film is not None else seen
@@ -103,7 +106,7 @@ def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Datas
 
 
 class _Film:
-    """Looks at the last cycle of a swim: vortices in space, fields in the plane."""
+    """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
 
     def __init__(self, swim: Swim, cycles: int) -> None:
         self._swim, self._samples = swim, Samples()
@@ -120,7 +123,8 @@ class _Film:
             return
         left = (self._end - swim.sim.time) * self._frequency
         if left < 1.0 - (self._samples.count("frames") + 1) / FRAMES + 1e-6:
-            values = {**self._window.fields(swim.sim), **midline_values(midline(swim.sim))}
+            seen = {"vorticity": self._window.fields(swim.sim)["vorticity"]}
+            values = {**seen, **midline_values(midline(swim.sim))}
             self._samples.add("frames", swim.sim.time, **values)
 
     def dataset(self) -> xr.Dataset:
@@ -131,7 +135,8 @@ class _Film:
             return wake(self._swim.sim).merge(self._vortices.record(self._samples))
         series = self._samples.series("frames")
         phase = (series["time"] - self._end) * self._frequency + 1.0
-        return self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
+        found = self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
+        return found.rename({str(name): f"field_{name}" for name in found.variables})
 
 
 def flow_speed(record: xr.Dataset, name: str) -> float:
@@ -159,10 +164,13 @@ def flow_measures(record: xr.Dataset) -> dict[str, Measure]:
             half = np.ptp(angles, axis=0) / 2
             found[f"tail_spread_{ending}"] = Measure(float(half.max() / half.mean()), "-")
     end = record.isel(flow_time=-1)
-    found["coupling_residual"] = Measure(float(later.coupling_residual.max()), "-")
-    found["coupling_first"] = Measure(float(later.coupling_first.max()), "-")
-    found["energy_error"] = Measure(float(abs(end.energy_error).max()), "-")
-    found["power_error"] = Measure(float(abs(end.power_error).max()), "-")
+    for name, part in {
+        "coupling_residual": later,
+        "coupling_first": later,
+        "energy_error": end,
+        "power_error": end,
+    }.items():
+        found[name] = Measure(float(abs(part[name]).max(skipna=False)), "-")  # NaN says that a swim broke off
     found["added_mass_radius"] = Measure(float(record.flow_radius.max()), "-")
     for kind in ("link", "joint"):
         part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
@@ -185,16 +193,23 @@ def residual_text(record: xr.Dataset) -> str:
             "r2_fitted", "r2_held_out")}  # fmt: skip
         unit = "N" if record.part_kind.values[k] == "link" else "N m"
         rows.append(
-            f"| {name} | {one['rms']:.3g} {unit} | {one['rms_sections']:.3g} | {one['r2']:.2f} | {one['added']:.2f} "
-            f"({one['added_low']:.2f} to {one['added_high']:.2f}) | {one['drag']:.2f} ({one['drag_low']:.2f} to "
-            f"{one['drag_high']:.2f}) | {one['r2_fitted']:.2f} | {one['r2_held_out']:.2f} |\n"
+            f"| {name} | {one['rms']:.3g} {unit} | {one['rms_sections']:.3g} | {one['r2']:.2f} | "
+            f"{_factor(one, 'added')} | {_factor(one, 'drag')} | {one['r2_fitted']:.2f} | {one['r2_held_out']:.2f} |\n"
         )
     return (
         f"# The section model beside the flow\n\nAt f L2 / nu = {float(record.reynolds):.0f}, along the motion that "
         "the robot took in the flow. Links by the force across them, joints by the moment of the water; added mass and "
         "drag are factors on the two parts of the section model's force, fitted to the first half of the measured "
-        "cycles and held against the second.\n\n" + head + "".join(rows)
+        "cycles and held against the second; intervals need a half of one and a half cycles or more.\n\n"
+        + head
+        + "".join(rows)
     )
+
+
+def _factor(row: Mapping[str, float], name: str) -> str:
+    """Return a factor, with its interval if it has one."""
+    low, high = row[f"{name}_low"], row[f"{name}_high"]
+    return f"{row[name]:.2f}" + (f" ({low:.2f} to {high:.2f})" if low <= high else "")
 
 
 def water_of(rung: str, cells: int, reynolds: float, tail_height: float) -> Slice | Space:
