@@ -163,6 +163,8 @@ class Experiment(ABC):
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     reproduces: ClassVar[bool] = True
     """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
+    follows_gait: ClassVar[bool] = True
+    """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
     judged_with: ClassVar[tuple[str, ...]] = ("robot",)
     """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
     judged_from: ClassVar[Mapping[str, float]] = {}
@@ -187,7 +189,8 @@ class Experiment(ABC):
         """
         if hasattr(self, "robot"):
             check_needs(self.robot, self.needs, self.name())
-            for gait in (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None))):
+            gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
+            for gait in gaits if self.follows_gait else ():
                 check_limits(self.robot, gait)  # by the name that the user knows, before what is derived from it
         with stopwatch() as seconds:
             simulated = self.simulate(progress)

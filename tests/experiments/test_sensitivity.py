@@ -48,8 +48,12 @@ def test_shares_in_the_table_are_those_of_the_measures(outcome):
     rows = {row["claim"]: row for row in csv.DictReader(io.StringIO(outcome.tables["sensitivity.csv"]))}
     assert list(rows) == list(outcome.record.claim.values)
     for key, row in rows.items():
-        assert float(row["true"]) == pytest.approx(outcome.measures[f"share_{key}"].value, abs=6e-4)
-        assert float(row["true_low"]) == pytest.approx(outcome.measures[f"share_{key}_low"].value, abs=6e-4)
+        judged = outcome.measures[f"judged_{key}"].value > 0
+        assert np.isfinite(outcome.measures[f"share_{key}"].value) == judged
+        assert float(row["true"]) == pytest.approx(outcome.measures[f"share_{key}"].value, abs=6e-4, nan_ok=True)
+        assert float(row["true_low"]) == pytest.approx(
+            outcome.measures[f"share_{key}_low"].value, abs=6e-4, nan_ok=True
+        )
         assert int(row["samples"]) == outcome.measures[f"judged_{key}"].value
 
 

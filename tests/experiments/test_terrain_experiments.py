@@ -42,10 +42,12 @@ def test_froude_number_and_duty_factor_fit_the_gaits(speeds):
         assert one.duty.values == pytest.approx(GAITS[name].duty_factor, abs=0.06)
 
 
-def test_a_speed_line_costs_work_and_no_speed(speeds):
+def test_a_speed_line_costs_no_speed_and_does_not_change_the_work_out_of_reason(speeds):
+    """A DC motor's torque falls with its speed; the robot walks as fast, and its shafts do work of the same size."""
     slew, line = (speeds.record.sel(servo_model=model) for model in ("slew", "line"))
     assert line.speed.values == pytest.approx(slew.speed.values, rel=0.08)
-    assert (line.cost > 1.5 * slew.cost).all()
+    assert (line.cost != slew.cost).all()
+    assert ((line.cost > 0.5 * slew.cost) & (line.cost < 2.0 * slew.cost)).all()
 
 
 def test_animals_are_named_beside_their_speed_and_a_short_run_is_not_judged(speeds):

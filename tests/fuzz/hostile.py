@@ -413,6 +413,12 @@ def commands(self: Range, dice: Random) -> None:
         "lessons",
         "doctor",
         "flow-atlas",
+        "league",
+        "emulate",
+        "drive",
+        "calibrate",
+        "size",
+        "parts",
     ):
         words += ["--no-such-option"]
     told(main, [command.name if dice.random() < 0.95 else dice.choice(WORDS), *words])

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from suchus import machine
 from suchus.control import Coordinated
 from suchus.gaits import GAITS
 from suchus.land import crawl
@@ -16,7 +17,8 @@ from suchus.model.export.mjcf import mjcf
 from suchus.robots import ROBOTS
 
 BEFORE = json.loads((Path(__file__).parent.parent / "golden" / "caiman_bytes.json").read_text())
-"""Hashes made on Linux on x86-64 with MuJoCo 4.0 by the code as it was when it knew one skeleton only."""
+"""Hashes made on Linux on x86-64 with MuJoCo 4.0 by the code as it was when it knew one skeleton only. Those of records
+are of its bytes with the arithmetic that is named."""
 
 
 PINS = (Path(__file__).parents[2] / "constraints.txt").read_text().splitlines()
@@ -51,6 +53,9 @@ def test_the_mjcf_is_the_same_text(name):
 
 
 @pinned
+@pytest.mark.skipif(
+    machine.arithmetic() != BEFORE["arithmetic"], reason="another machine's arithmetic gives other last bits"
+)
 @pytest.mark.parametrize(
     ("key", "robot", "gait", "duration", "control"),
     [

@@ -45,6 +45,7 @@ class LegKinematics(Experiment):
         "reach_far",
     )
     needs = ("legs",)
+    follows_gait = False
     judged_with = ("robot", "gait", "other_gait")
     judged_from: ClassVar[Mapping[str, float]] = {"points": 10_000, "phases": 100}
 

@@ -45,6 +45,7 @@ class TailBending(Experiment):
         "bend_limit_of_gaps",
     )
     needs = ("cable_tail",)
+    follows_gait = False
     judged_with = ("robot", "furthest", "gait", "cycles")
     judged_from: ClassVar[Mapping[str, float]] = {"steps": 91}
 
