@@ -21,12 +21,12 @@ def noisy():
     return Camera(rate=50.0, noise=0.002, lost=0.05, heading=2.1, scale=731.0, heights=False, seed=0)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def clean():
     return Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=True, seed=0)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def lizard():
     return SyntheticAnimal(
         trunk=0.12,

@@ -10,9 +10,14 @@ from suchus.capture.tracks import renamed
 from suchus.gaits import GAITS
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def tracks(lizard, clean):
     return film_animal(lizard, replace(clean, heights=False), cycles=4)
+
+
+@pytest.fixture(scope="module")
+def whole(tracks):
+    return observe(tracks).numbers
 
 
 def without(tracks, *names):
@@ -48,8 +53,7 @@ def test_missing_keypoints_are_named(caiman, tracks):
     refused(without(tracks, "neck", "shoulder", "hip", "tail_base", "spine_1", "spine_2"), "fewer than two keypoints")
 
 
-def test_a_part_of_the_keypoints_measures_what_it_shows(tracks):
-    whole = observe(tracks).numbers
+def test_a_part_of_the_keypoints_measures_what_it_shows(tracks, whole):
     for gone, unknown in (
         ("LH", "duty_LH"),
         ("neck", "spine_lateral"),
@@ -63,12 +67,10 @@ def test_a_part_of_the_keypoints_measures_what_it_shows(tracks):
         assert part["phase_RF"].value == pytest.approx(whole["phase_RF"].value, abs=0.005)
 
 
-def test_a_snout_does_where_there_is_no_neck(tracks):
+def test_a_snout_does_where_there_is_no_neck(tracks, whole):
     points = tuple("snout" if name == "neck" else name for name in tracks.points)
     seen = observe(replace(tracks, points=points)).numbers
-    assert {name: one.value for name, one in seen.items()} == {
-        name: one.value for name, one in observe(tracks).numbers.items()
-    }
+    assert {name: one.value for name, one in seen.items()} == {name: one.value for name, one in whole.items()}
 
 
 def test_a_point_that_is_mostly_lost_is_named_and_left_out(tracks):

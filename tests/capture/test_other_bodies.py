@@ -17,7 +17,7 @@ from suchus.robots import ROBOTS
 CLOCK = np.arange(256) / 256
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def walk(lizard, clean):
     return observe(film_animal(lizard, clean, cycles=4), tail_share=1.0)
 
