@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.coupling.chain import Chain, Path, Posture
+from suchus.coupling.chain import ChainState, MidlineChain, Path
 from suchus.flow.momentum import Reaction
 from suchus.model import compile_model, joint_addresses
 from suchus.robots import ROBOTS
@@ -15,7 +15,7 @@ NAMES = ("floating_caiman", "swimmer", "salamander")
 
 
 def chain(name, cells=80):
-    return Chain(Outline(ROBOTS[name], cells + 1), 45)
+    return MidlineChain(Outline(ROBOTS[name], cells + 1), 45)
 
 
 def bent(one, size=0.15):
@@ -60,7 +60,7 @@ def test_the_work_of_a_force_is_that_of_its_parts():
     off = points.place.T - origin - about
     moments = own + off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0]
     parts = tuple(Reaction(force=(*f,), moment=(m,), power=0.0) for f, m in zip(pull.tolist(), moments, strict=True))
-    loads = flow.Loads(about=about, whole=parts[0], parts=parts)
+    loads = flow.FlowLoads(about=about, whole=parts[0], parts=parts)
     moved = one.twists(place, rate, origin, 2)
     work = (pull * moved.linear).sum() + (own * moved.angular[:, 0]).sum()
     assert one.force(place, loads, origin) @ rate == pytest.approx(work, rel=1e-12)
@@ -68,8 +68,8 @@ def test_the_work_of_a_force_is_that_of_its_parts():
 
 def test_a_path_has_the_places_and_rates_of_both_ends():
     start, end = (
-        Posture(np.array([0.0, 1.0]), np.array([2.0, -1.0])),
-        Posture(np.array([0.3, 0.7]), np.array([1.0, 0.5])),
+        ChainState(np.array([0.0, 1.0]), np.array([2.0, -1.0])),
+        ChainState(np.array([0.3, 0.7]), np.array([1.0, 0.5])),
     )
     path = Path(0.0, start)
     path.go(1.0, start, 1.2, end)

@@ -9,7 +9,7 @@ from suchus.design import Robot, Servo, with_named_servos
 from suchus.errors import OutsideLimits
 from suchus.gaits import GAITS, suits
 from suchus.hardware import ServoLoad, cases, check_loads, loads_of_each, overloaded, with_better
-from suchus.hardware.loads import AT_LIMIT, Case, borne, cold, records_of_each
+from suchus.hardware.loads import AT_LIMIT, LoadCase, borne, cold, records_of_each
 from suchus.motion import Gait
 
 
@@ -41,7 +41,7 @@ def _servo(load: ServoLoad, then: float) -> dict[str, Any]:
     return {"at_limit": load.at_limit, "off": load.off, "would_do": would_do, "then": then}
 
 
-def _then(robot: Robot, case: Case, weak: Mapping[str, ServoLoad]) -> dict[str, float]:
+def _then(robot: Robot, case: LoadCase, weak: Mapping[str, ServoLoad]) -> dict[str, float]:
     """Return the share at their limits of the servos that are named, all in their places."""
     named = {name: motor(load.other) for name, load in weak.items() if load.other}
     if not named:

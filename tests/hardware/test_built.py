@@ -14,7 +14,7 @@ from suchus.blueprint import motor
 from suchus.design import Robot, Servo
 from suchus.design.body import servos_of
 from suchus.gaits import GAITS
-from suchus.hardware.loads import AT_LIMIT, Case, borne, cold, records_of_each
+from suchus.hardware.loads import AT_LIMIT, LoadCase, borne, cold, records_of_each
 from suchus.metrics import displacement
 from suchus.robots import ROBOTS
 
@@ -47,7 +47,7 @@ def measured():
     cases = []
     for name, period in WALKS:
         gait = GAITS[name]
-        cases.append(Case(name=name, gait=replace(gait, period=period or gait.period)))
+        cases.append(LoadCase(name=name, gait=replace(gait, period=period or gait.period)))
     rows = []
     for robot in (ROBOTS["caiman"], built()):
         records = records_of_each([(cold(robot), case) for case in cases])

@@ -3,7 +3,7 @@ import pytest
 from toys import fell, stone
 
 from suchus.errors import InvalidDesign, NotConverged, UnknownName
-from suchus.league import Family, Interval, Rung, Single, every, find, known
+from suchus.league import ContestantFamily, Interval, Predictor, SingleContestant, every, find, known
 from suchus.league.judging import WIDEST, judged
 from suchus.league.sealing import Measured
 from suchus.league.spread import drawn, of_answers, of_draws
@@ -49,13 +49,13 @@ def test_a_costly_rung_takes_the_interval_of_another_around_all_of_its_answers()
 
 def test_a_rung_without_an_interval_and_a_number_without_a_source_are_refused():
     with pytest.raises(InvalidDesign, match="name in like"):
-        Rung(words="", work=fell, draws=0)
+        Predictor(words="", work=fell, draws=0)
     with pytest.raises(InvalidDesign, match="without a source"):
         stone(source=" ")
     with pytest.raises(InvalidDesign, match="must lie in the range"):
         stone(height=(2.0, 0.5, 1.5))
     with pytest.raises(InvalidDesign, match="draws none"):
-        stone(rungs={"film": Rung(words="", work=fell, draws=0, like="film")})
+        stone(rungs={"film": Predictor(words="", work=fell, draws=0, like="film")})
 
 
 def _measured(value, low, high):
@@ -88,10 +88,10 @@ def test_of_several_numbers_the_worst_decides():
 
 
 def test_contestants_are_found_by_their_names():
-    family = Family(
+    family = ContestantFamily(
         name="stone", asked=(1.0, 2.5), low=0.5, high=6.0, what="metres", made=lambda h: stone(f"stone_{h:g}")
     )
-    shelf = {"stone": family, "stone_old": Single(stone("stone_old"))}
+    shelf = {"stone": family, "stone_old": SingleContestant(stone("stone_old"))}
     assert every(shelf) == ("stone_1", "stone_2.5", "stone_old")
     assert find(shelf, "stone_old").name == "stone_old"
     assert find(shelf, "stone_3").name == "stone_3"

@@ -10,7 +10,7 @@ from toys import failing, silent, stone
 from suchus.cli import main
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.errors import InvalidDesign, NotConverged, UnreadableFile
-from suchus.league import Rung, Single, every, find, sealing
+from suchus.league import Predictor, SingleContestant, every, find, sealing
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
 from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
 
@@ -111,7 +111,7 @@ def test_a_rung_that_cannot_answer_says_why_and_the_others_speak(tmp_path):
 
 
 def test_a_rung_without_an_answer_to_the_most_likely_numbers_says_so(tmp_path):
-    seal = sealed_prediction(stone(rungs={"none": Rung(words="says nothing", work=silent, draws=3)}), tmp_path)
+    seal = sealed_prediction(stone(rungs={"none": Predictor(words="says nothing", work=silent, draws=3)}), tmp_path)
     assert seal.refused == {"none": "it gave no answer with the most likely numbers."}
 
 
@@ -135,7 +135,7 @@ def test_the_page_says_misses_first_and_keeps_what_it_is_made_of(tmp_path):
 
 
 def test_the_command_predicts_seals_and_judges(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("suchus.cli.league.CONTESTANTS", {"stone": Single(stone())})
+    monkeypatch.setattr("suchus.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
     measured = _truth(tmp_path)
     assert main(["league", "stone", "--out", str(tmp_path / "l"), "--jobs", "1", "--measured", str(measured)]) == 0
     said = capsys.readouterr().out

@@ -13,7 +13,7 @@ from suchus.design.water import Water
 from suchus.errors import InvalidDesign
 from suchus.land import Run, simulate
 from suchus.league import find
-from suchus.league.swims import Swimmer, _coasting, _from_rest, _held, _lake, theory
+from suchus.league.swims import ModelSwimmer, _coasting, _from_rest, _held, _lake, theory
 from suchus.motion.swim import still, swimming_gait
 from suchus.water import Outline, reactive, resistive, undulation
 from suchus.water.slender import Effort
@@ -53,7 +53,7 @@ def test_a_drawing_that_cannot_be_is_refused(change):
 def test_from_rest_follows_the_exact_solution_of_square_drag():
     """Constant thrust T and drag c U^2: U = sqrt(T / c) tanh(t sqrt(T c) / m), its mean over time a logarithm."""
     robot = ROW.robot()
-    swimmer = Swimmer(robot=robot, gait=still(robot, frequency=1.0))
+    swimmer = ModelSwimmer(robot=robot, gait=still(robot, frequency=1.0))
     push, rub = 0.5, 2.0
     last, rate = (push / rub) ** 0.5, (push * rub) ** 0.5 / robot.mass
 
@@ -69,7 +69,7 @@ def test_from_rest_follows_the_exact_solution_of_square_drag():
 
 def test_a_straight_body_coasts_as_its_friction_says_and_a_bent_one_stops_sooner():
     robot, speed = ROW.robot(), 0.5
-    straight = Swimmer(robot=robot, gait=still(robot, frequency=2.0), water=Water(), ramp=0.0)
+    straight = ModelSwimmer(robot=robot, gait=still(robot, frequency=2.0), water=Water(), ramp=0.0)
     (found,) = _coasting([straight], [speed], lambda *_: None)
     outline = Outline(robot, 257)
     wide, high = outline.silhouette

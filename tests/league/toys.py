@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from suchus.league import Contestant, Given, Quantity, Rung
+from suchus.league import Contestant, Given, Predictor, Quantity
 
 GRAVITY = 9.81
 
@@ -39,8 +39,8 @@ def stone(name="stone", height=(1.0, 0.5, 1.5), source="a ruler", rungs=None) ->
         },
         rungs=rungs
         or {
-            "formula": Rung(words="a formula", work=fell, draws=200),
-            "film": Rung(words="a film", work=slow, draws=0, like="formula"),
+            "formula": Predictor(words="a formula", work=fell, draws=200),
+            "film": Predictor(words="a film", work=slow, draws=0, like="formula"),
         },
     )
 
@@ -48,7 +48,7 @@ def stone(name="stone", height=(1.0, 0.5, 1.5), source="a ruler", rungs=None) ->
 def failing(error) -> Contestant:
     return stone(
         rungs={
-            "formula": Rung(words="a formula", work=fell, draws=20),
-            "other": Rung(words="breaks", work=partial(broken, error), draws=2),
+            "formula": Predictor(words="a formula", work=fell, draws=20),
+            "other": Predictor(words="breaks", work=partial(broken, error), draws=2),
         }
     )

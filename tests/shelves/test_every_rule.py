@@ -11,7 +11,7 @@ import pytest
 
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS
-from suchus.verdict import Clause, Control, Kind, Rule, examples_of, judge, judging, rules_of
+from suchus.verdict import Clause, ControlGroup, Kind, Rule, examples_of, judge, judging, rules_of
 
 ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}
 ROWS = [(claim, measures, word) for name in EXPERIMENTS for claim, rows in examples_of(name).items()
@@ -113,7 +113,7 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
         yield f"{rule.claim}: without the interval of {name}", replace(rule, spread=rest), 1.0
 
 
-def _without_control(rule: Rule) -> Iterator[tuple[str, Control]]:
+def _without_control(rule: Rule) -> Iterator[tuple[str, ControlGroup]]:
     """Yield what was done to what a control group needs, and what is left of it."""
     needs = rule.control.needs if rule.control else ()
     for i, need in enumerate(needs):

@@ -25,6 +25,7 @@ NOT_JOINTS = {
 }
 WHERE = {
     "tail_pitch": {
+        "contestants/alligator_roll.py",
         "experiments/death_roll/experiment.py",
         "experiments/feedback/experiment.py",
         "experiments/displacement/figure.py",
@@ -47,6 +48,8 @@ COLUMNS = {
     "experiments/swim_3d/experiment.py": "letters of a digest",
     "experiments/swimming/ladder.py": "letters of a digest",
     "kernel_cache.py": "letters of a digest",
+    "machine.py": "letters of a digest",
+    "verdict/rule.py": "letters of a digest",
     "hydro/forces.py": "rows of the table of pieces and of inertia",
     "design/pieces.py": "a row of the table of pieces",
     "bus/wiring.py": "letters of a digest",

@@ -14,7 +14,7 @@ from suchus.cli.terminal import working
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.errors import UnreadableFile
 from suchus.league import every, find
-from suchus.league.page import Standing, all_standings, shown, standing, write_page
+from suchus.league.page import LeagueEntry, all_standings, shown, standing, write_page
 from suchus.league.sealing import sealed_prediction
 from suchus.record import check_writable, there
 
@@ -68,7 +68,7 @@ def league(words: Sequence[str]) -> int:
     return 0
 
 
-def _lines(one: Standing) -> list[str]:
+def _lines(one: LeagueEntry) -> list[str]:
     """Return what the terminal shows of a contestant."""
     words = {(quantity, rung): word for quantity, rung, *_, word in one.judgements()}
     lines = [one.title]

@@ -9,7 +9,7 @@ from suchus.design import Robot
 from suchus.design.scale import scaled
 from suchus.errors import OutsideLimits
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Rung, Single, known
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant, known
 from suchus.metrics import roll_rate
 from suchus.motion import roll
 from suchus.progress import Progress, portion
@@ -41,7 +41,7 @@ def _roll(afloat: Afloat, numbers: Numbers, progress: Progress) -> Found:
     return {"rate": rate, "turns": rate * period}
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="alligator_roll",
         title="The death roll of an alligator of 0.29 m",
@@ -86,8 +86,10 @@ contestant = Single(
             "turns": Quantity(unit="-", words="turns of the body for each cycle of its bends"),
         },
         rungs={
-            "vacuum": Rung(words="rigid bodies, nothing acts from outside", work=partial(rolled, VACUUM), draws=10),
-            "ellipsoids": Rung(
+            "vacuum": Predictor(
+                words="rigid bodies, nothing acts from outside", work=partial(rolled, VACUUM), draws=10
+            ),
+            "ellipsoids": Predictor(
                 words="rigid bodies in water, MuJoCo's drag of ellipsoids", work=partial(rolled, WATER), draws=10
             ),
         },

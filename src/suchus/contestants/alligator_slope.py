@@ -11,7 +11,7 @@ from suchus.design.ground import Ground
 from suchus.design.scale import scaled
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Rung, Single
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.metrics import between, speed
 from suchus.motion import START
 from suchus.progress import Progress, portion
@@ -53,7 +53,7 @@ def _walk(gait: str, numbers: Numbers, progress: Progress) -> Found:
     }  # fmt: skip
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="alligator_slope",
         title="An alligator walks up and down 15 degrees",
@@ -85,7 +85,7 @@ contestant = Single(
             "push_down": Quantity(unit="-", words="the same downhill, forward positive"),
         },
         rungs={
-            gait: Rung(words=f"rigid bodies with contacts, {words}", work=partial(walked, gait), draws=12)
+            gait: Predictor(words=f"rigid bodies with contacts, {words}", work=partial(walked, gait), draws=12)
             for gait, words in (("high_walk", "the high walk"), ("belly_crawl", "the belly crawl"))
         },
         left_out={"theories of swimming, slice, space": "it walks"},

@@ -8,8 +8,8 @@ from math import radians
 from suchus.contestants._water import fresh
 from suchus.design.drawing import Drawing
 from suchus.design.scale import swim_servo_for
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Single, known
-from suchus.league.swims import Asked, Swimmer, Swum, rungs, waters
+from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
+from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.motion import Gait
 from suchus.motion.swim import swimming_gait
 from suchus.water import Outline
@@ -87,13 +87,13 @@ def _body(pitch: float, height: float, width: float, density: float) -> Drawing:
     )
 
 
-def build(numbers: Numbers, frequency: float | None) -> Swimmer:
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the robot with its log's gait."""
     del frequency
     water = waters(numbers)
     drawing = _body(numbers["pitch"], numbers["height"], numbers["width"], numbers["afloat"] * numbers["density"])
     robot = drawing.robot(swim_servo_for(drawing.mass, drawing.length, 1.0 / _PERIOD))
-    return Swimmer(
+    return ModelSwimmer(
         robot=robot, gait=_gait(robot, numbers), water=water, shedding=numbers["shedding"],
         added_mass=numbers["added_mass"], ramp=numbers["ramp"],
     )  # fmt: skip
@@ -111,14 +111,14 @@ def _gait(robot, numbers: Numbers) -> Gait:  # type: ignore[no-untyped-def]
     )
 
 
-def read(numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     """Return speeds and coasting of a swim."""
     del numbers, swimmer
     found: dict[str, float | tuple[float, ...]] = {"steady_speed": swum.speed, "first_periods": swum.periods[:4]}
     return found | ({"coast_down": swum.coast} if swum.coast == swum.coast else {})
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="amphibot",
         title="AmphiBot swims from rest, steadily, and coasts",
@@ -133,6 +133,6 @@ contestant = Single(
             "first_periods": Quantity(unit="m/s", words="mean speed in each of the first four periods from rest"),
             "coast_down": Quantity(unit="1/m", words="k in dU/dt = -k U^2, its motors holding their posture"),
         },
-        rungs=rungs(Asked(build=build, read=read, cycles=12, coasts=True)),
+        rungs=rungs(SwimTask(build=build, read=read, cycles=12, coasts=True)),
     )
 )

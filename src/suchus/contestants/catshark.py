@@ -12,8 +12,8 @@ from suchus.contestants._water import fresh
 from suchus.design import Robot
 from suchus.design.drawing import Drawing
 from suchus.design.scale import swim_servo_for
-from suchus.league import Contestant, Family, Found, Given, Numbers, Quantity, Rung, known
-from suchus.league.swims import Asked, Swimmer, Swum, rungs, waters
+from suchus.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
+from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.motion import Gait
 from suchus.progress import Progress
 from suchus.water import FilmedWave, fit
@@ -65,14 +65,14 @@ def _body(length: float, mass: float, density: float, wide: float, tail: float) 
     return drawing.robot(swim_servo_for(mass, length, _BEAT))
 
 
-def build(numbers: Numbers, frequency: float | None) -> Swimmer:
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the animal with its filmed midline at a frequency [Hz]."""
     length, often = numbers["length"], frequency or 2.0
     robot = _body(
         length, numbers["mass"] * length**3, 0.9995 * numbers["density"], numbers["wide"], numbers["tail_height"]
     )
     gait = _gait(robot, numbers["wavelength"], 0.5 * numbers["head"], 0.5 * numbers["tail"])
-    return Swimmer(
+    return ModelSwimmer(
         robot=robot, gait=replace(gait, period=1.0 / often), water=waters(numbers), shedding=numbers["shedding"],
         added_mass=numbers["added_mass"], ramp=1.0,
     )  # fmt: skip
@@ -89,7 +89,7 @@ def held(numbers: Numbers) -> float:
     return numbers["speed"] * numbers["length"]
 
 
-def read(numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     """Return tail beat, Strouhal number and power of a swim at that speed."""
     del swimmer
     swing = swum.swing if swum.swing == swum.swing else numbers["tail"] * numbers["length"]
@@ -161,11 +161,11 @@ def at(speed: float) -> Contestant:
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
         rungs={"law": _LAW}
-        | rungs(Asked(build=build, read=read, cycles=12, resolved_cycles=6, held=held, start=_start(speed))),
+        | rungs(SwimTask(build=build, read=read, cycles=12, resolved_cycles=6, held=held, start=_start(speed))),
     )
 
 
-_LAW = Rung(words="the Strouhal number of animals that cruise", work=by_law, draws=200)
+_LAW = Predictor(words="the Strouhal number of animals that cruise", work=by_law, draws=200)
 
 
 def _start(speed: float) -> float:
@@ -183,6 +183,6 @@ def _wavelength(film: dict[str, np.ndarray], speed: float) -> Given:
     )  # fmt: skip
 
 
-contestant = Family(
+contestant = ContestantFamily(
     name="catshark", asked=(1.25, 2.0, 3.0, 5.0), low=0.5, high=6.0, what="body lengths a second", made=partial(at)
 )

@@ -13,8 +13,8 @@ from suchus.design.pieces import volumes
 from suchus.design.scale import scaled, swim_servo_for
 from suchus.errors import NotConverged
 from suchus.gaits import ANIMAL_SWIM
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Single
-from suchus.league.swims import Asked, Swimmer, Swum, rungs, sections, theory, waters
+from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
+from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, sections, theory, waters
 from suchus.motion import Curve, Gait, servo_parts
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
@@ -80,7 +80,7 @@ def _part(segment: Segment, density: float, keel: float, factor: float) -> Segme
 _animal = lru_cache(maxsize=128)(animal)
 
 
-def build(numbers: Numbers, frequency: float | None) -> Swimmer:
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the animal with its filmed joints at a frequency [Hz]; the mean of the filmed ones if None."""
     robot = _animal(numbers["length"], numbers["mass"], numbers["own_density"], numbers["keel"])
     parts, often = servo_parts(robot), frequency or float(np.mean(FREQUENCIES))
@@ -89,13 +89,13 @@ def build(numbers: Numbers, frequency: float | None) -> Swimmer:
         name=f"animal_swim_{often:.3g}", period=1.0 / often, limb_phases=(0.0,) * 4,
         curves=tuple(Curve(servo=name, part=parts[name], angles=curve) for name, curve in angles.items()),
     )  # fmt: skip
-    return Swimmer(
+    return ModelSwimmer(
         robot=robot, gait=gait, water=waters(numbers), shedding=numbers["shedding"], added_mass=numbers["added_mass"],
         ramp=0.0,
     )  # fmt: skip
 
 
-def read(numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     """Return the stride of one swim."""
     del numbers
     return {"stride": swum.speed / swum.frequency / swimmer.robot.length}
@@ -121,7 +121,7 @@ def by_sections(choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     return [_strides(numbers, swums[count * i : count * (i + 1)]) for i, numbers in enumerate(choices)]
 
 
-def _strides(numbers: Numbers, swums: Sequence[Swum]) -> Found:
+def _strides(numbers: Numbers, swums: Sequence[SwimPrediction]) -> Found:
     strides = tuple(swum.speed / swum.frequency / numbers["length"] for swum in swums)
     speed = float(np.mean([swum.speed for swum in swums])) / numbers["length"]
     return {"stride": float(np.mean(strides)), "strides": strides, "speed": speed}
@@ -143,8 +143,8 @@ _GIVEN = {
         value=0.25, low=0.1, high=0.4, unit="-", source="lungs lie above the bones: by how much is not published"
     ),
 }  # fmt: skip
-_ASKED = {name: rung for name, rung in rungs(Asked(build=build, read=read)).items() if name != "reactive"}
-contestant = Single(
+_ASKED = {name: rung for name, rung in rungs(SwimTask(build=build, read=read)).items() if name != "reactive"}
+contestant = SingleContestant(
     Contestant(
         name="salamander",
         title="A salamander swims at 2.6 to 3.8 Hz",

@@ -9,7 +9,7 @@ import numpy as np
 from suchus.design import Robot, with_values
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Rung, Single
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.metrics import speed
 from suchus.motion import START
 from suchus.progress import Progress, portion
@@ -42,7 +42,7 @@ def _walk(numbers: Numbers, progress: Progress) -> Found:
     return {"speeds": tuple(found), "stride": found[1] / FREQUENCIES[1]} if np.isfinite(found).all() else {}
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="salamandra_walk",
         title="Salamandra robotica walks",
@@ -72,7 +72,7 @@ contestant = Single(
             "speeds": Quantity(unit="body length/s", words="speed at 0.4, 0.67 and 1 Hz"),
             "stride": Quantity(unit="body length", words="stride at 0.67 Hz"),
         },
-        rungs={"contacts": Rung(words="rigid bodies with contacts", work=walked, draws=10)},
+        rungs={"contacts": Predictor(words="rigid bodies with contacts", work=walked, draws=10)},
         left_out={"theories of swimming, slice, space": "it walks"},
     )
 )

@@ -12,7 +12,7 @@ from suchus.design.needs import lacking
 from suchus.design.water import Water
 from suchus.errors import SuchusError
 from suchus.gaits import own_gait
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Rung, Single
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.motion import Gait
 from suchus.progress import Progress
 from suchus.robots import ROBOTS
@@ -78,7 +78,7 @@ def _fitted(points: np.ndarray) -> tuple[float, float]:
     return float(slope), float(10.0**start)
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="swimming_law",
         title="The law of swimming over all swimmers of the shelf",
@@ -109,8 +109,8 @@ contestant = Single(
             "prefactor": Quantity(unit="-", words="prefactor in thin water"),
         },
         rungs={
-            "resistive": Rung(words="resistive theory (Taylor 1952)", work=partial(law, resistive), draws=6),
-            "reactive": Rung(words="reactive theory (Lighthill 1971)", work=partial(law, reactive), draws=6),
+            "resistive": Predictor(words="resistive theory (Taylor 1952)", work=partial(law, resistive), draws=6),
+            "reactive": Predictor(words="reactive theory (Lighthill 1971)", work=partial(law, reactive), draws=6),
         },
         left_out={
             "sections": "many bodies of many sizes at many frequencies, whose servos and trim differ",

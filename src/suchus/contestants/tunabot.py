@@ -7,8 +7,8 @@ from suchus.contestants._water import fresh
 from suchus.design import Robot
 from suchus.design.drawing import Drawing
 from suchus.design.scale import swim_servo_for
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, Single, known
-from suchus.league.swims import Asked, Swimmer, Swum, rungs, waters
+from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
+from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"
@@ -34,7 +34,7 @@ def _body(length: float, wide: float, fin: float, density: float) -> Robot:
     return drawing.robot(swim_servo_for(mass, length, 15.0))
 
 
-def build(numbers: Numbers, frequency: float | None) -> Swimmer:
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the robot with a tail that beats at a frequency [Hz], at 15 Hz if None."""
     length = numbers["length"]
     robot = _body(length, numbers["wide"], numbers["fin"], 0.9995 * numbers["density"])
@@ -42,19 +42,19 @@ def build(numbers: Numbers, frequency: float | None) -> Swimmer:
         length=length, frequency=frequency or numbers["frequency"], wavelength=numbers["wavelength"], head=0.01,
         tail=0.5 * numbers["tail"],
     )  # fmt: skip
-    return Swimmer(
+    return ModelSwimmer(
         robot=robot, gait=fit(robot, wave, name="tunabot", most=1.0).gait, water=waters(numbers),
         shedding=numbers["shedding"], added_mass=numbers["added_mass"], ramp=1.0,
     )  # fmt: skip
 
 
-def read(numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     """Return speed in lengths and power of a swim."""
     del numbers
     return {"speed": swum.speed / swimmer.robot.length, "power": swum.power}
 
 
-contestant = Single(
+contestant = SingleContestant(
     Contestant(
         name="tunabot",
         title="Tunabot at 15 Hz",
@@ -92,6 +92,6 @@ contestant = Single(
             "speed": Quantity(unit="body length/s", words="speed at 15 Hz"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
-        rungs=rungs(Asked(build=build, read=read, cycles=16, resolved_cycles=6)),
+        rungs=rungs(SwimTask(build=build, read=read, cycles=16, resolved_cycles=6)),
     )
 )  # fmt: skip

@@ -19,7 +19,7 @@ from suchus.flow.twist import Twists
 from suchus.water.outline import Outline
 
 
-class Posture(NamedTuple):
+class ChainState(NamedTuple):
     """Coordinates and rates of a chain in the frame of the flow."""
 
     place: Float[np.ndarray, " coordinate"]
@@ -46,7 +46,7 @@ class Points(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Chain:
+class MidlineChain:
     """A robot's midline over its joints, divided into parts none of which reaches over a joint."""
 
     outline: Outline
@@ -137,7 +137,7 @@ class Chain:
         wide, high = self.outline.silhouette
         return np.asarray(wide * high / (wide * high).sum())
 
-    def state(self, posture: Posture, least: float) -> Seen:
+    def state(self, posture: ChainState, least: float) -> Seen:
         """Return the midline about its centre, and where the centre is and how it moves, in the frame of the flow.
 
         Args:
@@ -155,7 +155,7 @@ class Chain:
         pose = flow.Pose(position=(centre[0], centre[1]), velocity=(drift[0], drift[1]))
         return (bare.thickened(least) if least > 0.0 else bare), pose
 
-    def force(self, place: np.ndarray, loads: flow.Loads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
+    def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
         """Return the generalised force of what acts on the parts [N, N m; in the plane per metre of depth].
 
         Args:
@@ -213,31 +213,31 @@ def _summed(steps: np.ndarray) -> np.ndarray:
 class Path:
     """A chain's way through one step: the cubic that has its places and rates at both ends."""
 
-    def __init__(self, time: float, posture: Posture) -> None:
+    def __init__(self, time: float, posture: ChainState) -> None:
         self._start, self._end, self._times = posture, posture, (time, time)
         self._known: dict[float, Seen] = {}
 
-    def seen(self, time: float, state: Callable[[Posture], Seen]) -> Seen:
+    def seen(self, time: float, state: Callable[[ChainState], Seen]) -> Seen:
         """Return what a function makes of the posture at a time [s], made once a step; always ask for the same one."""
         if time not in self._known:
             self._known[time] = state(self.at(time))
         return self._known[time]
 
-    def go(self, time: float, posture: Posture, end: float, then: Posture) -> None:
+    def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
         """Go from a posture at a time to another [s]."""
         self._times, self._start, self._end = (time, end), posture, then
         self._known.clear()
 
-    def at(self, time: float) -> Posture:
+    def at(self, time: float) -> ChainState:
         """Return the posture at a time [s]; beyond the ends it goes on at their rates."""
         (first, last), (p, v), (q, w) = self._times, self._start, self._end
         if time <= first or last == first:
-            return Posture(p + (time - first) * v, v)
+            return ChainState(p + (time - first) * v, v)
         if time >= last:
-            return Posture(q + (time - last) * w, w)
+            return ChainState(q + (time - last) * w, w)
         h = last - first
         t = (time - first) / h
         place = (1 + 2 * t) * (1 - t) ** 2 * p + h * t * (1 - t) ** 2 * v
         place = place + t * t * (3 - 2 * t) * q + h * t * t * (t - 1) * w
         rate = 6 * t * (1 - t) * (q - p) / h + (1 - t) * (1 - 3 * t) * v + t * (3 * t - 2) * w
-        return Posture(place, rate)
+        return ChainState(place, rate)

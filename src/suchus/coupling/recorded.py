@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 import xarray as xr
 
-from suchus.coupling.chain import Chain
+from suchus.coupling.chain import MidlineChain
 from suchus.land.run import Run
 from suchus.record import COUPLED, WATER
 
@@ -36,7 +36,7 @@ class Series:
     the difference over the whole inertia [-]."""
 
 
-def recorded(run: Run, chain: Chain, series: Series, record: xr.Dataset, added: np.ndarray) -> xr.Dataset:
+def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, added: np.ndarray) -> xr.Dataset:
     """Return the record of a coupled run: that of the robot, and beside it what the water did.
 
     Args:
@@ -73,7 +73,7 @@ def recorded(run: Run, chain: Chain, series: Series, record: xr.Dataset, added: 
     return found.assign_coords(link=links, coordinate=names, coordinate_too=names)
 
 
-def _sampled(chain: Chain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
+def _sampled(chain: MidlineChain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
     """Return the series at the samples of a record, NaN where it has not come to."""
     time = record.time.values.astype(float)
     ends = np.array([0.0, *series.time])

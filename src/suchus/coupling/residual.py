@@ -30,7 +30,7 @@ _SMOOTHED, _ORDER = 9, 4
 """Samples and order of the polynomials by which places become rates and accelerations [-]."""
 
 
-class Motion(NamedTuple):
+class RecordedMotion(NamedTuple):
     """Root and lateral joints along a record."""
 
     place: Float[np.ndarray, "sample coordinate"]
@@ -41,14 +41,14 @@ class Motion(NamedTuple):
     """[m/s2, rad/s2]."""
 
 
-def motion_of(record: xr.Dataset, joints: Sequence[str]) -> Motion:
+def motion_of(record: xr.Dataset, joints: Sequence[str]) -> RecordedMotion:
     """Return the motion in a record of one run, differentiated by local polynomials."""
     yaw = np.unwrap(rotation.yaw(record.orientation.values))
     bends = record.joint_angle.sel(joint=list(joints)).transpose("time", "joint").values
     place = np.column_stack([record.position.values[:, :2], yaw, bends])
     step = float(record.time[1] - record.time[0])
     rate, push = (savgol_filter(place, _SMOOTHED, _ORDER, deriv=order, delta=step, axis=0) for order in (1, 2))
-    return Motion(place, rate, push)
+    return RecordedMotion(place, rate, push)
 
 
 def residual_table(
@@ -103,7 +103,7 @@ def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
     return SectionLoads(centred(links), centred(moments))
 
 
-def _across(loads: SectionLoads, motion: Motion) -> np.ndarray:
+def _across(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
     """Return the force across each link, to the left of the root's heading, and the moments, shape (sample, part)."""
     yaw = motion.place[:, 2, None]
     aside = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]

@@ -16,7 +16,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.coupling.chain import Chain, Path, Posture
+from suchus.coupling.chain import ChainState, MidlineChain, Path
 from suchus.coupling.recorded import Series, recorded
 from suchus.design import layout
 from suchus.design.scale import control_period, physics_step
@@ -73,7 +73,7 @@ class Swim:
         assert water is not None
         self.run, self.water = run, water
         self._check(duration)
-        self.chain = Chain(Outline(run.robot, water.cells + 1), water.parts)
+        self.chain = MidlineChain(Outline(run.robot, water.cells + 1), water.parts)
         self._axes = 2 if isinstance(water, Slice) else 3
         self._times = self.depth if isinstance(water, Slice) else 1.0
         self._swing = self._expected_swing()
@@ -192,17 +192,17 @@ class Swim:
 
     # --- between the robot's world and the flow's --------------------------------------------------------------
 
-    def _seen(self, state: PlaneState) -> Posture:
+    def _seen(self, state: PlaneState) -> ChainState:
         """Return a state of the robot in the frame of the flow."""
         place, rate = self._signs * state.place, self._signs * state.rate
         place[:2] += self._corner
-        return Posture(place, rate)
+        return ChainState(place, rate)
 
     @property
     def _origin(self) -> np.ndarray:
         return np.array(self.sim.frame[0, :2])
 
-    def _found(self, posture: Posture) -> np.ndarray:
+    def _found(self, posture: ChainState) -> np.ndarray:
         """Return the generalised force of the water in the last step, along the robot's own coordinates."""
         loads = self.sim.last(self.run.robot.name)
         return self._times * self._signs * self.chain.force(posture.place, loads, self._origin)
@@ -306,8 +306,8 @@ class Swim:
         self._renew()
 
     def _note(
-        self, stretch: Stretch, found: np.ndarray, began: Posture, posture: Posture, residual: tuple[float, float],
-        made: int,
+        self, stretch: Stretch, found: np.ndarray, began: ChainState, posture: ChainState,
+        residual: tuple[float, float], made: int,
     ) -> None:  # fmt: skip
         series = self.series
         loads = self.sim.last(self.run.robot.name)
@@ -325,7 +325,7 @@ class Swim:
     def _drift(self) -> np.ndarray:
         return np.asarray(self.sim.drift)
 
-    def _links(self, posture: Posture, loads: flow.Loads) -> np.ndarray:
+    def _links(self, posture: ChainState, loads: flow.FlowLoads) -> np.ndarray:
         """Return what acts on each link, the torque about its middle, in the world."""
         links, count = self.chain.links, int(self.chain.links.max()) + 1
         points = self.chain.centres(posture.place).place.T - self._origin

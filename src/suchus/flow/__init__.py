@@ -8,7 +8,7 @@ from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.limbed import Capsule, Limbed
-from suchus.flow.log import Loads
+from suchus.flow.log import FlowLoads
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.midline import Midline, MidlineState, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
@@ -39,6 +39,7 @@ __all__ = [
     "Ellipsoid",
     "Field",
     "FieldSeries",
+    "FlowLoads",
     "FreeBody",
     "Glide",
     "Grid",
@@ -47,7 +48,6 @@ __all__ = [
     "IsoSurface",
     "Limbed",
     "Load",
-    "Loads",
     "Markers",
     "Mass",
     "Midline",

@@ -23,7 +23,7 @@ FASTEST = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Loads:
+class FlowLoads:
     """What the water did to one body in one step."""
 
     about: np.ndarray

@@ -23,7 +23,7 @@ from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
-from suchus.flow.log import Loads, Log, columns, part_columns
+from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.memory import Snapshot, give, take
 from suchus.flow.midline import Midline, Remembered
 from suchus.flow.pose import Pose, length, speeds
@@ -106,7 +106,7 @@ class Simulation(Fields):
         self.water.border.stream = stream
         self._placed = False
         self._taken: _Taken | None = None
-        self._loads: list[Loads] = []
+        self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
@@ -282,7 +282,7 @@ class Simulation(Fields):
         values, body_speed = [], 0.0
         reactions, along = self._log.reactions(water, outlines, about, dt, taken.push, taken.before), []
         self._loads = [
-            Loads(about=np.array(point), whole=whole, parts=tuple(parts) or (whole,))
+            FlowLoads(about=np.array(point), whole=whole, parts=tuple(parts) or (whole,))
             for point, (whole, *parts) in zip(about, reactions, strict=True)
         ]
         for k, (body, markers, point, (act, *parts)) in enumerate(
@@ -312,7 +312,7 @@ class Simulation(Fields):
         if len(self._log.rows) % EVERY == 0:
             self._watch.sides(water, self.time)
 
-    def last(self, name: str) -> Loads:
+    def last(self, name: str) -> FlowLoads:
         """Return what the water did to a body, and to each of its parts, in the last step.
 
         Raises:

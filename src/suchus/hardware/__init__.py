@@ -5,24 +5,24 @@ from suchus.hardware.commands import Commands, commands, csv_text, trajectory_te
 from suchus.hardware.drive import BusClock, DriveSettings, TickClock, WallClock, about, check_drive, drive
 from suchus.hardware.guard import DriveLimits
 from suchus.hardware.limits import check_commands, check_loads, overloaded
-from suchus.hardware.loads import Case, ServoLoad, cases, loads, loads_of_each, share_at_limit
+from suchus.hardware.loads import LoadCase, ServoLoad, cases, loads, loads_of_each, share_at_limit
 from suchus.hardware.log import DriveLog, held
 from suchus.hardware.rig import Rig, RigReading, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
-from suchus.hardware.sizing import Family, Sizing, fitted, size, with_better
+from suchus.hardware.sizing import ServoFamily, Sizing, fitted, size, with_better
 from suchus.hardware.wiring import read_wiring, wiring_text, write_wiring
 
 __all__ = [
     "BlindRig",
     "BusClock",
-    "Case",
     "Commands",
     "DriveLimits",
     "DriveLog",
     "DriveSettings",
-    "Family",
+    "LoadCase",
     "Rig",
     "RigReading",
+    "ServoFamily",
     "ServoLine",
     "ServoLoad",
     "ServoMap",

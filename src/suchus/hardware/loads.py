@@ -33,7 +33,7 @@ _CYCLES, _HOLD = 2, 1.0  # of a gait, and of standing [s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
+class LoadCase:
     """One thing that a robot does, for which its servos must be enough."""
 
     name: str
@@ -68,7 +68,7 @@ class Case:
             label=self.name,
         )
 
-    def slower(self, factor: float) -> "Case":
+    def slower(self, factor: float) -> "LoadCase":
         """Return it with a longer period of its gait."""
         return replace(self, gait=replace(self.gait, period=factor * self.gait.period), seconds=factor * self.seconds)
 
@@ -81,7 +81,7 @@ def cases(
     faults: Sequence[Fault] = (),
     standing: bool = False,
     water: bool = False,
-) -> tuple[Case, ...]:
+) -> tuple[LoadCase, ...]:
     """Return what a robot shall do: its gaits on level ground, up slopes and with each fault, standing up, a swim.
 
     Args:
@@ -95,20 +95,20 @@ def cases(
     Raises:
         UnsuitedRobot: it cannot stand up, or swim.
     """
-    found = [Case(name=gait.name, gait=gait) for gait in gaits]
+    found = [LoadCase(name=gait.name, gait=gait) for gait in gaits]
     for gait in gaits:
         for slope in slopes:
             name = f"{gait.name}, {degrees(slope):.3g} degrees uphill"
-            found.append(Case(name=name, gait=gait, ground=Ground(uphill=slope)))
-        found += [Case(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
+            found.append(LoadCase(name=name, gait=gait, ground=Ground(uphill=slope)))
+        found += [LoadCase(name=f"{gait.name}, {fault.name}", gait=gait, faults=(fault,)) for fault in faults]
     if standing:
         check_needs(robot, STANDING, "suchus size --standing")
         control = Standing(at=START, hold=_HOLD)
         seconds = control.down_from(robot) - START
-        found.append(Case(name="standing up", gait=gaits[0], control=control, seconds=seconds))
+        found.append(LoadCase(name="standing up", gait=gaits[0], control=control, seconds=seconds))
     if water:
         swim = swim_of(check_needs(robot, ["axis"], "suchus size --water"))
-        found.append(Case(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
+        found.append(LoadCase(name="swimming", gait=swim, control=Swimming(), lake=Lake(level=robot.length)))
     return tuple(found)
 
 
@@ -168,7 +168,7 @@ def loads(robot: Robot, gait: Gait, *, progress: Progress = silent) -> Mapping[s
 
 
 def loads_of_each(
-    robot: Robot, asked: Sequence[Case], *, timestep: float | None = None, progress: Progress = silent
+    robot: Robot, asked: Sequence[LoadCase], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[Mapping[str, ServoLoad]]:
     """Return what each servo bears in each of several cases, and what four times as strong ones would give.
 
@@ -188,7 +188,7 @@ def loads_of_each(
 
 
 def records_of_each(
-    pairs: Sequence[tuple[Robot, Case]], *, timestep: float | None = None, progress: Progress = silent
+    pairs: Sequence[tuple[Robot, LoadCase]], *, timestep: float | None = None, progress: Progress = silent
 ) -> list[xr.Dataset]:
     """Return the record of each case after its first second, each with its robot; those of one duration at once.
 

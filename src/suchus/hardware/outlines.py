@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from suchus.errors import SuchusError
-from suchus.hardware.parts import Part, Plate, Sheet
+from suchus.hardware.parts import BodyPart, Sheet, TailPlate
 from suchus.kinematics.tree import frames
 
 CORD_HOLE = 0.002
@@ -37,7 +37,7 @@ def libraries() -> tuple[Any, Any]:
     return trimesh, ezdxf
 
 
-def stl(part: Part) -> bytes:
+def stl(part: BodyPart) -> bytes:
     """Return the outline of a rod, a shell or a foot as a binary STL, its middle at the origin [mm].
 
     A rod lies along z.
@@ -57,7 +57,7 @@ def stl(part: Part) -> bytes:
     return data
 
 
-def plates_dxf(plates: Sequence[Plate]) -> str:
+def plates_dxf(plates: Sequence[TailPlate]) -> str:
     """Return all plates side by side as a DXF [mm]: layer CUT for their rims, DRILL for the holes, TEXT for names.
 
     Raises:
@@ -113,7 +113,7 @@ def top_dxf(sheet: Sheet) -> str:
     return _text(drawing)
 
 
-def _along(sheet: Sheet, part: Part) -> float:
+def _along(sheet: Sheet, part: BodyPart) -> float:
     """Return the direction in which a rod lies from above: forward, or aside as the links of limbs do [rad]."""
     robot = sheet.robot
     in_limb = any(part.name.startswith((f"L{girdle.name}_", f"R{girdle.name}_")) for girdle in robot.girdles)

@@ -26,7 +26,7 @@ _STEPS = 9  # bends in the table of a cable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
+class BodyPart:
     """A part of a body: a rod, a shell, a foot, foam, or a servo that sits on it."""
 
     body: str
@@ -46,7 +46,7 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Body:
+class MassBudget:
     """What one moving body weighs in the simulation, and what of that its servos and printed walls are."""
 
     name: str
@@ -65,7 +65,7 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Joint:
+class HingePlace:
     """Where a hinge is with all joints at zero: forward, left and up from the root's origin."""
 
     name: str
@@ -85,7 +85,7 @@ class Joint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
+class DHRow:
     """One row of a table of Denavit and Hartenberg, as the article's Tables I and II print them (Figs 6 and 8)."""
 
     chain: str
@@ -103,7 +103,7 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plate:
+class TailPlate:
     """One plate of a tail that cords pull, with its holes."""
 
     name: str
@@ -131,7 +131,7 @@ class Cord:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wire:
+class ServoWire:
     """One servo on its bus, after the one before it."""
 
     servo: str
@@ -147,7 +147,7 @@ class Wire:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Floating:
+class Buoyancy:
     """What keeps a robot up in water."""
 
     mass: float
@@ -175,25 +175,25 @@ class Sheet:
     """The robot."""
     bought: Mapping[str, Motor]
     """The servos that are bought, by place; empty for those of which only numbers are known."""
-    parts: tuple[Part, ...]
+    parts: tuple[BodyPart, ...]
     """Its parts, body by body."""
-    bodies: tuple[Body, ...]
+    bodies: tuple[MassBudget, ...]
     """Its bodies."""
     centre: tuple[float, float, float]
     """Centre of mass in the simulation, all joints at zero, from the root's origin [m]."""
     built: tuple[float, float, float]
     """The same with servos where they sit and printed walls, without what is left for battery and electronics [m]."""
-    joints: tuple[Joint, ...]
+    joints: tuple[HingePlace, ...]
     """Its hinges."""
-    links: tuple[Link, ...]
+    links: tuple[DHRow, ...]
     """Tables of Denavit and Hartenberg of the chains that have one."""
-    plates: tuple[Plate, ...]
+    plates: tuple[TailPlate, ...]
     """Plates of its tail."""
     cords: tuple[Cord, ...]
     """Cords of its cables."""
-    wires: tuple[Wire, ...]
+    wires: tuple[ServoWire, ...]
     """Its buses."""
-    floating: Floating
+    floating: Buoyancy
     """What keeps it up."""
 
 
@@ -259,7 +259,7 @@ def _point(values: np.ndarray | Sequence[float]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _shapes(robot: Robot) -> list[Part]:
+def _shapes(robot: Robot) -> list[BodyPart]:
     place = layout(robot)
     segments = {segment.name: segment for segment in place.robot.axis}
     found = []
@@ -270,11 +270,11 @@ def _shapes(robot: Robot) -> list[Part]:
                 length = float(np.linalg.norm(np.subtract(shape.end, shape.start)))
                 size = (length + 2 * shape.radius, 2 * shape.radius, 2 * shape.radius)
                 about = f"rod of {1000 * length:.1f} mm between the middles of its round ends"
-                found.append(Part(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
+                found.append(BodyPart(body=body.name, name=shape.name, kind="rod", size=size, mass=shape.mass,
                                   centre=centre, about=about))  # fmt: skip
             else:
                 a, b, c = shape.half
-                found.append(Part(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
+                found.append(BodyPart(body=body.name, name=shape.name, kind="shell", size=(2 * a, 2 * b, 2 * c),
                                   mass=shape.mass, centre=centre, about="shell, an ellipsoid"))  # fmt: skip
     for limb in place.limbs:
         links = limb.girdle.limb.links
@@ -283,17 +283,17 @@ def _shapes(robot: Robot) -> list[Part]:
             end = (link.end[0], limb.side * link.end[1], link.end[2])
             size = (link.length + 2 * link.radius, 2 * link.radius, 2 * link.radius)
             about = f"rod of {1000 * link.length:.1f} mm from joint to {'foot' if i == len(links) - 1 else 'joint'}"
-            found.append(Part(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size, mass=link.mass,
+            found.append(BodyPart(body=carrier, name=f"{limb.name}_{link.name}", kind="rod", size=size, mass=link.mass,
                               centre=_point(np.array(end) / 2), about=about))  # fmt: skip
             if i == len(links) - 1:
                 foot = limb.girdle.limb.foot
                 ball = 2 * foot.radius
-                found.append(Part(body=carrier, name=f"{limb.name}_foot", kind="foot", size=(ball, ball, ball),
+                found.append(BodyPart(body=carrier, name=f"{limb.name}_foot", kind="foot", size=(ball, ball, ball),
                                   mass=foot.mass, centre=_point(end), about="rubber ball"))  # fmt: skip
     return found
 
 
-def _foam(robot: Robot) -> list[Part]:
+def _foam(robot: Robot) -> list[BodyPart]:
     hull = robot.hull
     if hull is None:
         return []
@@ -302,7 +302,7 @@ def _foam(robot: Robot) -> list[Part]:
     for one in (foam for foam in hull.foam if foam.volume > 0.0):
         side = one.volume ** (1 / 3)
         about = f"{1e6 * one.volume:.0f} cm3 around the body, raised by {1000 * one.raised:.0f} mm"
-        found.append(Part(body=one.body, name=f"{one.body}_foam", kind="foam", size=(side, side, side),
+        found.append(BodyPart(body=one.body, name=f"{one.body}_foam", kind="foam", size=(side, side, side),
                           mass=hull.density * one.volume, centre=_point(centres[one.body]), about=about))  # fmt: skip
     return found
 
@@ -325,13 +325,13 @@ def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
 
 def _servos(
     robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
-) -> list[Part]:
+) -> list[BodyPart]:
     found = []
     for name, servo in ((name, robot.servo(name)) for name in layout(robot).servos):
         body, at = seats[name]
         motor = bought.get(name)
         found.append(
-            Part(
+            BodyPart(
                 body=body,
                 name=name,
                 kind="servo",
@@ -348,9 +348,9 @@ def _bodies(
     robot: Robot,
     bought: Mapping[str, Motor],
     seats: Mapping[str, tuple[str, tuple[float, float, float]]],
-    parts: Sequence[Part],
+    parts: Sequence[BodyPart],
     skin: float,
-) -> tuple[Body, ...]:
+) -> tuple[MassBudget, ...]:
     masses, _ = body_masses(robot)
     found = []
     for body, mass in zip(layout(robot).bodies, masses, strict=True):
@@ -360,11 +360,13 @@ def _bodies(
         ]
         printed = sum(skin * area(part.kind, part.size) for part in own if part.kind in ("rod", "shell", "foot"))
         foam = sum(part.mass for part in own if part.kind == "foam")
-        found.append(Body(name=body.name, simulated=float(mass), servos=float(sum(sitting)), printed=printed + foam))
+        found.append(
+            MassBudget(name=body.name, simulated=float(mass), servos=float(sum(sitting)), printed=printed + foam)
+        )
     return tuple(found)
 
 
-def _built(robot: Robot, parts: Sequence[Part], skin: float) -> tuple[float, float, float]:
+def _built(robot: Robot, parts: Sequence[BodyPart], skin: float) -> tuple[float, float, float]:
     """Return the centre of mass of servos, walls and foam, all joints at zero [m]; NaN if servos are unknown."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
@@ -377,7 +379,7 @@ def _built(robot: Robot, parts: Sequence[Part], skin: float) -> tuple[float, flo
     return _point(np.array(weights) @ np.array(points) / total)
 
 
-def _joints(robot: Robot) -> tuple[Joint, ...]:
+def _joints(robot: Robot) -> tuple[HingePlace, ...]:
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
     pulled = {hinge: cable.name for cable in place.robot.cables for hinge in cable.hinges}
@@ -386,12 +388,12 @@ def _joints(robot: Robot) -> tuple[Joint, ...]:
         parent = place.bodies[body.parent].name if body.parent >= 0 else ""
         for hinge, name, axis in body.hinges:
             drive = name if isinstance(hinge.servo, Servo) else pulled.get(name, "spring")
-            found.append(Joint(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
+            found.append(HingePlace(name=name, body=body.name, parent=parent, at=_point(origins[i]), axis=_point(axis),
                                range=hinge.range, driven_by=drive))  # fmt: skip
     return tuple(found)
 
 
-def _links(robot: Robot) -> tuple[Link, ...]:
+def _links(robot: Robot) -> tuple[DHRow, ...]:
     """Return the tables of Denavit and Hartenberg of the chains that are of the article's kind.
 
     Paper: Tables I and II, Figs 6 and 8.
@@ -404,24 +406,24 @@ def _links(robot: Robot) -> tuple[Link, ...]:
             lengths = (leg.hip_offset, 0.0, leg.femur, leg.tibia)
             names = ("yaw", "pitch", "knee", "foot")
             for i, (a, alpha) in enumerate(zip(lengths, (0.0, pi / 2, 0.0, 0.0), strict=True)):
-                found.append(Link(chain=chain, number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=names[i]))
+                found.append(DHRow(chain=chain, number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=names[i]))
     spine = spine_of(robot) if robot.girdles else None
     if spine is not None:
         for i, name in enumerate(spine.names):
             alpha = 0.0 if i == 0 else (-pi / 2 if i % 2 else pi / 2)
             a = spine.base if i == 0 else spine.link
-            found.append(Link(chain="spine", number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=name))
+            found.append(DHRow(chain="spine", number=i + 1, a=a, alpha=alpha, d=0.0, turned_by=name))
     return tuple(found)
 
 
-def _plates(robot: Robot) -> tuple[Plate, ...]:
+def _plates(robot: Robot) -> tuple[TailPlate, ...]:
     tail = tail_of(robot)
     if tail is None or not tail.cabled:
         return ()
     half = tail.cord_spacing / 2
     holes = ((-half, 0.0), (half, 0.0))
     return tuple(
-        Plate(name=name, radius=max(radius, 1.2 * half), thickness=tail.plate, holes=holes)
+        TailPlate(name=name, radius=max(radius, 1.2 * half), thickness=tail.plate, holes=holes)
         for name, radius in zip(tail.driven, tail.radii, strict=False)
     )
 
@@ -443,13 +445,13 @@ def _cord(robot: Robot, cable: Cable) -> Cord:
 
 def _wires(
     robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
-) -> tuple[Wire, ...]:
+) -> tuple[ServoWire, ...]:
     """Return the chain of each bus from the root outward: every servo hangs on the nearest one wired already."""
     place = layout(robot)
     origins = frames(robot, np.zeros(len(place.hinges))).places
     where = {body.name: origins[i] for i, body in enumerate(place.bodies)}
     at = {name: where[body] + np.array(point) for name, (body, point) in seats.items()}
-    found: list[Wire] = []
+    found: list[ServoWire] = []
     for bus in dict.fromkeys(bought[name].family if name in bought else "servos" for name in place.servos):
         members = [n for n in place.servos if (bought[n].family if n in bought else "servos") == bus]
         wired: dict[str, np.ndarray] = {"controller": np.zeros(3)}
@@ -460,16 +462,16 @@ def _wires(
             )
             straight = float(np.linalg.norm(at[name] - wired[after]))
             number = place.servos.index(name) + 1
-            found.append(Wire(servo=name, number=number, bus=bus, after=after, length=max(SPARE * straight, 0.05)))
+            found.append(ServoWire(servo=name, number=number, bus=bus, after=after, length=max(SPARE * straight, 0.05)))
             wired[name] = at[name]
             members.remove(name)
     return tuple(found)
 
 
-def _floating(robot: Robot) -> Floating:
+def _floating(robot: Robot) -> Buoyancy:
     hull = robot.hull
     whole = sum(volumes(robot).values())
     foam = () if hull is None else tuple((one.body, one.volume, one.raised) for one in hull.foam)
     chambers = () if hull is None else tuple((one.body, one.share) for one in hull.chambers)
     bare = whole - sum(volume for _, volume, _ in foam)
-    return Floating(mass=robot.mass, bare=bare, foam=foam, air=0.0 if hull is None else hull.air, chambers=chambers)
+    return Buoyancy(mass=robot.mass, bare=bare, foam=foam, air=0.0 if hull is None else hull.air, chambers=chambers)

@@ -15,7 +15,7 @@ from suchus.errors import InvalidDesign, UnknownName
 from suchus.hardware.loads import (
     AT_LIMIT,
     FULL_WOUND,
-    Case,
+    LoadCase,
     ServoLoad,
     borne,
     cold,
@@ -31,7 +31,7 @@ FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Family:
+class ServoFamily:
     """Servos of one family in a robot, and whether they do."""
 
     name: str
@@ -92,21 +92,21 @@ class Sizing:
 
     robot: Robot
     """The robot as it is designed."""
-    cases: tuple[Case, ...]
+    cases: tuple[LoadCase, ...]
     """What it shall do."""
     own: Mapping[str, Mapping[str, ServoLoad]]
     """What its own servos bear, by case."""
-    families: tuple[Family, ...]
+    families: tuple[ServoFamily, ...]
     """Families, those first that do, the cheapest first."""
 
     @property
-    def best(self) -> Family | None:
+    def best(self) -> ServoFamily | None:
         """The cheapest family that does at the gaits' own periods; else the cheapest that does at longer ones."""
         passing = [family for family in self.families if family.as_asked] or [f for f in self.families if f.passes]
         return passing[0] if passing else None
 
     @property
-    def slower(self) -> Family | None:
+    def slower(self) -> ServoFamily | None:
         """A family that is cheaper than the best one and does at longer periods, if there is one."""
         best = self.best
         cheaper = [f for f in self.families if f.passes and best is not None and sum(f.price) < sum(best.price)]
@@ -166,7 +166,7 @@ def fitted(robot: Robot, chosen: Mapping[str, Motor], volts: float) -> Robot:
 
 def size(
     robot: Robot,
-    asked: Sequence[Case],
+    asked: Sequence[LoadCase],
     *,
     motors: Mapping[str, Motor] | None = None,
     family: str | None = None,
@@ -215,15 +215,15 @@ def size(
 class _Search:
     """Looks for servos of one family after the other; what movements ask for is simulated once for all."""
 
-    def __init__(self, robot: Robot, asked: Sequence[Case]) -> None:
+    def __init__(self, robot: Robot, asked: Sequence[LoadCase]) -> None:
         self._robot, self._asked, self._places = robot, tuple(asked), places(robot)
         self._gaits = list(dict.fromkeys(case.gait.name for case in asked))
         self._demands: dict[tuple[str, float], xr.Dataset] = {}
 
-    def family(self, name: str, volts: float, motors: Sequence[Motor]) -> Family:
+    def family(self, name: str, volts: float, motors: Sequence[Motor]) -> ServoFamily:
         """Return the cheapest servos of a family that do, with periods as long as they must be."""
         factors = dict.fromkeys(self._gaits, 1.0)
-        found = Family(name=name, volts=volts, chosen={}, factors=dict(factors), loads={})
+        found = ServoFamily(name=name, volts=volts, chosen={}, factors=dict(factors), loads={})
         while True:
             hopeless = self._hopeless(motors, factors)
             if hopeless is not None:
@@ -246,7 +246,7 @@ class _Search:
         """Return whether a gait may have a longer period: all but swims, whose wave is that of the swim."""
         return all(case.lake is None for case in self._asked if case.gait.name == gait)
 
-    def _slowed(self, factors: Mapping[str, float]) -> list[Case]:
+    def _slowed(self, factors: Mapping[str, float]) -> list[LoadCase]:
         return [case.slower(factors[case.gait.name]) for case in self._asked]
 
     def demands(self, factors: Mapping[str, float]) -> list[xr.Dataset]:
@@ -288,7 +288,7 @@ class _Search:
                     return case.gait.name, self._lacks(names, case, demand)
         return None
 
-    def _lacks(self, names: Sequence[str], case: Case, demand: xr.Dataset) -> str:
+    def _lacks(self, names: Sequence[str], case: LoadCase, demand: xr.Dataset) -> str:
         one = demand.sel(servo=list(names))
         torque, speed = float(np.abs(one.servo_torque).max()), float(np.abs(one.servo_velocity).max())
         rms = float(np.sqrt((one.servo_torque**2).mean("time")).max())
@@ -305,7 +305,7 @@ class _Search:
 
     def _simulated(
         self, name: str, volts: float, motors: Sequence[Motor], factors: Mapping[str, float]
-    ) -> tuple[Family, tuple[str, str] | None]:
+    ) -> tuple[ServoFamily, tuple[str, str] | None]:
         """Return the servos of a family that do by simulation, or those tried last with a gait that they do not do."""
         cases, demands = self._slowed(factors), self.demands(factors)
         left = {names: self._candidates(names, volts, motors, demands) for names in self._places}
@@ -314,7 +314,7 @@ class _Search:
             body = fitted(self._robot, chosen, volts)
             records = records_of_each([(cold(body), case) for case in cases])
             loads = {case.name: borne(body, record) for case, record in zip(cases, records, strict=True)}
-            family = Family(name=name, volts=volts, chosen=chosen, factors=dict(factors), loads=loads)
+            family = ServoFamily(name=name, volts=volts, chosen=chosen, factors=dict(factors), loads=loads)
             weak = self._weak(family)
             if not weak:
                 return family, None
@@ -323,7 +323,7 @@ class _Search:
                 return family, self._short(family, *at_end[0])
             left |= {names: left[names][1:] for names, _ in weak}
 
-    def _short(self, family: Family, names: Sequence[str], name: str) -> tuple[str, str]:
+    def _short(self, family: ServoFamily, names: Sequence[str], name: str) -> tuple[str, str]:
         """Return the gait of a case that the best servo of a family does not do, and why."""
         case = next(one for one in self._slowed(family.factors) if one.name == name)
         load, motor = family.loads[name][names[0]], family.chosen[names[0]]
@@ -333,7 +333,7 @@ class _Search:
             f"{motor.continuous_torque:.2f} N m can be given continuously"
         )
 
-    def _weak(self, family: Family) -> list[tuple[tuple[str, ...], str]]:
+    def _weak(self, family: ServoFamily) -> list[tuple[tuple[str, ...], str]]:
         """Return the places whose servos do not do, each with the case that asks most of it."""
         found = []
         for names in self._places:
@@ -354,7 +354,7 @@ def does(motor: Motor, load: ServoLoad) -> bool:
 
 
 def with_better(
-    robot: Robot, case: Case, loads: Mapping[str, ServoLoad], motors: Mapping[str, Motor] | None = None
+    robot: Robot, case: LoadCase, loads: Mapping[str, ServoLoad], motors: Mapping[str, Motor] | None = None
 ) -> Mapping[str, ServoLoad]:
     """Return loads in which each servo at its limit for too long names the cheapest servo that is sold and does.
 

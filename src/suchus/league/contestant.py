@@ -51,7 +51,7 @@ class Quantity:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Rung:
+class Predictor:
     """A model that predicts, from formulas to the flow in space."""
 
     words: str
@@ -85,7 +85,7 @@ class Contestant:
     """All numbers that the prediction rests on, by name. Nothing of them was fitted to what is predicted."""
     predicts: Mapping[str, Quantity]
     """What is predicted, by name."""
-    rungs: Mapping[str, Rung]
+    rungs: Mapping[str, Predictor]
     """The models that can be asked, by name, the cheapest first."""
     left_out: Mapping[str, str] = field(default_factory=dict)
     """Why other models cannot be asked, in a phrase, by name."""
@@ -156,7 +156,7 @@ class Entrant(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class Single(Entrant):
+class SingleContestant(Entrant):
     """One contestant."""
 
     contestant: Contestant
@@ -179,7 +179,7 @@ class Single(Entrant):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Family(Entrant):
+class ContestantFamily(Entrant):
     """Contestants that differ in one number, which stands in their names: ``catshark_2.5``."""
 
     name: str

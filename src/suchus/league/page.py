@@ -23,7 +23,7 @@ _BOLD: Mapping[Word, str] = {"within": "within", "within, wide": "within, wide",
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Standing:
+class LeagueEntry:
     """One contestant's prediction, its seal, and what was measured."""
 
     name: str
@@ -53,7 +53,7 @@ class Standing:
         ]
 
 
-def standing(contestant: Contestant, out: Path, measured: Path) -> Standing:
+def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
     """Return a sealed prediction beside its measurement, which is opened now.
 
     Args:
@@ -65,7 +65,7 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> Standing:
         UnreadableFile: the prediction is not sealed, or the measurement says something else than is predicted.
     """
     folder = out / contestant.name
-    return Standing(
+    return LeagueEntry(
         name=contestant.name,
         title=contestant.title,
         about=contestant.about,
@@ -77,12 +77,12 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> Standing:
     )
 
 
-def standing_text(standings: Sequence[Standing]) -> str:
+def standing_text(standings: Sequence[LeagueEntry]) -> str:
     """Return standings as JSON, from which ``standings_of`` makes them again."""
     return json.dumps([_plain(one) for one in standings], indent=1) + "\n"
 
 
-def _plain(one: Standing) -> Any:
+def _plain(one: LeagueEntry) -> Any:
     data: dict[str, Any] = plain(one)
     data["prediction"] = {
         quantity: {rung: {"value": at.value, "low": at.low, "high": at.high} for rung, at in rungs.items()}
@@ -91,7 +91,7 @@ def _plain(one: Standing) -> Any:
     return data
 
 
-def standings_of(path: Path) -> list[Standing]:
+def standings_of(path: Path) -> list[LeagueEntry]:
     """Return the standings that a file keeps.
 
     Raises:
@@ -105,7 +105,7 @@ def standings_of(path: Path) -> list[Standing]:
         ) from error
 
 
-def _standing(data: Any) -> Standing:
+def _standing(data: Any) -> LeagueEntry:
     def value(number: Any) -> Value:
         return tuple(number) if isinstance(number, list) else float(number)
 
@@ -117,10 +117,10 @@ def _standing(data: Any) -> Standing:
         name: Measured(**(one | {end: value(one[end]) for end in ("value", "low", "high")}))
         for name, one in data["measured"].items()
     }
-    return Standing(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
+    return LeagueEntry(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
 
 
-def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mapping[str, Path]) -> list[Standing]:
+def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mapping[str, Path]) -> list[LeagueEntry]:
     """Return the standings of those contestants whose predictions are sealed in a folder.
 
     Raises:
@@ -132,7 +132,7 @@ def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mappin
     return found
 
 
-def table(one: Standing) -> list[str]:
+def table(one: LeagueEntry) -> list[str]:
     """Return the rows of a contestant's table, in Markdown."""
     judgements = {(quantity, rung): judgement for quantity, rung, *_, judgement in one.judgements()}
     lines = ["| quantity | model | prediction | interval | measured | verdict |", "|---|---|---|---|---|---|"]
@@ -160,7 +160,7 @@ def shown(value: Value) -> str:
     return ", ".join(shown(one) for one in value) if isinstance(value, tuple) else f"{value:.3g}"
 
 
-def page(standings: Sequence[Standing], picture: str) -> str:
+def page(standings: Sequence[LeagueEntry], picture: str) -> str:
     """Return the page in Markdown.
 
     Args:
@@ -244,7 +244,7 @@ _OWN = (
 )
 
 
-def _misses(every: Sequence[tuple[Standing, str, str, Interval, Measured, Judgement]]) -> list[str]:
+def _misses(every: Sequence[tuple[LeagueEntry, str, str, Interval, Measured, Judgement]]) -> list[str]:
     missed = [row for row in every if row[-1].word == "missed"]
     if not missed:
         return ["None."]
@@ -267,7 +267,7 @@ def _given(seal: Seal) -> list[str]:
     return lines
 
 
-def draw(standings: Sequence[Standing], path: Path) -> Path:
+def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
     """Draw every prediction over what was measured, its interval as a bar, one row for each quantity and contestant."""
     rows = [(one, quantity) for one in standings for quantity in one.prediction if quantity in one.measured]
     rungs = list(dict.fromkeys(rung for one, quantity in rows for rung in one.prediction[quantity]))
@@ -309,7 +309,7 @@ def _first(value: Value) -> float:
     return value[0] if isinstance(value, tuple) else value
 
 
-def write_page(standings: Sequence[Standing], out: Path) -> Path:
+def write_page(standings: Sequence[LeagueEntry], out: Path) -> Path:
     """Write the page, its figure and the outcomes it is made of, and return the page's place."""
     draw(standings, out / FIGURE)
     write(out / OUTCOMES, standing_text(standings))

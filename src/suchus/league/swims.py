@@ -18,7 +18,7 @@ from suchus.design.water import Water
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.flow.setup import LAYER_CELLS
 from suchus.land import Lake, Run, simulate
-from suchus.league.contestant import Found, Numbers, Rung
+from suchus.league.contestant import Found, Numbers, Predictor
 from suchus.motion import Curve, Gait, cycle_targets, servo_parts
 from suchus.progress import Progress, portion
 from suchus.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
@@ -45,7 +45,7 @@ _DEEP = 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Swimmer:
+class ModelSwimmer:
     """A body, how it moves, and what the water does to it, all numbers chosen."""
 
     robot: Robot
@@ -62,7 +62,7 @@ class Swimmer:
     """Part of the first period in which the motion grows; 0 for measured curves [cycle]."""
 
 
-class Swum(NamedTuple):
+class SwimPrediction(NamedTuple):
     """What a model says of one swim."""
 
     frequency: float
@@ -79,14 +79,14 @@ class Swum(NamedTuple):
     """k in dU/dt = -k U^2 with the posture held [1/m]; NaN where it is not read."""
 
 
-Build = Callable[[Numbers, float | None], Swimmer]
+Build = Callable[[Numbers, float | None], ModelSwimmer]
 """Makes the swimmer of a choice of the numbers, at a frequency [Hz] or at its own."""
-Read = Callable[[Numbers, Swimmer, Swum], Found]
+Read = Callable[[Numbers, ModelSwimmer, SwimPrediction], Found]
 """Reads what is predicted from a swim."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class SwimTask:
     """What is asked of a swimmer."""
 
     build: Build
@@ -105,7 +105,7 @@ class Asked:
     """Whether it is to coast with its posture held."""
 
 
-def rungs(asked: Asked, *, space: bool = True) -> dict[str, Rung]:
+def rungs(asked: SwimTask, *, space: bool = True) -> dict[str, Predictor]:
     """Return every model that can be asked of a swimmer.
 
     Args:
@@ -113,25 +113,25 @@ def rungs(asked: Asked, *, space: bool = True) -> dict[str, Rung]:
         space: whether the flow in space can be.
     """
     found = {
-        name: Rung(words=words, work=partial(_by_theory, model, asked), draws=THEORY_DRAWS)
+        name: Predictor(words=words, work=partial(_by_theory, model, asked), draws=THEORY_DRAWS)
         for name, words, model in (
             ("resistive", "resistive theory: the drag of each section (Taylor 1952)", resistive),
             ("reactive", "reactive theory: the momentum shed at the tail (Lighthill 1971)", reactive),
         )
     }
-    found["sections"] = Rung(
+    found["sections"] = Predictor(
         words="six degrees of freedom, with drag, added mass and shed momentum of each section",
         work=partial(_by_sections, asked),
         draws=SECTION_DRAWS,
     )
-    found["slice"] = Rung(
+    found["slice"] = Predictor(
         words="the flow around a slice of unlimited depth, in thick water",
         work=partial(_by_slice, asked),
         draws=0,
         like="sections",
     )
     if space:
-        found["space"] = Rung(
+        found["space"] = Predictor(
             words="the flow around the body in three dimensions, in thick water, brought to real water by theories",
             work=partial(_by_space, asked),
             draws=0,
@@ -143,7 +143,7 @@ def rungs(asked: Asked, *, space: bool = True) -> dict[str, Rung]:
 # --- theories -----------------------------------------------------------------------------------------------------
 
 
-def _by_theory(model: Model, asked: Asked, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
+def _by_theory(model: Model, asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     found: list[Found] = []
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
@@ -157,7 +157,9 @@ def _by_theory(model: Model, asked: Asked, choices: Sequence[Numbers], progress:
     return found
 
 
-def _held(asked: Asked, numbers: Numbers, swim: Callable[[Swimmer], Swum]) -> tuple[Swimmer, Swum]:
+def _held(
+    asked: SwimTask, numbers: Numbers, swim: Callable[[ModelSwimmer], SwimPrediction]
+) -> tuple[ModelSwimmer, SwimPrediction]:
     """Return a swim at its own frequency, or at that which holds a speed; speed is nearly in proportion to it.
 
     Raises:
@@ -178,13 +180,13 @@ def _held(asked: Asked, numbers: Numbers, swim: Callable[[Swimmer], Swum]) -> tu
     return swimmer, _at_speed(swum, wanted)
 
 
-def _at_speed(swum: Swum, wanted: float) -> Swum:
+def _at_speed(swum: SwimPrediction, wanted: float) -> SwimPrediction:
     """Return a swim at a speed near its own: frequency in proportion, power with the cube."""
     factor = wanted / swum.speed
     return swum._replace(frequency=factor * swum.frequency, speed=wanted, power=factor**3 * swum.power)
 
 
-def theory(model: Model, swimmer: Swimmer, *, coasts: bool = False, starts: bool = True) -> Swum:
+def theory(model: Model, swimmer: ModelSwimmer, *, coasts: bool = False, starts: bool = True) -> SwimPrediction:
     """Return what a slender-body model says of a swim, from rest by its mean thrust at each speed.
 
     Args:
@@ -200,7 +202,7 @@ def theory(model: Model, swimmer: Swimmer, *, coasts: bool = False, starts: bool
     bent, shed = undulation(outline, swimmer.gait), partial(_shed, model, swimmer.shedding)
     free = cruise(outline, bent, shed, swimmer.water)
     curve = cycle(outline, bent, free.sway, free.turn)
-    return Swum(
+    return SwimPrediction(
         frequency=bent.frequency,
         speed=free.speed,
         power=free.power,
@@ -220,7 +222,7 @@ def _shed(model: Model, share: float, outline: Outline, curve, speed: float, wat
 
 
 def _from_rest(
-    outline: Outline, bent: Motion, model: Model, swimmer: Swimmer, last: float, periods: int = 12, steps: int = 24
+    outline: Outline, bent: Motion, model: Model, swimmer: ModelSwimmer, last: float, periods: int = 12, steps: int = 24
 ) -> tuple[float, ...]:
     """Return the mean speed of each period from rest, by the mean thrust at each speed."""
     speeds = np.linspace(0.0, 1.5, 10) * last
@@ -243,7 +245,7 @@ def _from_rest(
     return tuple(found)
 
 
-def _coast(outline: Outline, bent: Motion, model: Model, swimmer: Swimmer, speed: float) -> float:
+def _coast(outline: Outline, bent: Motion, model: Model, swimmer: ModelSwimmer, speed: float) -> float:
     """Return k of the bent body at rest in itself, its mean over the postures of a cycle [1/m]."""
     free = cycle(outline, bent, *recoil(outline, bent, speed, swimmer.water))
     zero, high, found = np.zeros_like(free.x[:1]), outline.silhouette.half_height, []
@@ -261,7 +263,7 @@ def _coast(outline: Outline, bent: Motion, model: Model, swimmer: Swimmer, speed
 # --- sections -----------------------------------------------------------------------------------------------------
 
 
-def _by_sections(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
+def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     if asked.held is None:
         swimmers = [asked.build(numbers, None) for numbers in choices]
         swums = sections(swimmers, cycles=asked.cycles, coasts=asked.coasts, progress=progress)
@@ -288,13 +290,13 @@ def _by_sections(asked: Asked, choices: Sequence[Numbers], progress: Progress) -
     return found
 
 
-def _sound(asked: Asked, numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def _sound(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     return asked.read(numbers, swimmer, swum) if isfinite(swum.speed) else {}
 
 
 def sections(
-    swimmers: Sequence[Swimmer], *, cycles: int, coasts: bool = False, progress: Progress = lambda *_: None
-) -> list[Swum]:
+    swimmers: Sequence[ModelSwimmer], *, cycles: int, coasts: bool = False, progress: Progress = lambda *_: None
+) -> list[SwimPrediction]:
     """Return swims in six degrees of freedom, from rest at the surface or just below, by the forces of sections.
 
     Args:
@@ -328,14 +330,14 @@ def sections(
     return [swum._replace(coast=k) for swum, k in zip(found, held, strict=True)]
 
 
-def _lake(one: Swimmer, current: tuple[float, float] = (0.0, 0.0)) -> Lake:
+def _lake(one: ModelSwimmer, current: tuple[float, float] = (0.0, 0.0)) -> Lake:
     return Lake(
         level=_DEEP * one.robot.length, water=one.water, added_mass=one.added_mass, shedding=one.shedding,
         current=current,
     )  # fmt: skip
 
 
-def _of_run(run, one: Swimmer, cycles: int) -> Swum:  # type: ignore[no-untyped-def]
+def _of_run(run, one: ModelSwimmer, cycles: int) -> SwimPrediction:  # type: ignore[no-untyped-def]
     """Return what one run says; speeds NaN where it diverged."""
     period, time = one.gait.period, run.time.values
     centre = run.centre_of_mass.transpose("time", "xyz").values[:, :2]
@@ -351,7 +353,7 @@ def _of_run(run, one: Swimmer, cycles: int) -> Swum:  # type: ignore[no-untyped-
     way = at[-1] - at[-1 - LAST]
     aside = (tip @ np.array([-way[1], way[0]])) / max(hypot(*way), 1e-12)
     drift = np.polyval(np.polyfit(time[last], aside, 1), time[last])
-    return Swum(
+    return SwimPrediction(
         frequency=1.0 / period,
         speed=float(speeds[-LAST:].mean()),
         power=float(run.servo_power.values[last].mean()),
@@ -361,7 +363,7 @@ def _of_run(run, one: Swimmer, cycles: int) -> Swum:  # type: ignore[no-untyped-
     )
 
 
-def _coasting(swimmers: Sequence[Swimmer], speeds: Sequence[float], progress: Progress) -> list[float]:
+def _coasting(swimmers: Sequence[ModelSwimmer], speeds: Sequence[float], progress: Progress) -> list[float]:
     """Return k of bodies that coast with the postures of a cycle, its mean over the postures [1/m].
 
     A body at rest in a stream is one that coasts in still water, seen from another frame.
@@ -411,7 +413,7 @@ def _root(robot: Robot) -> float:
 # --- the flow -----------------------------------------------------------------------------------------------------
 
 
-def _by_slice(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
+def _by_slice(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
     swimmer = asked.build(numbers, asked.start if asked.held else None)
     swum = resolved(swimmer, axes=2, cells=SLICE_CELLS, cycles=asked.resolved_cycles, progress=progress)
@@ -419,7 +421,7 @@ def _by_slice(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
     return [_answer(asked, numbers, swimmer, swum._replace(power=high * swum.power))]
 
 
-def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
+def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
     swimmer = asked.build(numbers, asked.start if asked.held else None)
     grids = []
@@ -431,7 +433,7 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
             )
         )  # fmt: skip
     thick = [replace(swimmer, water=replace(swimmer.water, viscosity=_viscosity(swimmer, n))) for n in SPACE_CELLS]
-    answers: list[Swum] = []
+    answers: list[SwimPrediction] = []
     for model in (resistive, reactive):
         real = theory(model, swimmer, starts=asked.held is None)
         for grid, water in zip(grids, thick, strict=True):
@@ -450,7 +452,7 @@ def _by_space(asked: Asked, choices: Sequence[Numbers], progress: Progress) -> l
     return [_answer(asked, numbers, swimmer, one) for one in (middle, *answers)]
 
 
-def _brought(grid: Swum, real: Swum, slow: Swum) -> Swum:
+def _brought(grid: SwimPrediction, real: SwimPrediction, slow: SwimPrediction) -> SwimPrediction:
     """Return a swim in thick water as it would be in real water, were the flow then as far from the theory as it is.
 
     It may be nearer: what a theory leaves out, the layers of thick water, is thinner there. So the theory's own answer
@@ -474,7 +476,7 @@ def _mean(numbers: Sequence[float]) -> float:
     return float(np.exp(np.mean(np.log(numbers)))) if min(numbers) > 0.0 else float(np.mean(numbers))
 
 
-def _answer(asked: Asked, numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Found:
+def _answer(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
     if asked.held is None:
         return asked.read(numbers, swimmer, swum)
     if not swum.speed > 0.0:
@@ -482,7 +484,7 @@ def _answer(asked: Asked, numbers: Numbers, swimmer: Swimmer, swum: Swum) -> Fou
     return asked.read(numbers, swimmer, _at_speed(swum, asked.held(numbers)))
 
 
-def resolved(swimmer: Swimmer, *, axes: int, cells: int, cycles: int, progress: Progress) -> Swum:
+def resolved(swimmer: ModelSwimmer, *, axes: int, cells: int, cycles: int, progress: Progress) -> SwimPrediction:
     """Return a free swim in the flow, in water as thick as the grid needs it to carry the boundary layer.
 
     Power is per metre of depth in the plane [W/m].
@@ -497,7 +499,7 @@ def resolved(swimmer: Swimmer, *, axes: int, cells: int, cycles: int, progress: 
     setting = SwimSetting(axes=axes, cells=cells, viscosity=_viscosity(swimmer, cells), cycles=cycles)
     record = resolved_swim(swimmer.robot, swimmer.gait, setting, progress=progress)
     speeds = record.speed.values
-    return Swum(
+    return SwimPrediction(
         frequency=swimmer.gait.frequency,
         speed=float(speeds[-1]),
         power=float(record.power.values[-1]),
@@ -507,7 +509,7 @@ def resolved(swimmer: Swimmer, *, axes: int, cells: int, cycles: int, progress: 
     )
 
 
-def _viscosity(swimmer: Swimmer, cells: int) -> float:
+def _viscosity(swimmer: ModelSwimmer, cells: int) -> float:
     """Return the least viscosity with which a grid carries the boundary layer, and a hundredth more [m2/s]."""
     outline, gait, length = Outline(swimmer.robot, cells + 1), swimmer.gait, swimmer.robot.length
     curve = cycle(outline, gait, *recoil(outline, gait, 0.0, Water()))

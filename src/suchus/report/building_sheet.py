@@ -9,7 +9,7 @@ from pathlib import Path
 from suchus import figures
 from suchus.hardware.commands import Commands, trajectory_text
 from suchus.hardware.outlines import plates_dxf, stl, top_dxf
-from suchus.hardware.parts import Part, Sheet
+from suchus.hardware.parts import BodyPart, Sheet
 from suchus.hardware.ros import controllers, described, note
 from suchus.motion import Gait
 from suchus.record import write
@@ -52,7 +52,7 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
     write(folder / PAGE, render("building_sheet.html", folder, _content(sheet, gait, picture, outlines), deg=degrees))
 
 
-def printed(sheet: Sheet) -> list[Part]:
+def printed(sheet: Sheet) -> list[BodyPart]:
     """Return the parts that are printed: of those that mirror each other the left one."""
     rights = {f"R{girdle.name}_" for girdle in sheet.robot.girdles}
     return [

@@ -11,7 +11,7 @@ from suchus import blueprint, figures
 from suchus.design import Motor, layout
 from suchus.figures.servos import Used, draw_use
 from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
-from suchus.hardware.sizing import Family, Sizing, fitted, use, why
+from suchus.hardware.sizing import ServoFamily, Sizing, fitted, use, why
 from suchus.record import write
 from suchus.report.rendering import embedded, number, render
 
@@ -64,7 +64,7 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
     write(folder / PAGE, text)
 
 
-def uses(family: Family) -> list[Used]:
+def uses(family: ServoFamily) -> list[Used]:
     """Return what each servo of a family uses, in the case that asks most of it."""
     found = []
     for name, case, _ in family.binding():
@@ -118,7 +118,7 @@ def families_text(sizing: Sizing, hours: float) -> str:
     return _csv(head, rows)
 
 
-def counted(family: Family) -> dict[str, int]:
+def counted(family: ServoFamily) -> dict[str, int]:
     """Return how many of each servo are bought, the cheapest first."""
     ones = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
     return {motor.name: ones.count(motor) for motor in dict.fromkeys(ones)}
@@ -154,7 +154,7 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     return said
 
 
-def _slower(sizing: Sizing, family: Family) -> str:
+def _slower(sizing: Sizing, family: ServoFamily) -> str:
     """Return with which periods a family does, where they are not those that were asked for."""
     slow = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
     own = {case.gait.name: case.gait.period for case in sizing.cases}
@@ -162,7 +162,7 @@ def _slower(sizing: Sizing, family: Family) -> str:
     return f" with {' and '.join(texts)}" if texts else ""
 
 
-def _periods(sizing: Sizing, family: Family | None) -> dict[str, float]:
+def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
     own = {case.gait.name: case.gait.period for case in sizing.cases}
     return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in own.items()}
 

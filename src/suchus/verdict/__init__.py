@@ -2,7 +2,19 @@
 
 from suchus.verdict.counting import EvidenceCount, Standing, counted, standings
 from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
-from suchus.verdict.rule import Clause, Control, Kind, Reading, Rule, Rung, Varied, between, compared, interval, listed
+from suchus.verdict.rule import (
+    Clause,
+    ControlGroup,
+    Kind,
+    Reading,
+    Rule,
+    Rung,
+    Varied,
+    between,
+    compared,
+    interval,
+    listed,
+)
 from suchus.verdict.table import RULES, UNRULED, examples_of, rules_of, varied_of
 
 __all__ = [
@@ -10,7 +22,7 @@ __all__ = [
     "SHARES",
     "UNRULED",
     "Clause",
-    "Control",
+    "ControlGroup",
     "EvidenceCount",
     "Examples",
     "Kind",

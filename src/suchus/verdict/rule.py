@@ -113,7 +113,7 @@ def between(name: str, low: float, high: float) -> dict[str, float]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Control:
+class ControlGroup:
     """The control group that a claim speaks of: with what it compares, or who alone does what it says."""
 
     group: str
@@ -152,7 +152,7 @@ class Rule:
     """Kind of evidence for the claim."""
     holds: tuple[Clause, ...] = ()
     """The statement apart from its number: all of these. None only where a printed number alone is read back."""
-    control: Control | None = None
+    control: ControlGroup | None = None
     """The control group; None where the claim speaks of none."""
     spread: tuple[str, ...] = ()
     """Which of the measures it reads have an interval, ``NAME_low`` to ``NAME_high``."""

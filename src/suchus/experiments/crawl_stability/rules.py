@@ -3,14 +3,14 @@
 from math import nan, radians
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Control, Rule, Varied, between
+from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
 
 _BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _STEADIER = "steadier is a smaller fluctuation"
 _STEPS = Clause(
     "hind_duty_limbs_tail_lifted", "<=", 0.85, "feet that hardly leave the ground walk in no gait, and rise with none"
 )
-_IN_THE_AIR = Control(
+_IN_THE_AIR = ControlGroup(
     group="limbs_tail_lifted",
     why="Section IV.A: only the limbs move, the tail is lifted off the ground, spine and tail are fixed.",
     needs=(_STEPS,),
@@ -58,7 +58,7 @@ RULES = (
             Clause("lean_limbs_only_1200_ms", ">", "lean_coordinated_1200_ms", "the article shows it of this group"),
             Clause("line_distance_limbs_only_1200_ms", ">", 0.024, "a foot's width off the line"),
         ),
-        control=Control(
+        control=ControlGroup(
             group="limbs_only",
             why="Section IV.A lifts the tail; the group whose tail lies still, which was asked of other designs too, "
             "stands for it, and both are told.",
@@ -88,7 +88,7 @@ RULES = (
             ),
             Clause("tail_contact_pp_change", "<", 0.0, _STEADIER),
         ),
-        control=Control(
+        control=ControlGroup(
             group="spine_only",
             why="What lies on the ground supports: the same crawl with the tail in the air, unswung.",
         ),
@@ -105,7 +105,9 @@ RULES = (
         experiment="crawl_stability",
         measure="wagging_pp_change",
         holds=(Clause("wagging_pp_change", "<", 0.0, _STEADIER),),
-        control=Control(group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."),
+        control=ControlGroup(
+            group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
+        ),
         spread=("wagging_pp_change",),
         of=_BUILT,
         why="Against a tail that is dragged without a swing wagging changes the fluctuation by "

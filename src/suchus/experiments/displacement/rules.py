@@ -1,7 +1,7 @@
 """When the claims on the displacement count as what (section IV.B, Fig. 16)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Control, Rule, between
+from suchus.verdict.rule import Clause, ControlGroup, Rule, between
 
 _BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _FREE = (
@@ -12,7 +12,7 @@ _FREE = (
 _FORWARD = "forward is forward"
 _GAINS = "a gain is more than none"
 _WALKS = ("hind_duty_limbs_only", "two_feet_share_limbs_only")
-_LEGS_ALONE = Control(
+_LEGS_ALONE = ControlGroup(
     group="limbs_only",
     why="Fig. 16: spine and tail are not engaged. It does not say where the tail is; ours lies still, and what is so "
     "with the tail in the air, as in section IV.A, is told beside.",
@@ -21,7 +21,7 @@ _LEGS_ALONE = Control(
         Clause(_WALKS[1], ">=", 0.3, "a diagonal gait stands on two feet for part of its cycle"),
     ),
 )
-_UNSWUNG = Control(group="tail_drag", why="What bends adds: the same crawl with a straight trunk.")
+_UNSWUNG = ControlGroup(group="tail_drag", why="What bends adds: the same crawl with a straight trunk.")
 
 RULES = (
     Rule(
@@ -79,7 +79,7 @@ RULES = (
         experiment="displacement",
         measure="gain_tail_swing",
         holds=(Clause("gain_tail_swing", ">", 0.0, _GAINS),),
-        control=Control(
+        control=ControlGroup(
             group="tail_still", why="What swings adds: the same crawl whose tail is dragged without a swing."
         ),
         spread=("gain_tail_swing",),

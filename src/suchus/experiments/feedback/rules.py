@@ -3,7 +3,7 @@
 from math import nan
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Control, Rule, Varied, between
+from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
 
 _KEPT = "a rule must not spoil a walk that is right: 3 % and no more"
 _STARTS = "random starts, each of a robot of its own that is built of the design"
@@ -26,7 +26,7 @@ RULES = (
             Clause("kept_undisturbed_tail", ">=", 0.97, f"tail: {_KEPT}"),
             Clause("locked_spine_loss_closed", "<", "locked_spine_loss_open", "all three together still help"),
         ),
-        control=Control(group="open", why="What a rule does is what the same robot does not do without it."),
+        control=ControlGroup(group="open", why="What a rule does is what the same robot does not do without it."),
         spread=("converged_cross_load", "converged_wrong_sign"),
         of=_STARTS,
         why="Limbs: from random phases {converged_cross_load:.0%} find the gait, 90 % of them within "
@@ -47,7 +47,9 @@ RULES = (
             Clause("way_gain_shared", ">", 0.0, "a coordinated body gets farther in a cycle"),
             Clause("way_shared_least", ">", "way_isolated_least", "from the worst start too"),
         ),
-        control=Control(group="isolated", why="What is shared helps against the same robot whose parts hear nothing."),
+        control=ControlGroup(
+            group="isolated", why="What is shared helps against the same robot whose parts hear nothing."
+        ),
         spread=("way_gain_shared",),
         of=_STARTS,
         why="After random starts a cycle gains {way_shared:.2f} m (at least {way_shared_least:.2f}) where spine and "

@@ -4,7 +4,7 @@ from itertools import product
 
 from suchus.paper import CLAIMS
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Control, Rule, Varied, between
+from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
 
 _BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
@@ -14,7 +14,7 @@ _ABOUT_HALF = (
     Clause("", "<=", -0.4, "about half is 40 % at least"),
     Clause("", ">=", -0.7, "about half is 70 % at most"),
 )
-_INTACT = Control(
+_INTACT = ControlGroup(
     group="coordinated", why="Section IV.C counts from the intact robot with spine and tail, of both groups."
 )
 _NOTHING = Clause("", ">=", -0.1, "almost nothing is less than a tenth")
@@ -100,7 +100,9 @@ RULES = (
             Clause("com_rise_limp", ">", 0.0, "raised is higher than with the joint intact"),
             Clause("foot_free_limp", ">=", 0.5, "a foot that swings is off the ground for most of its swing"),
         ),
-        control=Control(group="intact", why="What carries and raises more does so against the same crawl undamaged."),
+        control=ControlGroup(
+            group="intact", why="What carries and raises more does so against the same crawl undamaged."
+        ),
         why="While the damaged right hind leg is meant to swing, tail, right front and left hind foot carry "
         "{support_share_limp:.0%} of the load with its pitch joint limp, {support_share_intact:.0%} intact; the tail's "
         "own part is {tail_load_limp:.1f} N. Against intact the height of the centre of mass is "
@@ -117,7 +119,7 @@ RULES = (
             Clause(f"gain_{joint}_limp_one", ">", 0.0, f"{joint.replace('_', ' ')}: less of its own is lost")
             for joint in _BORNE
         ),
-        control=Control(
+        control=ControlGroup(
             group="limbs_only",
             why="Section IV.C: without trunk cooperative motion. It does not say where the tail is; ours lies still.",
         ),

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import atan, nan
 
 from suchus.verdict.judging import Examples, Word
-from suchus.verdict.rule import Clause, Control, Rule, Rung, Varied
+from suchus.verdict.rule import Clause, ControlGroup, Rule, Rung, Varied
 
 LADDER: Mapping[str, str] = {
     "resistive": "resistive theory",
@@ -159,7 +159,9 @@ RULES = (
         experiment="swimming",
         measure="gain_tail_share",
         holds=(Clause("gain_tail_share", ">", 0.5, "the main part is more than half"),),
-        control=Control(group="trunk only", why="What the tail gives is what the same swim lacks without its swing."),
+        control=ControlGroup(
+            group="trunk only", why="What the tail gives is what the same swim lacks without its swing."
+        ),
         rungs=_OF_TAIL,
         form="+.0%",
         why="The share of the free speed that is missing without the swing of the tail; limbs are left out, here as in "
@@ -170,7 +172,9 @@ RULES = (
         experiment="swimming",
         measure="gain_spine_share",
         holds=(Clause("gain_spine_share", ">", 0.0, "more than nothing, in both halves"),),
-        control=Control(group="tail only", why="What the spine gives is what the same swim lacks without its swing."),
+        control=ControlGroup(
+            group="tail only", why="What the spine gives is what the same swim lacks without its swing."
+        ),
         rungs=_OF_SPINE,
         form="+.0%",
         why="The share of the free speed that is missing without the swing of the spine; negative where it is a loss.",

@@ -3,7 +3,7 @@
 from math import nan
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Control, Rule, Varied, between
+from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
 
 RULES = (
     Rule(
@@ -11,7 +11,7 @@ RULES = (
         experiment="terrain",
         measure="flat_cost_ratio",
         holds=(Clause("flat_cost_ratio", "<", 1.0, "the structure to adopt is the one that costs less"),),
-        control=Control(group="high_walk", why="Section II.B: one structure or the other, on the same ground."),
+        control=ControlGroup(group="high_walk", why="Section II.B: one structure or the other, on the same ground."),
         spread=("flat_cost_ratio",),
         of="robots built of the design, with the errors of their servos, masses and friction",
         why="On even ground the low crawl costs {flat_cost_ratio:.2f} of the high walk's work over the same "
@@ -25,7 +25,7 @@ RULES = (
             Clause("erect_open_loop_ahead_share", ">", 0.5, "on more rough grounds than not"),
             Clause("falls_rough_high_walk", "<=", "falls_rough_low_crawl", "what falls does not move better"),
         ),
-        control=Control(group="low_crawl", why="Section II.B: one structure or the other, on the same grounds."),
+        control=ControlGroup(group="low_crawl", why="Section II.B: one structure or the other, on the same grounds."),
         spread=("erect_open_loop_ahead_share",),
         of="grounds, each with its own obstacles and its own robot",
         why="Open loop, since the article names no IMU: on {erect_open_loop_ahead_share:.0%} "
