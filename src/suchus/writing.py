@@ -158,6 +158,8 @@ def new_folder(path: Path, *, lasting: bool = False) -> Iterator[Path]:
             _sign(draft)
             check_replaceable(path)  # once more: it may have changed meanwhile
             whole = _taken_along(path, draft)
+            if not whole and not _replacing.get():  # another process was faster since the check above
+                raise Unwritable(f"{path} was changed while it was to be replaced; {_REMEDY}")
             if lasting:
                 for part in (*draft.rglob("*"), draft):
                     _to_disk(part)

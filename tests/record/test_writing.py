@@ -5,6 +5,7 @@ import subprocess
 import pytest
 from tests.failing import KINDS, each_failing
 
+from suchus import writing
 from suchus.errors import Unwritable
 from suchus.writing import MANIFEST, check_replaceable, keep, new_folder, replacing, write
 
@@ -49,6 +50,19 @@ def test_a_file_of_the_users_is_replaced_on_demand_only_and_then_kept(tmp_path, 
         write(file, "at last")
     assert contents(tmp_path)["robot.toml.backup1"] == "mended again"
     assert contents(tmp_path)["robot.toml.backup2"] == "mended a third time"
+
+
+def test_a_folder_that_changes_between_the_look_and_the_move_is_left_alone(tmp_path, monkeypatch):
+    place = tmp_path / "out"
+    result(place, a="ours")
+    monkeypatch.setattr(writing, "check_replaceable", lambda path: None)  # it was as we wrote it when we looked
+    (place / "a").write_text("another's")
+    with pytest.raises(Unwritable, match="was changed while it was to be replaced"):
+        result(place, a="anew")
+    assert contents(tmp_path) == {"out/a": "another's"}
+    with replacing():
+        result(place, a="anew")
+    assert contents(tmp_path) == {"out/a": "anew", "out.backup1/a": "another's"}
 
 
 def test_an_empty_file_is_free(tmp_path):

@@ -20,7 +20,7 @@ from suchus.bus import FRAMINGS, Instruction, Packet, Port, Wiring
 from suchus.bus.packets import Framing
 from suchus.bus.pca9685 import Pulses, open_wires
 from suchus.cli.entry import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.options import gait_first, parse
 from suchus.cli.terminal import working
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming
 from suchus.design import Robot
@@ -84,7 +84,7 @@ def run(words: Sequence[str]) -> int:
         BusFailure: servos cannot be reached, or the robot had to be stopped; the log is kept.
     """
     about = "Drive a robot of servos. Any key stops it, as Ctrl-C and the end of the terminal do; then it is let down."
-    options = parse(DriveOptions, "suchus drive", _gait_first(words), about)
+    options = parse(DriveOptions, "suchus drive", gait_first(words), about)
     gait, control = _movement(options)
     folder = options.out or Path("out") / f"drive_{gait.name}"
     check_writable(folder.parent)
@@ -293,16 +293,3 @@ class Telling:
         step = length + 1 if kind == "write" else 1
         called = [self._names.get(rest[i], str(rest[i])) for i in range(2 * word, len(rest), step)]
         print(f"{kind} {register}, {len(called)} of {', '.join(called[:3])} ...\n  {data.hex(' ')}")
-
-
-def _gait_first(words: Sequence[str]) -> list[str]:
-    """Let the gait be named as an option too, as everywhere else."""
-    words = list(words)
-    for i, word in enumerate(words):
-        if word == "--gait":
-            if words[i + 1 : i + 2] == []:
-                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
-            return [words[i + 1], *words[:i], *words[i + 2 :]]
-        if word.startswith("--gait="):
-            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
-    return words

@@ -9,8 +9,7 @@ from typing import Annotated
 import tyro
 
 from suchus import blueprint
-from suchus.cli.entry import BadCommand
-from suchus.cli.options import parse
+from suchus.cli.options import gait_first, parse
 from suchus.cli.terminal import working
 from suchus.design import Robot
 from suchus.design.checks import require
@@ -70,7 +69,7 @@ def export_commands(words: Sequence[str]) -> int:
         SuchusError: the words make no sense, the servos cannot do it, or the place cannot be written to.
     """
     about = "Write a gait as timed servo angles: CSV with pulses, and a ROS trajectory_msgs/JointTrajectory."
-    options = parse(ExportCommandsOptions, "suchus export-commands", _gait_first(words), about)
+    options = parse(ExportCommandsOptions, "suchus export-commands", gait_first(words), about)
     if (
         options.gait == ExportCommandsOptions().gait
         and options.gait.name not in words
@@ -125,19 +124,6 @@ def _write_loads(options: ExportCommandsOptions, borne: Mapping[str, ServoLoad],
     origin = {"gait": digest({"gait": options.gait}), "robot": digest({"robot": options.robot}), "versions": versions()}
     (draft / "loads.csv").write_text(_loads_text(borne, options.at_limit), encoding="utf-8")
     (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-
-
-def _gait_first(words: Sequence[str]) -> list[str]:
-    """Let the gait be named as an option too, as everywhere else."""
-    words = list(words)
-    for i, word in enumerate(words):
-        if word == "--gait":
-            if words[i + 1 : i + 2] == []:
-                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
-            return [words[i + 1], *words[:i], *words[i + 2 :]]
-        if word.startswith("--gait="):
-            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
-    return words
 
 
 def _loads_text(borne: Mapping[str, ServoLoad], at_limit: float) -> str:

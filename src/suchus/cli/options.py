@@ -266,3 +266,20 @@ _PLAIN = (
     (r"no type matching .* could be instantiated from \[(.*)\]", r"\1 is not what is needed"),
 )
 """What Python says of its own functions, in words of those who type."""
+
+
+def gait_first(words: Sequence[str]) -> list[str]:
+    """Let the gait of a command that takes it as its first word be named as an option too, as everywhere else.
+
+    Raises:
+        BadCommand: the option lacks its value.
+    """
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--gait":
+            if words[i + 1 : i + 2] == []:
+                raise BadCommand("--gait lacks its value: the name of a gait, or a TOML file.")
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--gait="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words
