@@ -116,13 +116,16 @@ class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
         self._write(name, data)
 
     def _read(self, name: str) -> Any:
-        """Return what a file holds; None where there is none, or it is not as we wrote it."""
+        """Return what a file holds; None where there is none, it is not as we wrote it, or its module is gone."""
         try:
             data = Path(self._cache_path, name).read_bytes()
         except OSError:
             return None
         content = data[len(_SEAL) + 32 :]
-        return pickle.loads(content) if data == _sealed(name, content) else None
+        try:
+            return pickle.loads(content) if data == _sealed(name, content) else None
+        except ImportError:
+            return None
 
     def _write(self, name: str, value: Any) -> None:
         with new_file(Path(self._cache_path, name)) as draft:

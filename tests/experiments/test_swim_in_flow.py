@@ -46,6 +46,7 @@ def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     assert m["power_error"] < 0.05
     assert abs(m["speed_space"]) > 1e-3
     assert m["link_added"] > 0
+    assert {"link_r2", "joint_r2"} <= m.keys()  # which the words name
     drawn = EXPERIMENTS["swim_free"].draw(outcome)
     assert {"flow_speeds", "flow_links", "flow_residual", "flow_balance"} <= {*drawn}
     assert "residual.md" in outcome.tables

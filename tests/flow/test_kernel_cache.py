@@ -2,7 +2,9 @@
 
 import ast
 import importlib.util
+import math
 import random
+import sys
 from pathlib import Path
 
 import numba
@@ -105,8 +107,15 @@ def test_without_a_home_there_is_still_an_answer(monkeypatch):
 # --- damaged and foreign code ---------------------------------------------------------------------------------------
 
 
+def test_code_of_a_module_that_is_gone_is_compiled_anew(tmp_path):
+    files = kernel_cache.SealedFiles(str(tmp_path), "k", ("stamp",))
+    for content, held in ((b"cmath\nsqrt\n.", math.sqrt), (b"cno_such_module\nf\n.", None)):
+        (tmp_path / "k.nbi").write_bytes(kernel_cache._sealed("k.nbi", content))
+        assert files._read("k.nbi") is held
+
+
 @pytest.fixture
-def kernel(tmp_path):
+def kernel(tmp_path, monkeypatch):
     """Return a function that makes a kernel anew, as another process does, and calls it."""
     file = tmp_path / "a_kernel.py"
     file.write_text("def f(x):\n    return 3 * x + 1\n\n\ndef g(x):\n    return 5 * x\n")
@@ -114,6 +123,7 @@ def kernel(tmp_path):
     def call(name="f"):
         spec = importlib.util.spec_from_file_location("a_kernel", file)
         module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, "a_kernel", module)  # code that is kept names the module that it is of
         spec.loader.exec_module(module)
         made = numba.njit(getattr(module, name))
         kernel_cache.keep(made, tmp_path / "kept")
