@@ -65,6 +65,19 @@ def test_servos_hear_nothing_at_another_bit_rate_and_the_one_that_answers_is_nam
             rig.check()
 
 
+def test_a_machine_that_falls_behind_lets_the_robot_wait_and_nobody_else(monkeypatch):
+    class Slow(Obedient):
+        period = property(lambda self: 1e-9, lambda self, value: None)  # no machine is so fast
+
+    body, heard = Slow(), []
+    server = Server(Emulator(wiring(), body))
+    monkeypatch.setattr(server, "_listen", lambda wait: heard.append((body.tick, wait)))
+    server.serve(lambda: len(heard) >= 50)
+    server.close()
+    assert [tick for tick, _ in heard] == list(range(1, 51))  # one step between two looks at the bus
+    assert {wait for _, wait in heard} == {0.0}
+
+
 def test_a_second_host_is_told_that_the_port_is_held():
     with served() as server:
         first = open_port(server.ports[0], 1_000_000)

@@ -213,6 +213,58 @@ def test_a_dynamixel_whose_host_is_gone_stops_by_itself_and_a_feetech_holds():
         assert servo.get("torque_enable") == 1
 
 
+class Distracted(BusClock):
+    """Time of a computer that is busy with other things from one tick to another."""
+
+    def __init__(self, rig, ticks):
+        super().__init__(rig)
+        self.ticks = ticks
+
+    def wait(self, tick):
+        return super().wait(tick + self.ticks if tick == 20 else tick)
+
+
+@pytest.mark.parametrize(("ticks", "away"), [(5, False), (15, True)])
+def test_servos_that_stood_still_since_the_computer_was_busy_take_goals_again(ticks, away):
+    one = Drive(duration=0.6, stop="hold")
+    log = drive(
+        one.rig, GAIT, None, one.settings, clock=Distracted(one.rig, ticks), say=one.said.append
+    )
+    assert log.attrs["missed"] == ticks
+    assert any("the servos stood still" in sentence for sentence in one.said) == away
+    assert all(servo.get("bus_watchdog") >= 0 for servo in one.emulator.servos)
+    last = log.servo_target.values[-2]  # what was sent last but one is where servos are at the end
+    assert np.abs(log.servo_angle.values[-1] - last).max() <= 2 * np.pi / 4096
+
+
+def boarded(needed):
+    """Return a rig with a board of each kind, and the numbers that are asked in each of some ticks."""
+    made = wiring(boards=True)
+    emulator = Emulator(made, Obedient(), clocked=True)
+    port, asked = MemoryPort(emulator), []
+    rig = Rig(ROBOT, made, [port], clocked=True, needed=needed)
+    hear = emulator._listening
+    emulator._listening = lambda line, servo: (asked[-1].append(servo), hear(line, servo))[1]
+    for _ in range(100):
+        asked.append([])
+        rig.read()
+    return rig, asked, {board.kind: board.id for board in made.board}
+
+
+def test_boards_that_nobody_needs_at_every_tick_are_asked_by_turns():
+    rig, asked, boards = boarded(("foot_pressure",))
+    assert all(boards["feet"] in tick for tick in asked)
+    assert all(len(tick) == len(NAMES) + 2 for tick in asked)  # the feet, and one more
+    for kind in ("imu", "belly", "tail"):
+        ticks = [i for i, tick in enumerate(asked) if boards[kind] in tick]
+        assert max(np.diff(ticks)) <= 4
+    assert set(rig.now.felt) >= {"foot_pressure", "orientation", "belly_pressure", "tail_pressure"}
+    assert np.isfinite(rig.now.temperature).all()  # each servo was asked how it is
+    everything, always, _ = boarded(None)
+    assert all(set(boards.values()) <= set(tick) for tick in always)
+    assert rig.bytes_per_tick(0)[0] < everything.bytes_per_tick(0)[0]
+
+
 @PROTOCOLS
 def test_a_hot_servo_is_warned_of_and_then_stops_the_robot(protocol):
     one = Drive(protocol, trouble=Trouble(hot=(9,), heating=20.0), duration=2.0)

@@ -49,6 +49,10 @@ class Bus:
         self.counts = Counts()
         self._decoder = framing.replies()
         self._quiet_from = 0.0
+        self._asked: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
+        self._kept: dict[int, Packet] = {}  # replies to that which came too late
+        self.late: frozenset[int] = frozenset()
+        """Whose replies of the last ``end`` were late ones to the question before."""
 
     @property
     def broken(self) -> int:
@@ -98,12 +102,35 @@ class Bus:
 
     def begin(self, servos: Collection[int], address: int, length: int) -> None:
         """Ask several servos for the same bytes; ``end`` returns what they say."""
+        if not self.clocked:
+            for packet in self._decoder.feed(self.port.receive(0.0)):
+                self._keep(packet)
+        self._asked |= dict.fromkeys(servos, length)
         asked = [*servos, CLOCK] if self.clocked else [*servos]
         self.send(self.framing.sync_read(asked, address, length))
 
-    def end(self, servos: Collection[int], length: int) -> dict[int, Packet]:
-        """Return the replies to ``begin``, as far as they come in time, by servo."""
-        return self._collect(servos, length, _STEPPING if self.clocked else self.wait, told=self.clocked)
+    def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
+        """Return the replies to ``begin`` that come in time, by servo.
+
+        A servo whose reply is missing has a late one to the same question as before taken for it, if there is one.
+
+        Args:
+            servos: that were asked.
+            length: of what they were asked for [byte].
+            wait: for them; that of the bus if None [s].
+        """
+        wait = self.wait if wait is None else wait
+        found = self._collect(servos, length, _STEPPING if self.clocked else wait, told=self.clocked)
+        late = {servo: self._kept.pop(servo) for servo in servos if servo in self._kept}
+        self.late = frozenset(late) - frozenset(found)
+        return late | found
+
+    def _keep(self, packet: Packet) -> None:
+        """Keep a reply that was not waited for any more, if it can only be one to ``begin``."""
+        if self._asked.get(packet.id) == len(packet.data):
+            self._kept[packet.id] = packet
+        else:
+            self.counts.stale += 1
 
     def _collect(
         self, servos: Collection[int], length: int | None, wait: float, *, told: bool = False
@@ -120,7 +147,7 @@ class Bus:
                 if packet.id in servos and length in (None, len(packet.data)):
                     found[packet.id] = packet
                 else:
-                    self.counts.stale += 1
+                    self._keep(packet)
             if not data:
                 break
         if len(found) < len(servos):

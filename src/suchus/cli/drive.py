@@ -22,7 +22,7 @@ from suchus.bus.pca9685 import Pulses, open_wires
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import gait_first, parse
 from suchus.cli.terminal import working
-from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming
+from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming, needs
 from suchus.design import Robot
 from suchus.emulator import EmulatedBody, Emulator, MemoryPort
 from suchus.errors import BusFailure, UnknownName
@@ -98,7 +98,7 @@ def run(words: Sequence[str]) -> int:
                 f"--port names one port, and {options.hardware} has {len(wiring.bus)} buses: name them there."
             )
         wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
-    return _drive(options, gait, control, folder, words, lambda: _opened(options, wiring, gait))
+    return _drive(options, gait, control, folder, words, lambda: _opened(options, wiring, gait, control))
 
 
 def _drive(
@@ -185,7 +185,7 @@ def _movement(options: DriveOptions) -> tuple[Gait, Control]:
 
 
 @contextmanager
-def _opened(options: DriveOptions, wiring: Wiring, gait: Gait) -> Iterator[tuple[Rig, Any]]:
+def _opened(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control) -> Iterator[tuple[Rig, Any]]:
     """Yield the open robot and its clock; an emulated one in this process where nothing is to be opened."""
     ports: list[Port] = []
     clocked = options.clock == "bus" or options.dry_run
@@ -197,7 +197,7 @@ def _opened(options: DriveOptions, wiring: Wiring, gait: Gait) -> Iterator[tuple
         ]
     rig = Rig(
         options.robot, wiring, ports, clocked=clocked, without=options.without,
-        rate=None if options.dry_run else options.rate,
+        rate=None if options.dry_run else options.rate, needed=needs(control),
     )  # fmt: skip
     try:
         yield rig, BusClock(rig) if clocked else WallClock(rig.period)

@@ -1,6 +1,6 @@
 """``suchus emulate ROBOT``: its servos on buses that other programs open, with the simulated robot behind them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import radians
@@ -115,6 +115,7 @@ def emulate(words: Sequence[str]) -> int:
     wiring, links = _wired(options)
     server = Server(Emulator(wiring, body, trouble, clocked=clocked), links, sockets=options.socket)
     viewer: Any = None
+    each: Callable[[], None] = _nothing
     try:
         if options.socket or not links:
             wiring = _with_ports(wiring, server.ports)
@@ -127,11 +128,12 @@ def emulate(words: Sequence[str]) -> int:
         if trouble.latency and clocked and abs(body.latency - trouble.latency) > 1e-9:
             print(f"goals are {1e3 * body.latency:g} ms on their way, whole steps of the physics", flush=True)
         if options.view:
-            viewer = _viewer(options, server, body)
+            viewer = _watched(options, server, body)
+            each = viewer.look
             print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
         end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
         with suppress(KeyboardInterrupt):
-            server.serve(until=lambda: end is not None and body.tick >= end)
+            server.serve(until=lambda: end is not None and body.tick >= end, each=each)
     finally:
         server.close()
         if viewer is not None:
@@ -140,6 +142,10 @@ def emulate(words: Sequence[str]) -> int:
             print(f"what truly happened: {save(body.record(), options.out)}")
     print("ended.")
     return 0
+
+
+def _nothing() -> None:
+    """Do nothing after a step."""
 
 
 def _wired(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
@@ -167,18 +173,15 @@ def _fault(text: str, at: float) -> Any:
     return from_table({"kind": kind, "joint": part, "at": at})
 
 
-def _viewer(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
-    pages = pages_of_viewer()
-    level = options.lake
+def _watched(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
+    """Return the page in a browser that watches the robot."""
+    pages, ports = pages_of_viewer(), ", ".join(server.ports)
 
-    def look() -> Any:
+    def picture() -> Any:
         torque = "with its torque on" if (body.powered > 0.0).any() else "limp: nobody drives it"
-        return pages.WatchedRobot(body.time, body.now, level, f"{', '.join(server.ports)}, {torque}")
+        return pages.WatchedRobot(body.time, body.now, options.lake, f"{ports}, {torque}")
 
-    return pages.Viewer(
-        lambda client: pages.WatchPage(client, options.robot, look), port=options.port,
-        title=f"{options.robot.name}, emulated", camera=pages.camera(options.robot),
-    )  # fmt: skip
+    return pages.WatchedApart(options.robot, picture, port=options.port, title=f"{options.robot.name}, emulated")
 
 
 def _robot_first(words: Sequence[str]) -> list[str]:

@@ -16,6 +16,7 @@ from suchus.faults import Limp, Weak
 from suchus.land import Lake, Run
 from suchus.land.lake import check_lake
 from suchus.land.loop import Loop
+from suchus.land.readings import Recorder
 from suchus.motion import Gait, check_limits
 
 _ROOM = 1000  # samples of a block of the record
@@ -108,7 +109,7 @@ class EmulatedBody:
         self.powered = np.ones(len(self.servos))
         """Share of its torque that each servo may use, 0 to 1 [-]."""
         self._own = {fault.part: fault for fault in faults}
-        self._blocks: list[xr.Dataset] = []
+        self._blocks: list[Recorder] = []  # full ones; a record is made of them when one is asked for
         self._recorder, self._kept = self._loop.recorder(_ROOM), 0
         self._one = self._loop.recorder(1)
         self._loop.decide()
@@ -190,9 +191,10 @@ class EmulatedBody:
         if self._kept == _ROOM:
             self._turn_over()
         self._recorder.store(self._kept, self._loop.command.phase, self._loop.command.targets)
+        full = [block.record(self._times(number * _ROOM)) for number, block in enumerate(self._blocks)]
         last = self._recorder.record(self._times(self.tick - self._kept)).isel(time=slice(self._kept + 1))
         end = last.ended.copy(data=np.array([float(last.time[-1])]))
-        parts = [part.assign(ended=end, cause=last.cause) for part in (*self._blocks, last)]
+        parts = [part.assign(ended=end, cause=last.cause) for part in (*full, last)]
         whole = xr.concat(parts, "time", join="exact", data_vars="minimal") if len(parts) > 1 else parts[0]
         whole.attrs.update(timestep=self.period / self._loop.steps, control_period=self.period)
         return whole.isel(run=0)
@@ -210,7 +212,7 @@ class EmulatedBody:
         self._kept += 1
 
     def _turn_over(self) -> None:
-        self._blocks.append(self._recorder.record(self._times(self.tick - self._kept)))
+        self._blocks.append(self._recorder)
         self._recorder, self._kept = self._loop.recorder(_ROOM), 0
 
     def _times(self, first: int) -> np.ndarray:

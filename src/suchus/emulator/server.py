@@ -70,11 +70,11 @@ class Server:
             now = monotonic()
             wait = 0.1
             if not emulator.clocked:
-                while now >= due:
+                if now >= due:  # one at a time: who waits for an answer waits for no more than one
                     emulator.step()
                     each()
-                    due = max(due + period, now - _BEHIND)
                     now = monotonic()
+                    due = max(due + period, now - _BEHIND)
                 wait = min(wait, due - now)
             if self._due:
                 wait = min(wait, self._due[0][0] - now)

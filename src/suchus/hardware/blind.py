@@ -105,6 +105,11 @@ class BlindRig:
     def limit(self, share: float) -> None:
         """Do nothing: these servos have no such limit."""
 
+    @property
+    def patience(self) -> float:
+        """No servo watches whether we are there [s]."""
+        return float("inf")
+
     def watch(self, on: bool) -> None:
         """Do nothing: these servos watch nobody."""
 

@@ -27,6 +27,7 @@ Stop = Literal["sag", "hold", "off"]
 _EARLY = 0.005  # [rad]; a servo so near to where it begins needs no way there
 _SAGS = 0.2  # share of the torque with which a robot sinks
 _HOLDS, _SINKS = 0.2, 0.6  # [s]; how long it is held before it is let down, and how long that lasts
+_SURE = 0.8  # share of the time that servos wait for us after which they may have given up
 _BY_IMU = ("orientation", "angular_velocity", "acceleration")
 _PHASES = 64  # of a cycle, at which a gait is looked at before
 
@@ -225,6 +226,7 @@ class _Drive:
         self._tick = self._offset = 0
         self._goal = np.zeros(len(rig.names))
         self._missed = self._clamped = 0
+        self._spoken = 0.0  # when servos heard from us, since the first tick [s]
         self._limb = np.full(len(layout(rig.robot).limbs), np.nan)
 
     def run(self, ticks: int) -> xr.Dataset:
@@ -305,6 +307,7 @@ class _Drive:
         """Look whether all is well, send goals within the limits, and keep the tick."""
         rig, now = self._rig, self._rig.now
         late = self._clock.late(tick + self._offset)
+        self._wake(late + (tick + self._offset) * rig.period)
         why = self._guard.look(now)
         for sentence in self._guard.warnings[self._told :]:
             self._say(sentence)
@@ -338,6 +341,22 @@ class _Drive:
             raise _Halted(why)
         if asked := self._asked():
             raise _Halted(f"{ASKED}{asked}")
+
+    def _wake(self, now: float) -> None:
+        """Let servos take goals again that stood still, since they heard nothing for so long.
+
+        Args:
+            now: since the first tick [s].
+        """
+        away, self._spoken = now - self._spoken, now
+        if away > _SURE * self._rig.patience:
+            self._rig.watch(False)
+            self._rig.watch(True)
+            self._guard.tell(
+                "away",
+                f"this computer was busy with other things for {away:.2g} s, in which the servos stood still: end what "
+                "else it does.",
+            )
 
     def _end(self, how: Stop) -> None:
         """Leave the robot safe; whatever fails, its torque is taken away, three times."""

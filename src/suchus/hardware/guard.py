@@ -103,20 +103,21 @@ class Guard:
         square = np.nan_to_num(now.torque) ** 2
         self._square += (1.0 - keep) * (square - self._square)
         for i in np.flatnonzero(np.sqrt(self._square) > limits.load * self._stall):
-            self._say(
+            self.tell(
                 f"load {names[i]}",
                 f"{names[i]} gives {np.sqrt(self._square[i]):.2f} N m for long, more than {limits.load:.0%} of its "
                 "stall "
                 f"torque of {self._stall[i]:g} N m: it will get hot.",
             )
         for i in np.flatnonzero(now.temperature >= self._limit - limits.warm):
-            self._say(
+            self.tell(
                 f"warm {names[i]}",
                 f"{names[i]} is at {now.temperature[i]:.0f} degrees Celsius and is stopped at "
                 f"{self._limit[i] - limits.hot:.0f}.",
             )
 
-    def _say(self, key: str, sentence: str) -> None:
+    def tell(self, key: str, sentence: str) -> None:
+        """Keep a sentence that people should know, once for each key."""
         if key not in self._warned:
             self._warned.add(key)
             self.warnings.append(sentence)

@@ -1,8 +1,9 @@
 """A robot's servos and sensors over its buses: what they say, what they are sent, and whether all is as it must be."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from time import monotonic
 
 import numpy as np
 
@@ -37,6 +38,7 @@ PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
 _EMPTY = Packet(0, 0)
 _AGAIN = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
+_LEAST = 0.25  # share of the wait that must be left of a tick, or a board be given, to ask more than the servos
 _WATCHDOG = 5  # steps of 20 ms
 _SENSES = {
     "imu": ("orientation", "angular_velocity", "acceleration"),
@@ -94,6 +96,8 @@ class Rig:
         clocked: whether an emulator's clock is told the time.
         rate: of ticks [Hz]; that of the robot's control period if None.
         without: names of servos that do without: they are not asked, and stay limp.
+        needed: fields of ``control.Sensed`` that must be known at every tick; all if None. Boards that feel nothing of
+            them are asked by turns, one in a tick.
 
     Raises:
         BusFailure: a port cannot be opened.
@@ -109,6 +113,7 @@ class Rig:
         clocked: bool = False,
         rate: float | None = None,
         without: Sequence[str] = (),
+        needed: Collection[str] | None = None,
     ) -> None:
         self.robot, self.wiring, self.clocked = robot, wiring, clocked
         self.servos = wiring.ordered(robot)
@@ -129,6 +134,17 @@ class Rig:
             [i for i, one in enumerate(self.servos) if one.bus == number and self.asked[i]]
             for number in range(len(wiring.bus))
         ]
+        self._always: list[list[BoardPlace]] = []
+        self._turns: list[list[int | BoardPlace]] = []
+        for number in range(len(wiring.bus)):
+            boards = [board for board in wiring.board if board.bus == number]
+            at_once = [b for b in boards if needed is None or not set(_SENSES[b.kind]).isdisjoint(needed)]
+            self._always.append(at_once)
+            seldom: list[int | BoardPlace] = [b for b in boards if b not in at_once]
+            members = self._members[number]
+            if members and self.servos[members[0]].table.health is not None:
+                seldom = [one for i in members for one in (i, *seldom)]  # a board as often as all servos together
+            self._turns.append(seldom)
         self._check_time()
         self._wait = min(WAIT, 0.8 * self.period)
         self.buses: list[Bus] = []
@@ -192,15 +208,19 @@ class Rig:
             total += len(framing.sync_read(ids, 0, length)) + len(members) * (frame + length)
             total += len(framing.sync_write(goal.address, {one: bytes(goal.size) for one in ids}))
             answers += len(members)
-            if table.health is not None:
-                total += len(framing.read(1, 0, 1)) + frame + table.block(table.health)[1]
-                answers += 1
-        for board in self.wiring.board:
-            if board.bus == number:
-                sensor = self.wiring.tables(board, self.robot)
-                total += len(framing.sync_read((board.id,), 0, 1)) + frame + sensor.block(sensor.felt)[1]
-                answers += 1
-        return total, answers
+        extra = [self._bytes_of(number, one) for one in self._turns[number]]
+        asked = [self._bytes_of(number, one) for one in self._always[number]] + ([max(extra)] if extra else [])
+        return total + sum(asked), answers + len(asked)
+
+    def _bytes_of(self, number: int, one: int | BoardPlace) -> int:
+        """Return the bytes of asking a servo how it is, or a board what it feels."""
+        framing = FRAMINGS[self.wiring.bus[number].protocol]
+        if isinstance(one, BoardPlace):
+            table = self.wiring.tables(one, self.robot)
+            return len(framing.sync_read((one.id,), 0, 1)) + len(framing.reply(_EMPTY)) + table.block(table.felt)[1]
+        health = self.servos[one].table.health
+        assert health is not None
+        return len(framing.read(1, 0, 1)) + len(framing.reply(_EMPTY)) + self.servos[one].table.block(health)[1]
 
     def _check_time(self) -> None:
         for number, place in enumerate(self.wiring.bus):
@@ -354,6 +374,7 @@ class Rig:
 
     def read(self) -> RigReading:
         """Ask all, take what comes in time, and keep what was said before of those that are silent."""
+        end = monotonic() + self._wait
         for number, bus in enumerate(self.buses):
             if self._members[number]:
                 bus.begin([self.servos[i].id for i in self._members[number]], *self._block(number))
@@ -363,15 +384,19 @@ class Rig:
         for number, bus in enumerate(self.buses):
             members = self._members[number]
             if members:
-                replies = bus.end([self.servos[i].id for i in members], self._block(number)[1])
+                ids = [self.servos[i].id for i in members]
+                replies = bus.end(ids, self._block(number)[1], max(end - monotonic(), 0.0))
                 for i in members:
                     if self.servos[i].id in replies:
                         reply = replies[self.servos[i].id]
                         self._take(i, self.servos[i].table, reply.data, alert=bus.framing.alert(reply.code))
-            for board in self.wiring.board:
-                if board.bus == number:
-                    self._feel(bus, board)
-        self._look_after()
+                        now.age[i] += int(self.servos[i].id in bus.late)
+        for number, bus in enumerate(self.buses):
+            for board in self._always[number]:
+                self._feel(bus, board, max(end - monotonic(), _LEAST * self._wait))
+            if bus.settled and (self.clocked or end - monotonic() > _LEAST * self._wait):
+                self._look_after(number, bus)
+        self._turn += 1
         return now
 
     def _block(self, number: int) -> tuple[int, int]:
@@ -409,32 +434,31 @@ class Rig:
         if "hardware_error" in values:
             now.error[i] = values["hardware_error"]
 
-    def _look_after(self) -> None:
-        """Ask one servo how it is, those with an alert first; never while a late reply may still come."""
-        for number, bus in enumerate(self.buses):
-            members = self._members[number]
-            if not members or not bus.settled:
-                continue
-            alarmed = [i for i in members if self.now.error[i] == -1]
-            table = self.servos[members[0]].table
-            if alarmed:
-                i = alarmed[0]
-                with suppress(NoAnswer):
-                    self.now.error[i] = bus.read(self.servos[i].id, table["hardware_error"])
-            elif table.health is not None:
-                i = members[self._turn % len(members)]
-                address, length = table.block(table.health)
-                request = bus.framing.read(self.servos[i].id, address, length)
-                with suppress(NoAnswer):
-                    reply = bus.ask(request, self.servos[i].id, length)
-                    self._health(i, table, table.unpack(table.health, reply.data))
-        self._turn += 1
+    def _look_after(self, number: int, bus: Bus) -> None:
+        """Ask a servo how it is, one with an alert first, or a board; never while a late reply may still come."""
+        alarmed = [i for i in self._members[number] if self.now.error[i] == -1]
+        turns = self._turns[number]
+        if alarmed:
+            one = self.servos[alarmed[0]]
+            with suppress(NoAnswer):
+                self.now.error[alarmed[0]] = bus.read(one.id, one.table["hardware_error"])
+        elif turns:
+            asked = turns[self._turn % len(turns)]
+            if isinstance(asked, BoardPlace):
+                self._feel(bus, asked, self._wait)
+                return
+            table = self.servos[asked].table
+            assert table.health is not None
+            address, length = table.block(table.health)
+            with suppress(NoAnswer):
+                reply = bus.ask(bus.framing.read(self.servos[asked].id, address, length), self.servos[asked].id, length)
+                self._health(asked, table, table.unpack(table.health, reply.data))
 
-    def _feel(self, bus: Bus, board: BoardPlace) -> None:
+    def _feel(self, bus: Bus, board: BoardPlace, wait: float) -> None:
         table = self.wiring.tables(board, self.robot)
         address, length = table.block(table.felt)
         bus.begin((board.id,), address, length)
-        replies = bus.end((board.id,), length)
+        replies = bus.end((board.id,), length, wait)
         if board.id not in replies:
             return
         values = table.unpack(table.felt, replies[board.id].data)
@@ -490,6 +514,12 @@ class Rig:
         self.surely("torque_limit", {i: one.table.full for i, one in enumerate(self.servos)})
         self.surely("torque_enable", dict.fromkeys(everybody, 1))
         return self.steps.angles(steps)
+
+    @property
+    def patience(self) -> float:
+        """Time without a word from us after which a servo that watches stands still and takes no goals [s]."""
+        able = [one.table["bus_watchdog"].unit for one in self.servos if "bus_watchdog" in one.table]
+        return _WATCHDOG * min(able, default=np.inf)
 
     def watch(self, on: bool) -> None:
         """Let servos that can watch whether their host is there, or let them rest."""

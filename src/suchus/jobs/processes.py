@@ -126,7 +126,7 @@ def hire(work: Callable[[Any, Progress], Any], each: int) -> Worker:
     spawning = get_context("spawn")
     here, there = spawning.Pipe()
     process = spawning.Process(target=_work, args=(there, work, each), daemon=True)
-    with _deaf():
+    with deaf():
         process.start()
     there.close()
     return Worker(process=process, pipe=here)
@@ -153,7 +153,7 @@ def _heard(worker: Worker) -> Far | Done | Died | _Refused:
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
+def deaf() -> Iterator[None]:
     """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
     if not hasattr(signal, "pthread_sigmask"):
         yield

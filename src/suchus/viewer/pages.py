@@ -1,5 +1,6 @@
 """What needs viser: the server and its pages. Importing this fails where the extra ``viewer`` is not installed."""
 
+from suchus.viewer.apart import WatchedApart
 from suchus.viewer.live_page import LivePage
 from suchus.viewer.replay_page import ReplayPage
 from suchus.viewer.server import CannotServe, Viewer
@@ -17,6 +18,7 @@ __all__ = [
     "Viewer",
     "VortexPage",
     "WatchPage",
+    "WatchedApart",
     "WatchedRobot",
     "camera",
 ]
