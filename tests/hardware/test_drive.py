@@ -227,9 +227,7 @@ class Distracted(BusClock):
 @pytest.mark.parametrize(("ticks", "away"), [(5, False), (15, True)])
 def test_servos_that_stood_still_since_the_computer_was_busy_take_goals_again(ticks, away):
     one = Drive(duration=0.6, stop="hold")
-    log = drive(
-        one.rig, GAIT, None, one.settings, clock=Distracted(one.rig, ticks), say=one.said.append
-    )
+    log = drive(one.rig, GAIT, None, one.settings, clock=Distracted(one.rig, ticks), say=one.said.append)
     assert log.attrs["missed"] == ticks
     assert any("the servos stood still" in sentence for sentence in one.said) == away
     assert all(servo.get("bus_watchdog") >= 0 for servo in one.emulator.servos)
