@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from body_files import giant
-from suchus.design.scale import scaled
+from suchus.design import with_values
+from suchus.design.scale import physics_step, scaled
 from suchus.experiments import EXPERIMENTS
-from suchus.land import simulate
+from suchus.gaits import GAITS
+from suchus.land import VACUUM, Run, simulate
 from suchus.model import longest_step
 from suchus.robots import ROBOTS
 
@@ -31,3 +33,17 @@ def test_shorter_steps_hold_the_joints_and_longer_ones_do_not():
 def test_a_robot_that_is_nearly_as_stiff_rolls_in_the_same_steps():
     asked = EXPERIMENTS["death_roll"].quick()
     assert asked.on(ROBOTS["long_tail"]).timesteps == asked.timesteps
+
+
+def test_a_run_without_ground_that_is_asked_for_no_step_takes_one_that_holds_it():
+    """Its steps are explicit, where those on ground are not: a servo of strong dampers needs shorter ones."""
+    swimmer, gait = ROBOTS["swimmer"], GAITS["undulation"]
+    dampers = {f"axis[{i}].hinges[0].drive.kd": 4 * part.hinges[0].drive.kd for i, part in enumerate(swimmer.axis[:-1])}
+    stiff = with_values(swimmer, dampers)
+    fastest = {}
+    for robot, step in ((swimmer, None), (stiff, None), (stiff, physics_step(stiff))):
+        record = simulate([Run(robot=robot, gait=gait, afloat=VACUUM)], duration=1.1, timestep=step)
+        fastest[record.attrs["timestep"]] = float(np.abs(record.servo_velocity).max())
+        assert step or record.attrs["timestep"] <= longest_step(robot)
+    assert min(fastest) < 0.3 * physics_step(swimmer)
+    assert fastest[min(fastest)] < 15.0 < 30.0 < fastest[physics_step(swimmer)]  # the joints rattle

@@ -101,6 +101,9 @@ def servo_for(mass: float, length: float) -> Servo:
 SWIM = 8.0
 """Natural frequency of a joint with half of the body and its water behind it, over that of the swim, at which a servo
 does not swing with the water [-]."""
+BEHIND = 0.04
+"""How far a joint of a swimmer is behind its command at the beat [rad]: 1.4 degrees of an amplitude of 33, where motors
+of swimming robots follow within 2."""
 _WATER = 2.0
 """Inertia of a swimming body together with the water beside it, over its own [-]; a round section has 2."""
 
@@ -111,8 +114,11 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
     frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
     inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
-    the beat, with a damping of 0.7 of the critical one. Torque and speed are never short: on a servo so stiff that
-    meets its limit the body rattles, and what the water asks of it stands in the record.
+    the beat. Damping is what makes a joint late, by ``kd / kp`` times its rate, and follows from ``BEHIND``; it is far
+    below the critical one of half of the body, whose swing the water damps. More of it would hold no better, but on a
+    segment alone, little more than the servo's own inertia, it decays in less than a step of explicit physics
+    (``model.longest_step``) and makes a servo rattle that meets its limit. Torque and speed are never short: what the
+    water asks of them stands in the record.
 
     Args:
         mass: of the whole body [kg].
@@ -129,7 +135,7 @@ def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Ser
     return Servo(
         kp=stiffness,
         ki=0.0,
-        kd=1.4 * inertia * SWIM * omega,
+        kd=BEHIND * stiffness / omega,
         integral_limit=0.0,
         torque=0.5 * stiffness,
         speed=4.0 * omega,

@@ -1,6 +1,7 @@
 """Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
 from collections.abc import Sequence
+from math import ceil
 
 import numpy as np
 import xarray as xr
@@ -17,7 +18,7 @@ from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.readings import with_equal_variables
 from suchus.land.run import Push, Run, check_pushes
-from suchus.model import topology
+from suchus.model import longest_step, topology
 from suchus.motion import START, Gait, check_limits
 from suchus.progress import Progress, portion, silent
 from suchus.robots import ROBOTS
@@ -40,7 +41,8 @@ def simulate(
         runs: at least one; the robots must share their number of tail joints, and which servos have integral action
             and warm up.
         duration: [s].
-        timestep: of the physics [s], a whole part of the control period; that of the robots' size if None.
+        timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
+            one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
         every: keep one sample of so many control periods.
         progress: told the share that is done.
 
@@ -56,7 +58,7 @@ def simulate(
     runs = tuple(runs)
     if not runs:
         raise InvalidDesign("there are no runs to simulate; give at least one.")
-    timestep = physics_step(runs[0].robot) if timestep is None else timestep
+    timestep = _own_step(runs) if timestep is None else timestep
     period = _check(runs, duration, timestep, every)
     ticks = round(duration / period)
     parts, order = [], []
@@ -72,6 +74,13 @@ def simulate(
     record = record.assign_coords(run=np.arange(len(runs)))
     record.attrs.update(timestep=timestep, control_period=period)
     return record
+
+
+def _own_step(runs: Sequence[Run]) -> float:
+    """Return the time step of runs that are asked for none [s]."""
+    step, period = physics_step(runs[0].robot), control_period(runs[0].robot)
+    longest = [longest_step(robot) for robot in {run.robot for run in runs if run.afloat is not None}]
+    return step if not longest or min(longest) >= step else period / ceil(period / min(longest))
 
 
 def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> float:
