@@ -4,6 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from suchus.record.provenance import plain
 
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
 """Files of the page."""
+_WIDTH = 118
 _BOLD: Mapping[Word, str] = {"within": "within", "within, wide": "within, wide", "missed": "**missed**"}
 
 
@@ -210,13 +212,22 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
             "",
             *table(one),
         ]
-        sources = {truth.source for truth in one.measured.values()}
+        sources = dict.fromkeys(truth.source for truth in one.measured.values())
         if sources:
-            lines += ["", f"Measured: {'; '.join(sorted(sources))}."]
+            lines += ["", f"Measured: {'; '.join(sources)}."]
         if seal.refused:
-            lines += ["", *(f"* No word from {rung}: {why}" for rung, why in seal.refused.items())]
-        lines += ["", "### What it rests on", "", *_given(seal)]
-    return "\n".join([*lines, "", *_OWN]) + "\n"
+            lines += ["", *(f"* No word from {rung}: {why.rstrip('.')}." for rung, why in seal.refused.items())]
+        about = f"The {len(seal.given)} numbers that this rests on, with their sources"
+        lines += ["", f'<details markdown="1"><summary>{about}</summary>', "", *_given(seal), "", "</details>"]
+    return "\n".join(filled(line) for line in [*lines, "", *_OWN]) + "\n"
+
+
+def filled(line: str) -> str:
+    """Return a paragraph or an item of a list in lines of a width, anything else as it is."""
+    if line[:1] in ("|", "#", "<", "!", "{", "`"):
+        return line
+    hang = "  " if line.startswith("* ") else ""
+    return fill(line, _WIDTH, subsequent_indent=hang, break_long_words=False, break_on_hyphens=False)
 
 
 _TRIALS = (
