@@ -107,22 +107,48 @@ class BrokenFile(SuchusError, ImportError):
 
 
 class Doubtful(UserWarning):
-    """A result that stands and may be farther off than usual; the message says by how much and what helps."""
+    """A result that stands and may be farther off than usual; the message says by how much and what helps.
+
+    Attributes:
+        kind: a word that stands in the names of the settings that mend it; empty if it is the only one of its kind. Of
+            many warnings of a kind the command line says the worst.
+        size: how bad it is among those of its kind.
+    """
+
+    def __init__(self, text: str, *, kind: str = "", size: float = 0.0) -> None:
+        super().__init__(text)
+        self.kind = kind
+        self.size = size
 
 
 @contextmanager
-def plain_warnings(*about: str) -> Iterator[None]:
-    """Write warnings as sentences on standard error, each once, after ``about`` and without the place in the code."""
-    before, said = ": ".join(("suchus", *about)), set[str]()
+def plain_warnings(*about: str, options: Iterable[str] = ()) -> Iterator[None]:
+    """Write warnings as sentences on standard error, each once, after ``about`` and without the place in the code.
+
+    What is said of many things of a kind is said in the end, of the worst, with the options that mend it.
+
+    Args:
+        about: names of what warns.
+        options: words of the command line that the reader may change.
+    """
+    before, said, worst = ": ".join(("suchus", *about)), set[str](), dict[str, Doubtful]()
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
-        if str(message) not in said:
+        kind = getattr(message, "kind", "")
+        if kind and isinstance(message, Doubtful):
+            worst[kind] = max(message, worst.get(kind, message), key=lambda one: one.size)
+        elif str(message) not in said:
             said.add(str(message))
             print(f"{before}: {message}", file=sys.stderr)
 
     with warnings.catch_warnings():
         warnings.showwarning = show
-        yield
+        try:
+            yield
+        finally:
+            for kind, message in worst.items():
+                mend = [option for option in options if kind in option]
+                print(f"{before}: {message}" + f" See {', '.join(mend)}." * bool(mend), file=sys.stderr)
 
 
 class Unreachable(SuchusError, ValueError):

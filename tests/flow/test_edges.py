@@ -122,8 +122,9 @@ def test_a_grid_too_coarse_for_the_layer_is_refused_doubted_or_taken(recwarn):
     with pytest.raises(InvalidDesign, match=r"by some 23 %; take cells of at most 0\.0232 m, better 0\.0146 m"):
         flow.Simulation(in_stream(39, 3000))
     assert not recwarn
-    with pytest.warns(Doubtful, match=r"0\.88 cells thin.* some 17 %"):
+    with pytest.warns(Doubtful, match=r"0\.88 cells thin.* some 17 %.* 10 % take 1\.43 times as many cells") as told:
         flow.Simulation(in_stream(48, 3000))
+    assert told[0].message.kind == "cells"
     recwarn.clear()
     flow.Simulation(in_stream(69, 3000))
     flow.Simulation(in_stream(39, 3000, coarse=True))

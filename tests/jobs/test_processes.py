@@ -3,19 +3,21 @@
 import os
 import signal
 import time
+import warnings
 from contextlib import closing
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from suchus.errors import OutsideLimits
+from suchus.errors import Doubtful, OutsideLimits
 from suchus.jobs import Died
 from suchus.jobs.processes import Begun, Done, Far, dismiss, hire, side_by_side
 
 
 def squared(item, tell):
     tell("squaring", 0.5)
+    warnings.warn(Doubtful(f"{item} is odd", kind="odd", size=item) if item % 2 else f"{item} is even", stacklevel=1)
     return item * item
 
 
@@ -40,8 +42,12 @@ def endless(item, tell, folder: Path):
     time.sleep(60.0)
 
 
-def test_every_piece_is_begun_in_order_and_done():
-    heard = list(side_by_side(squared, [1, 2, 3, 4, 5], 2))
+def test_every_piece_is_begun_in_order_and_done_and_what_it_warns_of_is_said_here():
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        heard = list(side_by_side(squared, [1, 2, 3, 4, 5], 2))
+    assert sorted(str(one.message) for one in told) == ["1 is odd", "2 is even", "3 is odd", "4 is even", "5 is odd"]
+    assert {one.message.size for one in told if isinstance(one.message, Doubtful)} == {1, 3, 5}
     assert {i: said.value for i, said in heard if isinstance(said, Done)} == {0: 1, 1: 4, 2: 9, 3: 16, 4: 25}
     assert [i for i, said in heard if isinstance(said, Begun)] == [0, 1, 2, 3, 4]
     assert Far("squaring", 0.5) in [said for _, said in heard]

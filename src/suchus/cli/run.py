@@ -5,7 +5,7 @@ import shlex
 import time
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import xarray as xr
@@ -68,7 +68,8 @@ def perform(experiment: Experiment, name: str, out: Path, progress: Progress, co
     """
     start = time.perf_counter()
     check_place(out / name)
-    with _plain_sums(), plain_warnings(name):
+    options = [f"--{one.name.replace('_', '-')}" for one in fields(experiment)]  # type: ignore[arg-type]
+    with _plain_sums(), plain_warnings(name, options=options):
         outcome = experiment.run(progress)
         progress("drawing", 1.0)
         with styled():

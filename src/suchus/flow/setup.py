@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import isfinite, prod
+from math import ceil, isfinite, prod
 from typing import Any, Literal
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.errors import Doubtful, InvalidDesign
 from suchus.flow.body import Body, cuts, thin_share, window_of
 from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
@@ -213,21 +213,23 @@ class Setup:
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
                 f"{100 * error:.0f} %; take cells of at most {layer / fewest:.3g} m{size}, better "
-                f"{layer / needed(DOUBTED, blunt=blunt):.3g} m, a lower Reynolds number, or coarse=True to go on "
-                f"anyway."
+                f"{layer / needed(DOUBTED, blunt=blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
+                f"own, coarse=True to go on anyway."
             )
         return error
 
-    def layer_warning(self, body: Body | FreeBody, error: float) -> str | None:
+    def layer_warning(self, body: Body | FreeBody, error: float) -> Doubtful | None:
         """Return what is to be said of an estimated error of a body's force, if anything is."""
         if self.coarse or error <= DOUBTED:
             return None
-        cells = needed(error, blunt=_blunt(body))
-        better = self.grid.cell * cells / needed(DOUBTED, blunt=_blunt(body))
-        return (
+        cells, better = (needed(wanted, blunt=_blunt(body)) for wanted in (error, DOUBTED))
+        times = ceil(100 * better / cells) / 100
+        return Doubtful(
             f"the boundary layer of {body.name} is {cells:.2g} cells thin: its force may be off by some "
-            f"{100 * error:.0f} %. Take cells of at most {better:.3g} m for {100 * DOUBTED:.0f} %, or coarse=True to "
-            f"hear nothing of it."
+            f"{100 * error:.0f} %. For {100 * DOUBTED:.0f} % take {times:g} times as many cells along each axis, of "
+            f"{self.grid.cell / times:.3g} m.",
+            kind="cells",
+            size=error,
         )
 
 

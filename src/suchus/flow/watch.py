@@ -58,9 +58,9 @@ class Watch:
         """Note the estimated errors of all bodies' forces; warn of a body whose error is large."""
         self.errors = errors
         for body, error in zip(self.setup.bodies, errors, strict=True):
-            text = self.setup.layer_warning(body, error)
-            if text is not None:
-                self._say(f"layer {body.name}", text)
+            warning = self.setup.layer_warning(body, error)
+            if warning is not None:
+                self._say(f"layer {body.name}", warning)
 
     def shared(self, water: Fluid, time: float) -> str | None:
         """Return what is to be said of two bodies that lie in each other at a time [s], if any do."""
@@ -104,7 +104,7 @@ class Watch:
                     f"domain there, or leave all four sides Stream(), which then move as in an unbounded domain.",
                 )
 
-    def _say(self, key: str, text: str) -> None:
+    def _say(self, key: str, what: str | Doubtful) -> None:
         if key not in self._said:
             self._said.add(key)
-            warn(text, Doubtful, stacklevel=5)
+            warn(what if isinstance(what, Doubtful) else Doubtful(what), stacklevel=5)

@@ -11,7 +11,7 @@ from threading import Event, Thread
 from typing import Any, NamedTuple, Protocol
 
 from suchus import threads
-from suchus.errors import OutsideLimits, plain_warnings
+from suchus.errors import OutsideLimits
 from suchus.jobs import cluster, processes
 from suchus.jobs.job import AnyJob, Died
 from suchus.progress import Progress, silent
@@ -74,8 +74,7 @@ class Processes:
     def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
         """Yield the results; a process that dies takes its piece with it and nothing else, see ``Place``."""
         told: dict[int, Progress] = {}
-        work = partial(_with_plain_warnings, job.name, job.work)
-        with closing(processes.side_by_side(work, items, self.at_once, tries=job.tries)) as heard:
+        with closing(processes.side_by_side(job.work, items, self.at_once, tries=job.tries)) as heard:
             for number, said in heard:
                 if isinstance(said, processes.Begun):
                     told[number] = begun(number)
@@ -127,11 +126,6 @@ def place_for(what: str, *, client: Any = None, jobs: int = 1, here: Place = HER
     if client is not None:
         return Cluster(client)
     return Processes(jobs) if jobs > 1 else here
-
-
-def _with_plain_warnings(name: str, work: Callable[[Any, Progress], Any], item: Any, progress: Progress) -> Any:
-    with plain_warnings(name):
-        return work(item, progress)
 
 
 def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:

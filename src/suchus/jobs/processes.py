@@ -3,6 +3,7 @@
 import os
 import signal
 import time
+import warnings
 from collections import Counter
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -13,7 +14,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, NamedTuple
 
 from suchus import threads
-from suchus.errors import SuchusError
+from suchus.errors import Doubtful, SuchusError
 from suchus.jobs.job import Died
 from suchus.progress import Progress
 from suchus.stopping import end_with_parent
@@ -48,6 +49,13 @@ class _Refused(NamedTuple):
 
     error: SuchusError
     """The refusal, to be raised where the work was asked for."""
+
+
+class _Warned(NamedTuple):
+    """A piece warns."""
+
+    warning: Warning
+    """Of what; it is said where the work was asked for, so that what many pieces say is said once."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -105,6 +113,9 @@ def side_by_side(
                 assert piece is not None
                 if isinstance(said, _Refused):
                     raise said.error
+                if isinstance(said, _Warned):
+                    warnings.warn(said.warning, stacklevel=2)
+                    continue
                 if isinstance(said, Died) and begun[piece] < tries:
                     left.insert(0, piece)
                 else:
@@ -142,10 +153,10 @@ def dismiss(workers: Sequence[Worker]) -> None:
         worker.process.join(_PATIENCE)
 
 
-def _heard(worker: Worker) -> Far | Done | Died | _Refused:
+def _heard(worker: Worker) -> Far | Done | Died | _Refused | _Warned:
     """Return what a busy worker says."""
     try:
-        said: Far | Done | _Refused = worker.pipe.recv()
+        said: Far | Done | _Refused | _Warned = worker.pipe.recv()
     except _GONE:
         worker.process.join(_PATIENCE)
         return Died(worker.process.exitcode)
@@ -173,7 +184,8 @@ def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> 
     """Take one piece after the other until the other end of the pipe is closed."""
     os.environ["SUCHUS_THREADS"] = str(each)
     end_with_parent()
-    with suppress(*_GONE):
+    with suppress(*_GONE), warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: pipe.send(_Warned(_as_warning(message)))
         while True:
             item = pipe.recv()
             try:
@@ -181,6 +193,11 @@ def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> 
             except SuchusError as error:
                 said = _Refused(error)
             pipe.send(said)
+
+
+def _as_warning(message: Warning | str) -> Warning:
+    """Return a warning that the other process can read, whatever class of the user's it is."""
+    return message if isinstance(message, Doubtful) else UserWarning(str(message))
 
 
 def _sender(pipe: Connection) -> Progress:
