@@ -1,11 +1,13 @@
+import pickle
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
-from suchus.experiment import Experiment, Measure, Simulated, silent, staged
+from suchus.errors import AmbiguousName, IncompatibleRecord, InvalidDesign
+from suchus.experiment import Experiment, Measure, Measures, Simulated, estimated, ranged, silent, staged
+from suchus.motion import Gait
 from suchus.progress import portion
 from suchus.verdict import Clause, Rule
 
@@ -21,6 +23,7 @@ class Drop(Experiment):
     repeats: int = 4
     heights: tuple[float, ...] = (1.0, 2.0)
     name_of_measure: str = "depth"
+    named: tuple[str | Gait, ...] = ()
 
     @classmethod
     def rules(cls):
@@ -95,3 +98,50 @@ def test_progress_of_one_part_of_several_keeps_the_names_of_its_stages():
     report("begun", 0.0)
     report("done", 1.0)
     assert seen == [("begun", 0.25), ("done", 0.5)]
+
+
+def test_two_things_of_one_name_are_refused_before_anything_runs():
+    crawl = Gait(name="crawl", period=4.0)
+    for named in (("on", "off", "on"), (crawl, replace(crawl, period=9.0)), ("crawl", crawl)):
+        with pytest.raises(InvalidDesign, match=r"\.named has '(on|crawl)' more than once; leave one out, or give it"):
+            replace(Drop(), named=named).run()
+    assert replace(Drop(), named=("on", "off", crawl)).run().measures
+
+
+SPEED, SLOWER, POWER = Measure(0.2, "m/s"), Measure(0.1, "m/s"), Measure(3.0, "W")
+
+
+def extended(measures, other):
+    measures |= other
+    return measures
+
+
+@pytest.mark.parametrize(
+    "merge",
+    [
+        lambda one, other: one | other,
+        lambda one, other: dict(one) | Measures(other),
+        Measures,
+        lambda one, other: Measures(one, other.items()),
+        extended,
+        lambda one, other: one.update(other),
+        lambda one, other: one.update(**other),
+        lambda one, other: [one.__setitem__(name, measure) for name, measure in other.items()],
+    ],
+)
+def test_a_second_measure_of_a_name_is_refused_and_never_overwrites_the_first(merge):
+    one = Measures({"speed": SPEED})
+    with pytest.raises(AmbiguousName, match=r"two measures named 'speed': 0\.2 m/s and 0\.1 m/s; give one of them"):
+        merge(one, {"speed": SLOWER})
+    assert one == {"speed": SPEED}
+    both = merge(one, {"power": POWER})
+    assert (both if isinstance(both, Measures) else one) == {"speed": SPEED, "power": POWER}
+
+
+def test_measures_are_still_such_after_they_were_merged_or_stored():
+    merged = {"power": POWER} | Measures({"speed": SPEED}) | estimated("way", [1.0, 2.0], "m")
+    for measures in (merged, pickle.loads(pickle.dumps(merged)), ranged("x", 1.0, [0.5, 2.0], "m")):
+        assert isinstance(measures, Measures)
+        with pytest.raises(AmbiguousName):
+            extended(measures, dict(measures))
+    assert list(merged) == ["power", "speed", "way", "way_low", "way_high"]

@@ -4,7 +4,7 @@ import re
 import sys
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
@@ -19,15 +19,15 @@ from jinja2.ext import Extension
 
 from suchus.design import Robot, check_needs
 from suchus.design.scale import coarse_step, control_period, scaled_fields
-from suchus.errors import BrokenFile, InvalidDesign
+from suchus.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.gaits import in_size, own_gait
 from suchus.motion import Gait, check_limits, suits
 from suchus.progress import Progress, silent, staged
 from suchus.verdict import Reading, Rule, Verdict, compared, judge, listed, rules_of
 
 __all__ = [
-    "Experiment", "Measure", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged", "silent",
-    "staged", "stopwatch", "templates", "write",
+    "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged",
+    "silent", "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
@@ -43,13 +43,51 @@ class Measure:
     """SI unit, ``-`` for none."""
 
 
+class Measures(dict[str, Measure]):
+    """Numbers by name, each name once: a second number of a name is refused, and never overwrites the first.
+
+    ``Measures(one, other)``, ``one | other``, ``one |= other`` and ``one[name] = number`` all hold to that.
+    """
+
+    def __init__(self, *parts: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> None:
+        super().__init__()
+        for part in parts:
+            self |= part
+
+    def __setitem__(self, name: str, measure: Measure) -> None:
+        """Add a number.
+
+        Raises:
+            AmbiguousName: there is one of that name.
+        """
+        if name in self:
+            there, new = (f"{one.value:g} {one.unit}" for one in (self[name], measure))
+            raise AmbiguousName("measure", name, there, new)
+        super().__setitem__(name, measure)
+
+    def __ior__(self, other: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
+        for name, measure in other.items() if isinstance(other, Mapping) else other:
+            self[name] = measure
+        return self
+
+    def __or__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(self, other)
+
+    def __ror__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(other, self)
+
+    def update(self, *parts: Any, **named: Measure) -> None:
+        """Add numbers, as ``|=``."""
+        self |= Measures(*parts, named)
+
+
 _RESAMPLES = 2000
 """Number of times an ensemble is drawn anew for an interval [-]."""
 _COVERED = 0.95
 """Share of the resamples whose middle lies in the interval [-]."""
 
 
-def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> dict[str, Measure]:
+def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> Measures:
     """Return the middle of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
 
     The interval is that of the bootstrap (Efron 1979): the middle of ensembles that are drawn from this one with
@@ -68,11 +106,13 @@ def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] 
         low, high = np.quantile(middle(values[_drawn(values.size)], axis=-1), [(1 - _COVERED) / 2, (1 + _COVERED) / 2])
     else:
         low = high = found
-    return {
-        name: Measure(found, unit),
-        f"{name}_low": Measure(float(min(low, found)), unit),
-        f"{name}_high": Measure(float(max(high, found)), unit),
-    }
+    return Measures(
+        {
+            name: Measure(found, unit),
+            f"{name}_low": Measure(float(min(low, found)), unit),
+            f"{name}_high": Measure(float(max(high, found)), unit),
+        }
+    )
 
 
 @cache
@@ -81,14 +121,15 @@ def _drawn(count: int) -> np.ndarray:
     return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
 
 
-def ranged(name: str, value: Any, repeats: Any, unit: str) -> dict[str, Measure]:
+def ranged(name: str, value: Any, repeats: Any, unit: str) -> Measures:
     """Return a number as ``NAME``, and the least and the greatest of its repeats as ``NAME_low`` and ``NAME_high``."""
-    return {name: Measure(float(value), unit)} | ends(name, repeats, unit)
+    return Measures({name: Measure(float(value), unit)}, ends(name, repeats, unit))
 
 
-def ends(name: str, values: Any, unit: str) -> dict[str, Measure]:
+def ends(name: str, values: Any, unit: str) -> Measures:
     """Return the least and the greatest of some values as ``NAME_low`` and ``NAME_high``."""
-    return {f"{name}_low": Measure(float(np.min(values)), unit), f"{name}_high": Measure(float(np.max(values)), unit)}
+    low, high = (Measure(float(end(values)), unit) for end in (np.min, np.max))
+    return Measures({f"{name}_low": low, f"{name}_high": high})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,7 +227,9 @@ class Experiment(ABC):
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs.
             OutsideLimits: the gait is one for other limbs, or asks its joints for more than they can.
+            InvalidDesign: a field holds two things of one name, so that their numbers would have one name too.
         """
+        self._check_names()
         if hasattr(self, "robot"):
             check_needs(self.robot, self.needs, self.name())
             gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
@@ -212,6 +255,18 @@ class Experiment(ABC):
                 seconds=seconds(),
             )
 
+    def _check_names(self) -> None:
+        for one in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, one.name)
+            held = value if isinstance(value, tuple) else ()
+            names = [part if isinstance(part, str) else part.name for part in held if isinstance(part, (str, Gait))]
+            twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+            if twice:
+                raise InvalidDesign(
+                    f"{self.name()}.{one.name} has {' and '.join(map(repr, twice))} more than once; leave one out, or "
+                    f"give it another name."
+                )
+
     @abstractmethod
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Do what is to be measured, and return the record of it."""
@@ -227,7 +282,7 @@ class Experiment(ABC):
 
     @abstractmethod
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
-        """Return every number, read from the record alone."""
+        """Return every number, read from the record alone; ``Measures`` keep two from having one name."""
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided the outcome, in a paragraph whose every statement follows from the measures.

@@ -1,8 +1,10 @@
 """What holds for every experiment on the shelf."""
 
+import inspect
 import json
 import math
 import os
+import re
 import sys
 from dataclasses import fields, replace
 from math import isfinite
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 from suchus import machine
+from suchus.experiment import Measures
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption
 from suchus.figures.data import field_of
@@ -56,6 +59,16 @@ def test_its_measures_are_numbers_with_units(quick):
         assert name.isidentifier(), name
         assert isinstance(measure.value, (int, float)), name
         assert measure.unit, name
+
+
+def test_no_measure_overwrites_another(quick):
+    """``Measures`` refuse a second number of a name; mypy holds whoever says that it returns them to it."""
+    experiment, outcome = quick
+    if not type(experiment).__module__.startswith("suchus."):
+        return  # others may return any mapping
+    assert isinstance(outcome.measures, Measures)
+    for file in Path(inspect.getfile(type(experiment))).parent.glob("*.py"):
+        assert not re.findall(r"-> (?:dict|Mapping)\[str, Measure\]", file.read_text(encoding="utf-8")), file
 
 
 def test_a_published_number_lies_in_its_own_interval(quick):

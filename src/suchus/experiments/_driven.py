@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.design import Robot
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments._replayed import replayed
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import own_gait
@@ -69,25 +69,27 @@ class Driven(Experiment):
             seconds=seconds,
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what the log says of servos and bus, and what metrics say of the walk where it was measured."""
         told = about(record)
         off = np.sqrt(((record.servo_angle - record.servo_asked) ** 2).mean("time"))
         current = np.abs(record.servo_current)
-        found = {
-            "duration": Measure(float(record.time[-1] - record.time[0]), "s"),
-            "late_median": Measure(told["late_median"], "s"),
-            "late_p99": Measure(told["late_p99"], "s"),
-            "late_most": Measure(told["late_most"], "s"),
-            "missed": Measure(float(told["missed"]), "-"),
-            "holes": Measure(told["holes"], "-"),
-            "holes_worst": Measure(told["worst_holes"], "-"),
-            "clamped": Measure(float(told["clamped"]), "-"),
-            "error_worst": Measure(float(off.max()), "rad"),
-            "temperature_most": Measure(told["hottest"], "degC"),
-            "current_most": Measure(_most(current.values), "A"),
-            "voltage_least": Measure(-_most(-record.servo_voltage.values), "V"),
-        }
+        found = Measures(
+            {
+                "duration": Measure(float(record.time[-1] - record.time[0]), "s"),
+                "late_median": Measure(told["late_median"], "s"),
+                "late_p99": Measure(told["late_p99"], "s"),
+                "late_most": Measure(told["late_most"], "s"),
+                "missed": Measure(float(told["missed"]), "-"),
+                "holes": Measure(told["holes"], "-"),
+                "holes_worst": Measure(told["worst_holes"], "-"),
+                "clamped": Measure(float(told["clamped"]), "-"),
+                "error_worst": Measure(float(off.max()), "rad"),
+                "temperature_most": Measure(told["hottest"], "degC"),
+                "current_most": Measure(_most(current.values), "A"),
+                "voltage_least": Measure(-_most(-record.servo_voltage.values), "V"),
+            }
+        )
         return found | {f"error_{name}": Measure(float(off.sel(servo=name)), "rad") for name in record.servo.values}
 
     def explain(self, measures: Mapping[str, float]) -> str:

@@ -9,7 +9,7 @@ import xarray as xr
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
-from suchus.experiment import Experiment, Measure, Progress, estimated
+from suchus.experiment import Experiment, Measures, Progress, estimated
 from suchus.gaits import GAITS, control_group
 from suchus.land import Run, Tolerances, simulate
 from suchus.motion import Gait
@@ -83,14 +83,14 @@ class TwoGroups(Experiment):
         return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
 
 
-def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> dict[str, Measure]:
+def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> Measures:
     """Return the middle and the interval of repeated numbers in every condition, as ``NAME_CONDITION``.
 
     Args:
         record: with ``repeated_NAME`` over ``condition`` and ``repeat``.
         units: of the numbers, by name.
     """
-    measures: dict[str, Measure] = {}
+    measures = Measures()
     for condition in record.condition.values:
         for name, unit in units.items():
             values = record[f"repeated_{name}"].sel(condition=condition)

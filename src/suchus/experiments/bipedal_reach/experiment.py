@@ -12,7 +12,18 @@ from suchus.control.standing import BALANCE, Balance, Standing
 from suchus.design import STANDING, Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
 from suchus.experiments._replayed import replayed
 from suchus.experiments.bipedal_reach.figure import (
     draw_angles,
@@ -161,28 +172,30 @@ class BipedalReach(Experiment):
         """How far the centre of mass is commanded behind the feet where nothing else is said [m]."""
         return LEAD * size_of(self.robot)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
         _, rise_at, up, leave, down, _ = record.attrs["stages"]
         facts, height, margin = record.attrs, record.reach.isel(run=0), record.margin.isel(run=0)
         highest = int(np.argmax(record.crawl_reach.values))
-        measures = {
-            **_heights(record),
-            "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
-            "margin_rising": Measure(least_lead(record), "m"),
-            "reach_after": Measure(float(height.sel(time=slice(down, None)).max()), "m"),
-            "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down), "m"),
-            "stretched_length": Measure(facts["stretched"], "m"),
-            "ceiling": Measure(float(record.ceiling.max()), "m"),
-            "reach_high_crawl": Measure(float(record.crawl_reach[highest]), "m"),
-            "distance_high_crawl": Measure(float(record.crawl_way[highest]), "m"),
-            "hip_height": Measure(facts["hip_height"], "m"),
-            "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
-            "hips_at_printed_height": Measure(_hips_at(record, CLAIMS["height_crawl"].value or 0.0), "m"),
-            "cantilever_torque": Measure(facts["cantilever"], "N m"),
-            "pitch_torque": Measure(facts["pitch_torque"], "N m"),
-            "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
-        }
+        measures = Measures(
+            _heights(record),
+            {
+                "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
+                "margin_rising": Measure(least_lead(record), "m"),
+                "reach_after": Measure(float(height.sel(time=slice(down, None)).max()), "m"),
+                "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down), "m"),
+                "stretched_length": Measure(facts["stretched"], "m"),
+                "ceiling": Measure(float(record.ceiling.max()), "m"),
+                "reach_high_crawl": Measure(float(record.crawl_reach[highest]), "m"),
+                "distance_high_crawl": Measure(float(record.crawl_way[highest]), "m"),
+                "hip_height": Measure(facts["hip_height"], "m"),
+                "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
+                "hips_at_printed_height": Measure(_hips_at(record, CLAIMS["height_crawl"].value or 0.0), "m"),
+                "cantilever_torque": Measure(facts["cantilever"], "N m"),
+                "pitch_torque": Measure(facts["pitch_torque"], "N m"),
+                "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
+            },
+        )
         for name, torque in zip(
             record.servo.values, peak_torque(record.isel(run=0), rise_at, leave).values, strict=True
         ):
@@ -351,7 +364,7 @@ class BipedalReach(Experiment):
         }
 
 
-def _heights(record: xr.Dataset) -> dict[str, Measure]:
+def _heights(record: xr.Dataset) -> Measures:
     """Return the heights that robots as built reach crawling and standing, their ratio, and how long they stand."""
     start, rise_at, up, leave, _, _ = record.attrs["stages"]
     reached = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
@@ -367,10 +380,10 @@ def _heights(record: xr.Dataset) -> dict[str, Measure]:
     )
 
 
-def _pushes(record: xr.Dataset) -> dict[str, Measure]:
+def _pushes(record: xr.Dataset) -> Measures:
     """Return how many robots as built stay up, and the smallest pushes that topple it, with feedback and without."""
     _, _, up, leave, _, _ = record.attrs["stages"]
-    measures = {}
+    measures = Measures()
     for feedback in ("on", "off"):
         reach = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
         stays = (reach > record.attrs["least"]).all("repeat_time")
@@ -381,13 +394,15 @@ def _pushes(record: xr.Dataset) -> dict[str, Measure]:
     return measures
 
 
-def _gains(record: xr.Dataset) -> dict[str, Measure]:
+def _gains(record: xr.Dataset) -> Measures:
     """Return by how much the heights grow with the lengths of legs, spine and head [-]."""
-    gains = {
-        f"gain_{part}_{pose}": Measure(float(record.gain.sel(part=part, pose=pose)), "-")
-        for part in record.part.values
-        for pose in record.pose.values
-    }
+    gains = Measures(
+        {
+            f"gain_{part}_{pose}": Measure(float(record.gain.sel(part=part, pose=pose)), "-")
+            for part in record.part.values
+            for pose in record.pose.values
+        }
+    )
     others = record.gain.sel(pose="crawling", part=["spine", "head"])
     gains["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
     gains["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.design.scale import coarse_step
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups, of_repeats
 from suchus.experiments.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
@@ -117,7 +117,7 @@ class CrawlStability(TwoGroups):
         girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
         measures = of_repeats(record, _UNITS)
         for name, quantity, arm, without in _CHANGES:
@@ -202,7 +202,7 @@ def _lean(record: xr.Dataset) -> xr.DataArray:
     return tilted["roll"].copy(data=np.arccos(upright))
 
 
-def _of_most(name: str, values: xr.DataArray, unit: str) -> dict[str, Measure]:
+def _of_most(name: str, values: xr.DataArray, unit: str) -> Measures:
     """Return the middle of the robots of which there is a number, where that are most of them."""
     there = values.values[np.isfinite(values.values)]
     return estimated(name, there if 2 * there.size > values.size else values, unit)

@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.control import OpenLoop
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
 from suchus.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.metrics import between, peak_torque, roll_rate, whole
@@ -198,13 +198,13 @@ class DeathRoll(Experiment):
         data.timestep.attrs["units"] = "s"
         return data
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return rate, power and loads of each roll, and what is left of the angular momentum."""
         start = self._window(self.frequency)
         torque, measured = peak_torque(record, start), between(record, start)
         power = (measured.servo_torque * measured.servo_velocity).clip(min=0.0).sum("servo").mean("time")
         speed = abs(measured.servo_velocity).max("time")
-        measures = {}
+        measures = Measures()
         for medium in _MEDIA:
             for arm in _ARMS:
                 run = int(np.flatnonzero((record.label == arm) & (record.medium == medium))[0])

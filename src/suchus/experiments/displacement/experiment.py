@@ -11,7 +11,7 @@ from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step
 from suchus.errors import InvalidDesign
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
+from suchus.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups, of_repeats
 from suchus.experiments.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
@@ -154,7 +154,7 @@ class Displacement(TwoGroups):
 
         return tuple(number for number in numbers if follows(number))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what each condition does and what each part adds, of the robots as built, and the map."""
         measures = of_repeats(record, _UNITS)
         forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}

@@ -13,7 +13,18 @@ from suchus.control.topology import topology
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
 from suchus.experiments._replayed import replayed
 from suchus.experiments.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.gaits import GAITS, own_gait
@@ -154,7 +165,7 @@ class Feedback(Experiment):
         record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
         return Simulated(record=record, replays=self._replays(pair))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how many starts converge, and what each rule makes of each disturbance."""
         return start_measures(record, self.gait, self.hold, self.cycles) | disturbed_measures(
             record, self.gait, self.hold, self.after
@@ -315,7 +326,7 @@ class Feedback(Experiment):
         }
 
 
-def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> dict[str, Measure]:
+def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> Measures:
     """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
 
     Args:
@@ -327,7 +338,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     error = phase_error(record.start_phase, gait).rename(start_time="time")
     period = gait.period
     cycles_taken = cycles_until(error, period, start=START, hold=hold)
-    measures: dict[str, Measure] = {}
+    measures = Measures()
     for law in record.law.values:
         taken = cycles_taken.sel(law=law).values
         measures |= estimated(f"converged_{law}", np.isfinite(taken), "-", middle=np.mean)
@@ -347,7 +358,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     return measures | estimated("way_gain_shared", shared - isolated, "m")
 
 
-def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> dict[str, Measure]:
+def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> Measures:
     """Return distances and turns after each disturbance, and what the rules make of them.
 
     Args:
@@ -361,7 +372,7 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
     change = part.isel(time=-1) - part.isel(time=0)
     moved = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
     distance = {key: float(value.x) for key, value in moved.items()}
-    measures = {}
+    measures = Measures()
     for name in record.disturbance.values:
         for arm in SHOWN:
             measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
@@ -389,17 +400,19 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) 
     return measures | _undisturbed_measures(record, gait) | _loop_measures(part, gait)
 
 
-def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
+def _loop_measures(part: xr.Dataset, gait: Gait) -> Measures:
     """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
     stuck = part.lacking.sel(disturbance="locked_spine")
     first = part.time[0] + gait.period
     missing = {arm: _rms(_ending(stuck.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
     begun = _rms(stuck.sel(arm="spine", time=slice(None, first)))
-    measures = {
-        "spine_lacking_open": Measure(missing["open"], "rad"),
-        "spine_lacking_spine": Measure(missing["spine"], "rad"),
-        "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
-    }
+    measures = Measures(
+        {
+            "spine_lacking_open": Measure(missing["open"], "rad"),
+            "spine_lacking_spine": Measure(missing["spine"], "rad"),
+            "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
+        }
+    )
     if "tail_load" not in part:
         return measures
     uphill = part.sel(disturbance="uphill")
@@ -414,18 +427,20 @@ def _loop_measures(part: xr.Dataset, gait: Gait) -> dict[str, Measure]:
     }
 
 
-def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> dict[str, Measure]:
+def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
     """Return what the rules do to a robot whose phases are right, over the first two cycles."""
     part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
     change = part.isel(time=-1) - part.isel(time=0)
     distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
     clock = change.limb_phase.mean("leg")
-    measures = {
-        "distortion": Measure(abs(distance["limbs"] / distance["open"] - 1.0), "-"),
-        "kept_undisturbed_spine": Measure(distance["spine"] / distance["open"], "-"),
-        "way_gained": Measure(distance["closed"] / distance["open"] - 1.0, "-"),
-        "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
-    }
+    measures = Measures(
+        {
+            "distortion": Measure(abs(distance["limbs"] / distance["open"] - 1.0), "-"),
+            "kept_undisturbed_spine": Measure(distance["spine"] / distance["open"], "-"),
+            "way_gained": Measure(distance["closed"] / distance["open"] - 1.0, "-"),
+            "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
+        }
+    )
     if "tail_pitch" not in record:
         return measures
     pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)

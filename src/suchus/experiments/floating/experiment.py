@@ -14,7 +14,7 @@ from suchus.control import Swimming
 from suchus.design import Robot, with_values
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.floating import cases
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -184,7 +184,7 @@ class Floating(Experiment):
             caption=f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how far off the exact answers are, and how the robot floats."""
         heave = np.abs(record.heave_period / record.exact_heave_period - 1)
         rest = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
@@ -194,24 +194,29 @@ class Floating(Experiment):
         since = int(np.flatnonzero(~upright)[-1]) + 1 if not upright.all() else 0
         righted = float(record.time[since]) if since < len(upright) else float("nan")
         afloat, bare = record.sel(hull="floating"), record.sel(hull="bare")
-        return {
-            "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
-            "heave_period_error": Measure(float(heave.max()), "-"),
-            "energy_gain": Measure(float(record.gained.sel(integrator="implicitfast")), "-"),
-            "energy_gain_rk4": Measure(float(record.gained.sel(integrator="RK4")), "-"),
-            "impulse_drift": Measure(float(record.drift.sel(integrator="RK4")), "-"),
-            "impulse_drift_implicitfast": Measure(float(record.drift.sel(integrator="implicitfast")), "-"),
-            "volume_error": Measure(float(record.volume_off.max()), "-"),
-            "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
-            "force_of_ballast": Measure(float(record.table_ballast), "N"),
-            "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
-            "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
-            "roll_at_rest": Measure(float(last.mean()), "rad"),
-            "righting_time": Measure(righted, "s"),
-            **{f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
-               for kind, one in (("floating", afloat), ("bare", bare)) for name, unit in _STATICS.items()
-               if np.isfinite(float(one[f"static_{name}"]))},
-        }  # fmt: skip
+        return Measures(
+            {
+                "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
+                "heave_period_error": Measure(float(heave.max()), "-"),
+                "energy_gain": Measure(float(record.gained.sel(integrator="implicitfast")), "-"),
+                "energy_gain_rk4": Measure(float(record.gained.sel(integrator="RK4")), "-"),
+                "impulse_drift": Measure(float(record.drift.sel(integrator="RK4")), "-"),
+                "impulse_drift_implicitfast": Measure(float(record.drift.sel(integrator="implicitfast")), "-"),
+                "volume_error": Measure(float(record.volume_off.max()), "-"),
+                "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
+                "force_of_ballast": Measure(float(record.table_ballast), "N"),
+                "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
+                "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
+                "roll_at_rest": Measure(float(last.mean()), "rad"),
+                "righting_time": Measure(righted, "s"),
+            },
+            {
+                f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
+                for kind, one in (("floating", afloat), ("bare", bare))
+                for name, unit in _STATICS.items()
+                if np.isfinite(float(one[f"static_{name}"]))
+            },
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the righting lever with the rolls, and the checks against exact answers."""

@@ -10,7 +10,7 @@ import xarray as xr
 from suchus import blueprint
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.figures import captioned
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
@@ -90,12 +90,12 @@ class GaitDiagram(Experiment):
             replays=replayed("gait_replay.html", record, self.robot, caption=_CAPTION),
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
         walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample begins the next one
         legs = [str(leg) for leg in record.leg.values]
         duty, phase = duty_factor(record), sensed_phase(record)
-        measures = {f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs}
+        measures = Measures({f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs})
         measures |= {f"phase_{leg}": Measure(float(phase.sel(leg=leg)), "cycle") for leg in legs[1:]}
         for name in _bending(record):
             bend = walk[f"sensed_{name}"].values

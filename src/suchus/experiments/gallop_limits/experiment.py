@@ -13,7 +13,7 @@ from suchus.design import Robot, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_servos, with_speed_line
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
 from suchus.figures import captioned
@@ -167,7 +167,7 @@ class GallopLimits(Experiment):
             caption=f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
         bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
         own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
@@ -175,22 +175,24 @@ class GallopLimits(Experiment):
         gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
         pays = gallops.sel(torque=own["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
-        return {
-            "speed_bound": Measure(float(own_bound.speed), "m/s"),
-            "flight_bound": Measure(float(own_bound.flight), "-"),
-            "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
-            "speed_walk": Measure(float(own_walk.speed), "m/s"),
-            "bound_over_walk": Measure(float(own_bound.speed / own_walk.speed), "-"),
-            "speed_bound_best": Measure(float(best.speed), "m/s"),
-            "flight_bound_best": Measure(float(best.flight), "-"),
-            "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
-            "torque_best": Measure(float(best.torque), "N m"),
-            "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
-            "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
-            "torque_own": Measure(own["torque"], "N m"),
-            "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
-            "gallops_share": Measure(float(gallops.mean()), "-"),
-        }
+        return Measures(
+            {
+                "speed_bound": Measure(float(own_bound.speed), "m/s"),
+                "flight_bound": Measure(float(own_bound.flight), "-"),
+                "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
+                "speed_walk": Measure(float(own_walk.speed), "m/s"),
+                "bound_over_walk": Measure(float(own_bound.speed / own_walk.speed), "-"),
+                "speed_bound_best": Measure(float(best.speed), "m/s"),
+                "flight_bound_best": Measure(float(best.flight), "-"),
+                "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
+                "torque_best": Measure(float(best.torque), "N m"),
+                "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
+                "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
+                "torque_own": Measure(own["torque"], "N m"),
+                "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
+                "gallops_share": Measure(float(gallops.mean()), "-"),
+            }
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""

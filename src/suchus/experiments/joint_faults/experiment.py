@@ -12,7 +12,7 @@ from suchus.control import Control, Coordinated, HeadingRule, OpenLoop
 from suchus.design import layout
 from suchus.design.checks import Checks
 from suchus.design.scale import coarse_step, control_period
-from suchus.experiment import Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._two_groups import TwoGroups
 from suchus.experiments.joint_faults.figure import draw_held, draw_matrix, draw_over_time, draw_tracks
@@ -121,11 +121,11 @@ class JointFaults(TwoGroups):
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
         return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what every cell costs against both intact robots, and what carries the body."""
         reading = f"{record.attrs['judged_kind']}_{record.attrs['judged_legs']}"
         ours = record.intact_forward.sel(arm="coordinated", drop=True)
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         for arm in ARMS:
             measures |= estimated(f"forward_{arm}", record.intact_forward.sel(arm=arm), "m")
         bare = lost(record.intact_forward.sel(arm="limbs_only"), ours)
@@ -356,7 +356,7 @@ def lost(forward: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:
     return loss(forward, intact.where(intact > 0.0))
 
 
-def _cells(record: xr.Dataset) -> dict[str, Measure]:
+def _cells(record: xr.Dataset) -> Measures:
     """Return what every cell costs: against the intact robot with spine and tail, and of limbs only against its own.
 
     ``gain`` is how much less of its own displacement the robot loses with spine and tail than with limbs only, repeat
@@ -366,7 +366,7 @@ def _cells(record: xr.Dataset) -> dict[str, Measure]:
     own = lost(record.forward, record.intact_forward)
     kept = own.clip(min=-1.0)
     gain = kept.sel(arm="coordinated") - kept.sel(arm="limbs_only")
-    measures: dict[str, Measure] = {}
+    measures = Measures()
     for cell in product(record.joint.values, KINDS, LEGS_FAILED):
         at, name = dict(zip(_CELL, cell, strict=True)), "_".join(cell)
         for arm in ARMS:
@@ -377,11 +377,11 @@ def _cells(record: xr.Dataset) -> dict[str, Measure]:
     return measures
 
 
-def _effects(record: xr.Dataset) -> dict[str, Measure]:
+def _effects(record: xr.Dataset) -> Measures:
     """Return by how much the change with spine and tail differs on average between two readings of one thing [-]."""
     change = lost(record.forward, record.intact_forward).sel(arm="coordinated", joint=record.lost.values)
     change = change.median("repeat")
-    effects = {}
+    effects = Measures()
     for dim in ("kind", "joint", "legs"):
         pairs = combinations(change[dim].values, 2)
         apart = [float(abs(change.sel({dim: a}) - change.sel({dim: b})).mean()) for a, b in pairs]
@@ -389,9 +389,9 @@ def _effects(record: xr.Dataset) -> dict[str, Measure]:
     return effects
 
 
-def _support_measures(record: xr.Dataset) -> dict[str, Measure]:
+def _support_measures(record: xr.Dataset) -> Measures:
     """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
-    measures: dict[str, Measure] = {}
+    measures = Measures()
     height, parts = record.swing_height, [str(part) for part in record.part.values]
     legs = [part for part in parts if part not in ("tail", "belly")]
     carriers = ["tail", *([legs[-3]] if len(legs) > 2 else []), legs[-2]]  # beside the last leg and ahead of it

@@ -13,7 +13,7 @@ from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, physics_step
 from suchus.design.servos import with_servos
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.joint_loops import figure as pictures
 from suchus.figures import captioned
 from suchus.gaits import GAITS, own_gait
@@ -138,10 +138,10 @@ class JointLoops(Experiment):
                 of_test.append(angle)
         return angles
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
         step, last = record.attrs["step"], len(record.ki) - 1
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         for i, ki in enumerate(record.ki.values):
             with_gain, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
             measures |= {

@@ -10,7 +10,7 @@ import xarray as xr
 from suchus.design import LEGS, Robot, leg_joints, servo_names
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments._frames import draw_frames, frames_of
 from suchus.experiments.leg_kinematics import figure as pictures
 from suchus.gaits import GAITS
@@ -97,30 +97,32 @@ class LegKinematics(Experiment):
             coords={"of_gait": ["gait", "other_gait"], "leg": list(LEGS)},
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return in which part of the workspace and of the gaits (14) is exact, and how far off it is elsewhere."""
         wrong = record.error_printed
         fails = wrong > EXACT
         quarter = (record.foot.sel(axis="outward") > record.attrs["hip_offset"]) & (record.foot.sel(axis="down") > 0)
-        return {
-            "round_trip_error": Measure(float(record.error_ours.max()), "m"),
-            "printed_inverse_holds": Measure(float((~fails).mean()), "-"),
-            "printed_inverse_fails": Measure(float(fails.mean()), "-"),
-            "printed_inverse_holds_outboard_below": Measure(_share(~fails, quarter), "-"),
-            "printed_inverse_holds_elsewhere": Measure(_share(~fails, ~quarter), "-"),
-            "printed_inverse_holds_crawl": Measure(_exact(record, "gait"), "-"),
-            "printed_inverse_holds_high_walk": Measure(_exact(record, "other_gait"), "-"),
-            "printed_foot_error_median": Measure(float(wrong.where(fails).median()), "m"),
-            "printed_foot_error_max": Measure(float(wrong.max()), "m"),
-            "knee_error_of_eq_10_median": Measure(float(record.error_knee.median()), "rad"),
-            "knee_undefined_by_eq_10": Measure(float(record.error_knee.isnull().mean()), "-"),
-            "table_1_by_label_error_median": Measure(float(record.error_label.median()), "m"),
-            "reach_near": Measure(record.attrs["near"], "m"),
-            "reach_far": Measure(record.attrs["far"], "m"),
-            "shell_within_joint_limits": Measure(float(record.within_limits.mean()), "-"),
-            "leg_servos": Measure(float(record.attrs["leg_servos"]), "-"),
-            "actuators": Measure(float(record.attrs["actuators"]), "-"),
-        }
+        return Measures(
+            {
+                "round_trip_error": Measure(float(record.error_ours.max()), "m"),
+                "printed_inverse_holds": Measure(float((~fails).mean()), "-"),
+                "printed_inverse_fails": Measure(float(fails.mean()), "-"),
+                "printed_inverse_holds_outboard_below": Measure(_share(~fails, quarter), "-"),
+                "printed_inverse_holds_elsewhere": Measure(_share(~fails, ~quarter), "-"),
+                "printed_inverse_holds_crawl": Measure(_exact(record, "gait"), "-"),
+                "printed_inverse_holds_high_walk": Measure(_exact(record, "other_gait"), "-"),
+                "printed_foot_error_median": Measure(float(wrong.where(fails).median()), "m"),
+                "printed_foot_error_max": Measure(float(wrong.max()), "m"),
+                "knee_error_of_eq_10_median": Measure(float(record.error_knee.median()), "rad"),
+                "knee_undefined_by_eq_10": Measure(float(record.error_knee.isnull().mean()), "-"),
+                "table_1_by_label_error_median": Measure(float(record.error_label.median()), "m"),
+                "reach_near": Measure(record.attrs["near"], "m"),
+                "reach_far": Measure(record.attrs["far"], "m"),
+                "shell_within_joint_limits": Measure(float(record.within_limits.mean()), "-"),
+                "leg_servos": Measure(float(record.attrs["leg_servos"]), "-"),
+                "actuators": Measure(float(record.attrs["actuators"]), "-"),
+            }
+        )
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
         """Return the maps of error and workspace, and the misprints."""

@@ -14,7 +14,7 @@ from suchus.control.pattern_posture import axis_segments
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import scaled_fields
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.pattern_generator import one_drive
 from suchus.experiments.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
@@ -142,7 +142,7 @@ class PatternGeneratorExperiment(Experiment):
         )
         return Simulated(record=record, replays=self._replays(ramped))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return frequencies, lags and indices over the drive, locks, strides and turns."""
         measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim")
         for arm in record.arm.values:
@@ -303,11 +303,11 @@ def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(np.angle(off * np.conj(common))).max(axis=-1))
 
 
-def _swept(record: xr.Dataset) -> dict[str, Measure]:
+def _swept(record: xr.Dataset) -> Measures:
     """Return what the sweep shows at the two drives, and on both sides of where the limbs fall silent."""
     edge = record.attrs["silent_above"]
     states = {"walk": record.attrs["walk"], "swim": record.attrs["swim"], "below": edge, "above": edge + _EDGE}
-    found = {}
+    found = Measures()
     for name, drive in states.items():
         one = record.sel(drive=drive, method="nearest")
         found[f"frequency_{name}"] = Measure(float(one.frequency_axis), "Hz")
@@ -332,17 +332,19 @@ def _lags(phase: np.ndarray) -> np.ndarray:
     return np.asarray(np.mod(-np.diff(phase) + 0.5, 1.0) - 0.5)
 
 
-def _locked(record: xr.Dataset, state: str, ending: str) -> dict[str, Measure]:
+def _locked(record: xr.Dataset, state: str, ending: str) -> Measures:
     """Return the share of starts that lock, and after how many cycles those do; NaN if none does."""
     error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
     step = float(cycle[1] - cycle[0])
     since = (cycle.where(error > record.attrs["within"]).max(str(cycle.dims[0])) + step).fillna(0.0)
     locked = since.values[since.values <= float(cycle[-1]) - record.attrs["hold"]]
-    return {
-        f"locked_share{ending}": Measure(len(locked) / len(since), "-"),
-        f"lock_cycles{ending}": Measure(float(locked.mean()) if len(locked) else float("nan"), "cycle"),
-        f"lock_cycles{ending}_most": Measure(float(locked.max()) if len(locked) else float("nan"), "cycle"),
-    }
+    return Measures(
+        {
+            f"locked_share{ending}": Measure(len(locked) / len(since), "-"),
+            f"lock_cycles{ending}": Measure(float(locked.mean()) if len(locked) else float("nan"), "cycle"),
+            f"lock_cycles{ending}_most": Measure(float(locked.max()) if len(locked) else float("nan"), "cycle"),
+        }
+    )
 
 
 experiment = PatternGeneratorExperiment()

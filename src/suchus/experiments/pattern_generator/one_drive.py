@@ -8,7 +8,7 @@ import xarray as xr
 from suchus.control import LoadRule, PatternGenerator
 from suchus.design import Robot
 from suchus.design.ground import Ground
-from suchus.experiment import Measure
+from suchus.experiment import Measure, Measures
 from suchus.land import Lake, Run
 from suchus.motion import START, Gait
 
@@ -57,7 +57,7 @@ def reduced(record: xr.Dataset, line: float) -> xr.Dataset:
     )
 
 
-def measures(record: xr.Dataset) -> dict[str, Measure]:
+def measures(record: xr.Dataset) -> Measures:
     """Return how it swims and walks by one drive: speeds, changes, and how far it comes."""
     late = record.sel(shore_time=slice(START + _BEGUN - 1e-9, None))
     time, ahead = late.shore_time.values, late.shore_ahead.sel(shore_arm="felt").values
@@ -65,21 +65,25 @@ def measures(record: xr.Dataset) -> dict[str, Measure]:
     silent = np.diff(late.shore_limbs.sel(shore_arm="felt").values) / step < _SILENT
     speed = np.diff(ahead) / step
     parts = {"swim": silent, "walk": ~silent}
-    measures_of_arm = {
-        f"drive_{name}_speed": Measure(float(speed[part].mean()) if part.any() else float("nan"), "m/s")
-        for name, part in parts.items()
-    }
+    measures_of_arm = Measures(
+        {
+            f"drive_{name}_speed": Measure(float(speed[part].mean()) if part.any() else float("nan"), "m/s")
+            for name, part in parts.items()
+        }
+    )
     unfelt = late.shore_ahead.sel(shore_arm="unfelt").values
-    return {
-        **measures_of_arm,
-        "drive_changes": Measure(float(np.count_nonzero(np.diff(silent.astype(int)))), "-"),
-        "drive_afloat_share": Measure(float(silent.mean()), "-"),
-        "drive_ashore": Measure(float(ahead[-1]), "m"),
-        "drive_ashore_unfelt": Measure(float(unfelt[-1]), "m"),
-        "drive_feet_walking": Measure(
-            float(late.shore_feet.sel(shore_arm="felt").values[1:][~silent][-len(time) // 4 :].mean())
-            if (~silent).any()
-            else float("nan"),
-            "-",
-        ),
-    }
+    return Measures(
+        measures_of_arm,
+        {
+            "drive_changes": Measure(float(np.count_nonzero(np.diff(silent.astype(int)))), "-"),
+            "drive_afloat_share": Measure(float(silent.mean()), "-"),
+            "drive_ashore": Measure(float(ahead[-1]), "m"),
+            "drive_ashore_unfelt": Measure(float(unfelt[-1]), "m"),
+            "drive_feet_walking": Measure(
+                float(late.shore_feet.sel(shore_arm="felt").values[1:][~silent][-len(time) // 4 :].mean())
+                if (~silent).any()
+                else float("nan"),
+                "-",
+            ),
+        },
+    )

@@ -15,7 +15,7 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.emulator import EmulatedBody, Emulator, MemoryPort, Trouble
 from suchus.errors import Diverged
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.gaits import GAITS
 from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, drive
@@ -143,7 +143,8 @@ class Rehearsal(Experiment):
             for name, most in (("latencies", 1.0), ("resolutions", 10.0), ("losses", 1.0)):
                 row = getattr(self, name)
                 check.that(
-                    all(0.0 <= one <= most for one in row), f"{self.name()}.{name} is {row}; 0 to {most:g} is allowed"
+                    all(0.0 <= one <= most for one in row) and len(set(row)) == len(row),
+                    f"{self.name()}.{name} is {row}; 0 to {most:g} is allowed, each once",
                 )
 
     def quick(self) -> "Rehearsal":
@@ -227,14 +228,16 @@ class Rehearsal(Experiment):
         }
         return controls[rule]
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how far the walks differ, and which wires cost which rule too much."""
-        found = {
-            "position_off": Measure(float(record.position_off.max()), "m"),
-            "goal_off": Measure(float(record.goal_off.max()), "rad"),
-            "half_step": Measure(float(record.half_step), "rad"),
-            "angle_off": Measure(float(record.angle_off.max()), "rad"),
-        }
+        found = Measures(
+            {
+                "position_off": Measure(float(record.position_off.max()), "m"),
+                "goal_off": Measure(float(record.goal_off.max()), "rad"),
+                "half_step": Measure(float(record.half_step), "rad"),
+                "angle_off": Measure(float(record.angle_off.max()), "rad"),
+            }
+        )
         count = 0
         kept: dict[float, bool] = {}
         for rule in record.rule.values:

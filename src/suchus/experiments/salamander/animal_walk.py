@@ -11,7 +11,7 @@ import xarray as xr
 
 from suchus.capture import standing_index
 from suchus.design import GRAVITY
-from suchus.experiment import Measure
+from suchus.experiment import Measure, Measures
 from suchus.metrics import each_cycle, first_harmonic, mean_cycle
 
 PAIRS = ("fore", "hind")
@@ -93,7 +93,7 @@ def advance(record: xr.Dataset, when: Window) -> np.ndarray:
     return np.asarray(last - first) / when.cycles
 
 
-def waves(record: xr.Dataset, when: Window) -> dict[str, Measure]:
+def waves(record: xr.Dataset, when: Window) -> Measures:
     """Return how far the axis bends as a standing wave, as commanded and as achieved, and how well it follows."""
     names = list(record.attrs["axis"])
     moved = [str(name) for name in record.servo.values if name in record.joint.values]
@@ -101,7 +101,7 @@ def waves(record: xr.Dataset, when: Window) -> dict[str, Measure]:
         "walk": mean_cycle(record.joint_angle.sel(joint=moved), *when),
         "commanded": mean_cycle(record.servo_target.sel(servo=moved).rename(servo="joint"), *when),
     }
-    found = {}
+    found = Measures()
     for name, angles in cycle.items():
         first = first_harmonic(angles.sel(joint=names))
         found[f"standing_index_{name}"] = Measure(standing_index(np.abs(first), np.angle(first)), "-")
@@ -163,10 +163,10 @@ def step(force: xr.DataArray, least: float) -> FootStep:
     )
 
 
-def steps(record: xr.Dataset, when: Window, least: float) -> dict[str, Measure]:
+def steps(record: xr.Dataset, when: Window, least: float) -> Measures:
     """Return the forces on fore and hind feet, the mean of left and right, and how far the feet slip."""
     force = stance_forces(record, when)
-    measures: dict[str, Measure] = {}
+    measures = Measures()
     singles = each_cycle(record.foot_force, *when) / weight(record)
     single = ((singles**2).sum("xyz") ** 0.5).max("phase").mean("cycle")
     for pair in PAIRS:

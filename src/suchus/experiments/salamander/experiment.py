@@ -10,7 +10,7 @@ import xarray as xr
 from suchus.design import Robot, layout
 from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.salamander.animal_walk import (
     ANIMAL,
@@ -123,24 +123,26 @@ class Salamander(Experiment):
             caption="Joint angles of a walking salamander on its model; half transparent, with the axis held straight.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return wave, stride, foot forces and slip of the walk, and what axis and friction change."""
         when, length = measured_window(record), float(record.attrs["length"])
         walk = record.isel(run=0)
         stride = [float(np.hypot(*advance(record.isel(run=i), when))) / length for i in range(record.sizes["run"])]
         turned = float(heading_change(walk, when.start, when.end)) / when.cycles
         body = _under_load(walk, when)
-        return {
-            **waves(walk, when),
-            "stride_walk": Measure(stride[0], "body length"),
-            "stride_straight_axis": Measure(stride[1], "body length"),
-            "stride_low": Measure(min([stride[0], *stride[2:]]), "body length"),
-            "stride_high": Measure(max([stride[0], *stride[2:]]), "body length"),
-            "turn_per_cycle": Measure(turned, "rad"),
-            "way_forward": Measure(float(displacement(walk, when.start, when.end).sel(xyz="x")), "m"),
-            **steps(walk, when, float(record.attrs["loaded"])),
-            **body,
-        }
+        return Measures(
+            waves(walk, when),
+            {
+                "stride_walk": Measure(stride[0], "body length"),
+                "stride_straight_axis": Measure(stride[1], "body length"),
+                "stride_low": Measure(min([stride[0], *stride[2:]]), "body length"),
+                "stride_high": Measure(max([stride[0], *stride[2:]]), "body length"),
+                "turn_per_cycle": Measure(turned, "rad"),
+                "way_forward": Measure(float(displacement(walk, when.start, when.end).sel(xyz="x")), "m"),
+            },
+            steps(walk, when, float(record.attrs["loaded"])),
+            body,
+        )
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set wave and forces beside the animal's, and say what the axis adds."""
@@ -157,15 +159,17 @@ class Salamander(Experiment):
         }
 
 
-def _under_load(record: xr.Dataset, when: Window) -> dict[str, Measure]:
+def _under_load(record: xr.Dataset, when: Window) -> Measures:
     """Return what belly and tail carry of the weight in the mean, and how long the belly touches."""
     part = record.sel(time=slice(when.start - 1e-9, when.end + 1e-9))
     belly = part.belly_force.sel(xyz="z").sum("segment")
-    return {
-        "belly_load": Measure(float(belly.mean()) / weight(record), "-"),
-        "belly_share": Measure(float((belly > 0.0).mean()), "-"),
-        "tail_load": Measure(float(part.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
-    }
+    return Measures(
+        {
+            "belly_load": Measure(float(belly.mean()) / weight(record), "-"),
+            "belly_share": Measure(float((belly > 0.0).mean()), "-"),
+            "tail_load": Measure(float(part.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
+        }
+    )
 
 
 experiment = Salamander()

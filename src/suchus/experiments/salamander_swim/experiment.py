@@ -12,7 +12,7 @@ from suchus import rotation
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.salamander_swim import animal_swim as animal
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -129,9 +129,9 @@ class SalamanderSwim(Experiment):
             caption=f"Joint angles of a swimming salamander on its model, at {self.frequencies[-1]:g} cycles a second.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return stride, Strouhal number and envelope of the swims, and how far off the animal's stride they are."""
-        found, strides = {}, record.stride.values
+        found, strides = Measures(), record.stride.values
         for i, frequency in enumerate(record.frequency.values):
             name = f"{frequency:g}".replace(".", "_")
             found[f"stride_swim_{name}"] = Measure(float(strides[i]), "body length")

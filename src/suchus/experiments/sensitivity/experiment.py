@@ -14,7 +14,7 @@ from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.errors import InvalidDesign
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.figures.sensitivity import draw_shares, spoken
 from suchus.gaits import GAITS
 from suchus.motion import Gait
@@ -85,10 +85,10 @@ class Sensitivity(Experiment):
         reduced = replace(self, samples=2, seed=0)
         return reduced == replace(Sensitivity(), samples=2, seed=0)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what became of the samples, the share in which each claim holds, and how it agrees with the table."""
         count = Counter(record.status.values.tolist())
-        measures = {measure: Measure(count[name], "-") for name, measure in _COUNTS.items()}
+        measures = Measures({measure: Measure(count[name], "-") for name, measure in _COUNTS.items()})
         chances = []
         for key in (str(claim) for claim in record.claim.values):
             of_claim = record.sel(claim=key)

@@ -14,7 +14,7 @@ from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingR
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
 from suchus.gaits import DRAFTED, GAITS, own_gait, suits
@@ -272,7 +272,7 @@ class Shore(Experiment):
             caption=f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
         kind = record.kind.values
         times, fell = times_ashore(record), fallen(record)
@@ -280,19 +280,21 @@ class Shore(Experiment):
         ashore = times[main][np.isfinite(times[main])]
         slope, grip = record.slope.values, record.grip.values
         steep = main & np.isclose(slope, slope[main].max())
-        found = {
-            "ashore_share": Measure(_share(times, main), "-"),
-            "falls": Measure(float(fell[main].sum()), "-"),
-            "switches": Measure(float(record.switches.values[main].max()), "-"),
-            "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
-            "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
-            "into_water_share": Measure(float(in_water(record)[into].mean()), "-"),
-            "falls_into_water": Measure(float(fell[into].sum()), "-"),
-            "switches_into_water": Measure(float(record.switches.values[into].max()), "-"),
-            "ashore_share_steepest": Measure(_share(times, steep), "-"),
-            "ashore_share_least_grip": Measure(_share(times, main & np.isclose(grip, grip[main].min())), "-"),
-            "ashore_share_most_grip": Measure(_share(times, main & np.isclose(grip, grip[main].max())), "-"),
-        }
+        found = Measures(
+            {
+                "ashore_share": Measure(_share(times, main), "-"),
+                "falls": Measure(float(fell[main].sum()), "-"),
+                "switches": Measure(float(record.switches.values[main].max()), "-"),
+                "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
+                "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
+                "into_water_share": Measure(float(in_water(record)[into].mean()), "-"),
+                "falls_into_water": Measure(float(fell[into].sum()), "-"),
+                "switches_into_water": Measure(float(record.switches.values[into].max()), "-"),
+                "ashore_share_steepest": Measure(_share(times, steep), "-"),
+                "ashore_share_least_grip": Measure(_share(times, main & np.isclose(grip, grip[main].min())), "-"),
+                "ashore_share_most_grip": Measure(_share(times, main & np.isclose(grip, grip[main].max())), "-"),
+            }
+        )
         for i, out in enumerate(np.unique(record.air_released.values[(kind == "air") | steep])):
             mine = ((kind == "air") | steep) & (record.air_released.values == out)
             found[f"air_released_{i}"] = Measure(float(out), "-")
@@ -437,9 +439,9 @@ def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
     )
 
 
-def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
+def _metre_costs(record: xr.Dataset) -> Measures:
     """Return speed, work over distance and cost of transport on land, at the surface and at depth."""
-    found = {}
+    found = Measures()
     for where in record["where"].values:
         one = record.sel(where=where)
         speed, work = float(one.metre_speed), float(one.metre_power / one.metre_speed)
@@ -452,7 +454,7 @@ def _metre_costs(record: xr.Dataset) -> dict[str, Measure]:
     return found | {"depth_error": Measure(error, "m")}
 
 
-def _costs(record: xr.Dataset) -> dict[str, Measure]:
+def _costs(record: xr.Dataset) -> Measures:
     """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
 
     Both along its heading, which need not be straight up the shore.
@@ -462,7 +464,7 @@ def _costs(record: xr.Dataset) -> dict[str, Measure]:
     speed = np.gradient(along, step, axis=1)
     walks, under = record.walks.values > 0, record.under.values
     late = (record.moment.values > 3.0)[None, :]
-    found = {}
+    found = Measures()
     for name, when in (
         ("swimming", ~walks & late & (record.ground.values < AFLOAT)),
         ("wading", walks & (under > 0.05)),

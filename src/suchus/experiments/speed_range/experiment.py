@@ -14,7 +14,18 @@ from suchus.design import GRAVITY, Robot, Rod, Segment, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos, with_speed_line
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, ranged, silent, staged
+from suchus.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    ranged,
+    silent,
+    staged,
+)
 from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -167,9 +178,9 @@ class SpeedRange(Experiment):
         data.slower.attrs["units"] = "1"
         return data
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return speed, cost and posture of every gait, and what is known of animals that walk high."""
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         usual = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
         for name in record.gait.values:
             both = record.sel(gait=name)

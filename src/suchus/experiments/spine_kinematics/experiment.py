@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.design import Robot, spine_joints
 from suchus.design.checks import Checks
 from suchus.design.measures import SpineMeasures
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments._frames import draw_frames, frames_of
 from suchus.experiments.spine_kinematics import figure as pictures
 from suchus.experiments.spine_kinematics.rules import EXACT
@@ -77,27 +77,29 @@ class SpineKinematics(Experiment):
         )
         return Simulated(record=record.assign_attrs(_facts(back)))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return lengths and errors of (15), as printed and mended, and how well the inverse finds its way back."""
         long, error = record.attrs["straight_length"], record.error_printed
-        return {
-            "straight_length": Measure(long, "m"),
-            "straight_length_printed": Measure(record.attrs["straight_length_printed"], "m"),
-            "printed_error_share": Measure(float(error.max()) / long, "-"),
-            "printed_error_mean": Measure(float(error.mean()), "m"),
-            "printed_error_min": Measure(float(error.min()), "m"),
-            "printed_error_max": Measure(float(error.max()), "m"),
-            "printed_error_upward_max": Measure(float(record.error_upward.max()), "m"),
-            "mended_error_max": Measure(float(record.error_mended.max()), "m"),
-            "round_trip_error": Measure(float(record.error_inverse.max()), "m"),
-            "round_trip_azimuth_error": Measure(float(record.error_azimuth.max()), "rad"),
-            "original_angles_found": Measure(float((record.angle_missed < 1e-6).mean()), "-"),
-            "bending_saved_median": Measure(float(record.bending_saved.median()), "-"),
-            **{
+        return Measures(
+            {
+                "straight_length": Measure(long, "m"),
+                "straight_length_printed": Measure(record.attrs["straight_length_printed"], "m"),
+                "printed_error_share": Measure(float(error.max()) / long, "-"),
+                "printed_error_mean": Measure(float(error.mean()), "m"),
+                "printed_error_min": Measure(float(error.min()), "m"),
+                "printed_error_max": Measure(float(error.max()), "m"),
+                "printed_error_upward_max": Measure(float(record.error_upward.max()), "m"),
+                "mended_error_max": Measure(float(record.error_mended.max()), "m"),
+                "round_trip_error": Measure(float(record.error_inverse.max()), "m"),
+                "round_trip_azimuth_error": Measure(float(record.error_azimuth.max()), "rad"),
+                "original_angles_found": Measure(float((record.angle_missed < 1e-6).mean()), "-"),
+                "bending_saved_median": Measure(float(record.bending_saved.median()), "-"),
+            },
+            {
                 name: Measure(float(record.attrs[name]), "-")
                 for name in ("straight_jacobian_rank", "spine_joints", "spine_lateral_joints", "spine_pitch_joints")
             },
-        }
+        )
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how far (15) is from Table II, whether the lost term explains it, and what the inverse leaves open."""

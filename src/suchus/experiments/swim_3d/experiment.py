@@ -14,7 +14,7 @@ import xarray as xr
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._taken import TAKEN, TakenMidline, midlines
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
 from suchus.figures.vortices import draw_vortices, film_vortices
@@ -251,15 +251,15 @@ class Swim3d(Experiment):
             }
         )  # fmt: skip
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what the body did on every grid, and beside it slice, models, motions and tails."""
-        return {
-            **dict(_body(record, self.robot, self.frequency)),
-            **dict(_grids(record)),
-            **dict(_slice_and_models(record)),
-            **dict(_compared(record)),
-            **dict(_loads(record)),
-        }
+        return Measures(
+            _body(record, self.robot, self.frequency),
+            _grids(record),
+            _slice_and_models(record),
+            _compared(record),
+            _loads(record),
+        )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speeds over the cycles, the wake, the tails and the joints' torques."""

@@ -13,7 +13,7 @@ from suchus.control import Swimming
 from suchus.design import GRAVITY, Robot, with_spring, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
@@ -278,7 +278,7 @@ class SwimFree(Experiment):
             f"{'stiffer joints' if self._cable else f'the {called}'}.",
         )
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""
         labels = [str(label) for label in record.label.values]
         speed = {label: _speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
@@ -346,13 +346,15 @@ def _steered(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
     return steered if suits(robot, steered) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
 
 
-def _shares(part: xr.Dataset, labels: Sequence[str]) -> dict[str, Measure]:
+def _shares(part: xr.Dataset, labels: Sequence[str]) -> Measures:
     """Return how unevenly the joints of a cable share its bend; nothing of a robot without cables."""
     ends = {"": "whole", "_stiff": "whole_stiff"} if part.attrs["cable"] else {}
-    return {
-        f"tail_spread{end}": Measure(_uneven(part.isel(run=labels.index(name)), part), "-")
-        for end, name in ends.items()
-    }
+    return Measures(
+        {
+            f"tail_spread{end}": Measure(_uneven(part.isel(run=labels.index(name)), part), "-")
+            for end, name in ends.items()
+        }
+    )
 
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:

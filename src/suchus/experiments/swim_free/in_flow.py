@@ -11,7 +11,7 @@ from suchus.control import Swimming
 from suchus.coupling import Swim, residual_table
 from suchus.design import Robot
 from suchus.errors import Diverged
-from suchus.experiment import Measure, Progress, staged
+from suchus.experiment import Measure, Measures, Progress, staged
 from suchus.land import Run
 from suchus.land.waters import Slice, Space
 from suchus.motion import Gait
@@ -147,12 +147,12 @@ def flow_speed(record: xr.Dataset, name: str) -> float:
     return float((last[-1] - last[0]) / (last.flow_time[-1] - last.flow_time[0]))
 
 
-def flow_measures(record: xr.Dataset) -> dict[str, Measure]:
+def flow_measures(record: xr.Dataset) -> Measures:
     """Return speeds in the flow, how well robot and flow came to terms, and how far the section model is from it."""
     if "flow_run" not in record:
-        return {}
+        return Measures()
     rung = record.attrs["flow"]
-    period, found = float(record.flow_period), dict[str, Measure]()
+    period, found = float(record.flow_period), Measures()
     later = record.sel(flow_time=slice(_GROWN * period, None))
     last = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
     for name in (str(one) for one in record.flow_run.values):

@@ -11,7 +11,7 @@ from suchus.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.control.holding import neutral_air_fraction
 from suchus.design import Robot, with_values
 from suchus.design.pieces import chambers
-from suchus.experiment import Measure
+from suchus.experiment import Measure, Measures
 from suchus.land import Lake, Run
 from suchus.land.afloat import hovers
 from suchus.model.hydrostatics import hydrostatics
@@ -84,15 +84,15 @@ def _hovering(run: Run) -> float:
     return -hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
 
 
-def measures(record: xr.Dataset) -> dict[str, Measure]:
+def measures(record: xr.Dataset) -> Measures:
     """Return of each swim below the surface its trim and mean pitch, its speed, and the greatest error of its depth.
 
     Beside them: how long each dive takes until it stays within ``NEAR`` of the depth; NaN if it never does.
     """
     if "dive" not in record:
-        return {}
+        return Measures()
     part, depth = record.sel(dive_time=slice(record.attrs["deep_from"] - 1e-9, None)), record.attrs["depth"]
-    found: dict[str, Measure] = {}
+    found = Measures()
     for name in (str(one) for one in record.dive.values):
         one, ending = part.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
         x, time = one.deep_along.values, one.dive_time.values

@@ -13,7 +13,7 @@ import xarray as xr
 
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
 from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.motion import Gait, movement
@@ -176,9 +176,9 @@ class SwimSweep(Experiment):
         }
         return xr.Dataset(data, attrs={"cells": self.cells, "cycles": self.cycles, "reynolds": self.reynolds})
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return the best of the maps, the errors of the slender-body models, and the speed of every point."""
-        found = {}
+        found = Measures()
         possible = record.possible_by_frequency
         for model in record.model.values:
             speed = record.speed_by_frequency.sel(model=model).where(possible)

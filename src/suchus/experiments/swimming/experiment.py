@@ -10,7 +10,7 @@ import xarray as xr
 
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.swimming.figure import (
     draw_forces,
     draw_free,
@@ -105,7 +105,7 @@ class PlaneSwims(Experiment):
     arm_cycles: int = 6
     """Cycles after which the conditions (directions, exact wave) are compared [-]."""
     readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
-    """Further readings of (20) whose thrust is measured [-]; the joints cannot make the others."""
+    """Further readings of (20) whose thrust is measured [-], but for ``reading``; the joints cannot make the others."""
     readings_reynolds: float = 1000.0
     """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
     readings_cells: int = 40
@@ -174,19 +174,19 @@ class PlaneSwims(Experiment):
         told: Mapping[str, str] = json.loads(record.attrs["unable"])
         return told
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return what the tethered and the free body did, and how fast each motion swims."""
         held, free = part(record, "held"), part(record, "free")
-        return {
-            "misfit": Measure(float(record.attrs["misfit"]), "-"),
-            **dict(_thrusts(record, held, self.reading)),
-            **dict(_tethered(held)),
-            **dict(_free_swim(record, free, self.robot, self.frequency)),
-            **dict(_envelope(free, self.robot)),
-            **dict(_compared(record)),
-            **dict(measures(record, self.robot.length)),
-            **dict(_loads(held, self.robot)),
-        }
+        return Measures(
+            {"misfit": Measure(float(record.attrs["misfit"]), "-")},
+            _thrusts(record, held, self.reading),
+            _tethered(held),
+            _free_swim(record, free, self.robot, self.frequency),
+            _envelope(free, self.robot),
+            _compared(record),
+            measures(record, self.robot.length),
+            _loads(held, self.robot),
+        )
 
     def _setting(self, cycles: int, *, cells: int, reynolds: float, held: bool = True) -> SwimSetting:
         viscosity = self.frequency * self.robot.length**2 / reynolds
@@ -230,12 +230,13 @@ class PlaneSwims(Experiment):
     def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
         tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
+        further = [letter for letter in self.readings if letter != self.reading]
         setting, thrust = (
             self._setting(min(4, self.cycles), cells=self.readings_cells, reynolds=self.readings_reynolds),
             [],
         )
-        for i, letter in enumerate(self.readings):
-            fitted, part = tried[letter].fitted, portion(progress, i, len(self.readings))
+        for i, letter in enumerate(further):
+            fitted, part = tried[letter].fitted, portion(progress, i, len(further))
             if fitted is None:
                 thrust.append(float("nan"))
                 continue
@@ -243,10 +244,10 @@ class PlaneSwims(Experiment):
             thrust.append(float(held.cycle_thrust[1:].mean()))
         thrusts = {
             letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
-            for letter, value in zip(self.readings, thrust, strict=True)
+            for letter, value in zip(further, thrust, strict=True)
         }
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
-        return data.assign_coords(reading=list(self.readings)), readings_table(tried.values(), thrusts)
+        return data.assign_coords(reading=further), readings_table(tried.values(), thrusts)
 
     def _drag(self, speed: float, progress: Progress) -> float:
         progress("towing", 0.0)

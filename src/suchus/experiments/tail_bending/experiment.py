@@ -12,7 +12,7 @@ import xarray as xr
 from suchus.design import Robot, cable_joints, servo_names
 from suchus.design.measures import TailMeasures
 from suchus.errors import OutsideLimits
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.tail_bending import figure as pictures
 from suchus.experiments.tail_bending.rules import ALIKE
 from suchus.gaits import GAITS
@@ -119,27 +119,29 @@ class TailBending(Experiment):
         ]
         return float(max(worst))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return errors of the formulas, what the cords do, counts, and how equally the joints turn."""
         facts = record.attrs
         bent = record.isel(bend=slice(1, None))
         opposed = (bent.toward < 0) & (bent.away > 0)
-        measures = {
-            "error_of_eq_17_max": Measure(float(np.nanmax(np.abs([record.error_toward, record.error_away]))), "-"),
-            "error_of_eq_17_plausible": Measure(facts["plausible_error"], "-"),
-            "cable_section_length": Measure(facts["section"], "m"),
-            "cords_opposed_share": Measure(float(opposed.mean()), "-"),
-            "cord_pulled_max": Measure(float(-record.toward.min()), "m"),
-            "slack_max": Measure(float(record.slack.max()), "m"),
-            "bend_deficit_max": Measure(float(record.deficit.max()), "rad"),
-            "printed_last_joint_error_straight": Measure(float(record.printed_miss[0]), "m"),
-            "printed_last_joint_error_max": Measure(float(record.printed_miss.max()), "m"),
-            "printed_last_joint_error_share": Measure(float(record.printed_miss.max()) / facts["section"], "-"),
-            "bend_limit_of_gaps": Measure(facts["bend_limit_of_gaps"], "rad"),
-            "servo_at_bend_limit": Measure(facts["servo_at_bend_limit"], "rad"),
-            **{name: Measure(float(facts[name]), "-") for name in ("tail_joints", "tail_actuators", "tail_share")},
-            "end_bend": Measure(float(np.ptp(record.end_bend.sel(crawl="gait").values)), "rad"),
-        }
+        measures = Measures(
+            {
+                "error_of_eq_17_max": Measure(float(np.nanmax(np.abs([record.error_toward, record.error_away]))), "-"),
+                "error_of_eq_17_plausible": Measure(facts["plausible_error"], "-"),
+                "cable_section_length": Measure(facts["section"], "m"),
+                "cords_opposed_share": Measure(float(opposed.mean()), "-"),
+                "cord_pulled_max": Measure(float(-record.toward.min()), "m"),
+                "slack_max": Measure(float(record.slack.max()), "m"),
+                "bend_deficit_max": Measure(float(record.deficit.max()), "rad"),
+                "printed_last_joint_error_straight": Measure(float(record.printed_miss[0]), "m"),
+                "printed_last_joint_error_max": Measure(float(record.printed_miss.max()), "m"),
+                "printed_last_joint_error_share": Measure(float(record.printed_miss.max()) / facts["section"], "-"),
+                "bend_limit_of_gaps": Measure(facts["bend_limit_of_gaps"], "rad"),
+                "servo_at_bend_limit": Measure(facts["servo_at_bend_limit"], "rad"),
+            },
+            {name: Measure(float(facts[name]), "-") for name in ("tail_joints", "tail_actuators", "tail_share")},
+            {"end_bend": Measure(float(np.ptp(record.end_bend.sel(crawl="gait").values)), "rad")},
+        )
         for degrees in record.at.values:
             at_bend = record.sel(at=degrees)
             measures |= {
@@ -256,10 +258,10 @@ def _facts(robot: Robot) -> dict[str, float]:
     }
 
 
-def _spreads(record: xr.Dataset) -> dict[str, Measure]:
+def _spreads(record: xr.Dataset) -> Measures:
     """Return how far the joints differ at most in each crawl [rad], and how often by more than ``ALIKE`` [-]."""
     spread = tail_joint_spread(record.crawl_angle, [str(name) for name in record.joint.values])
-    measures = {}
+    measures = Measures()
     for crawl, end in (("gait", ""), ("straight", "_straight")):
         of_crawl = spread.sel(crawl=crawl)
         measures[f"tail_joint_spread{end}"] = Measure(float(of_crawl.max()), "rad")

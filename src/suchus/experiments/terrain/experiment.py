@@ -15,7 +15,18 @@ from suchus.design.checks import Checks
 from suchus.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
 from suchus.design.scale import control_period
 from suchus.errors import UnsuitedRobot
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
 from suchus.experiments._replayed import replayed
 from suchus.experiments.terrain.figure import draw_on_bumps, draw_rough
 from suchus.figures.gait_diagram import GAIT_LINES
@@ -138,10 +149,10 @@ class Terrain(Experiment):
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
         return Simulated(record=record, replays=self._replays(record))
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
         rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         for arm in record.arm.values:
             of_arm = record.sel(arm=arm)
             flat = of_arm.isel(ground=0, seed=0)
@@ -371,14 +382,14 @@ def _most_tilt(record: xr.Dataset) -> np.ndarray:
     return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
 
 
-def _flat(record: xr.Dataset) -> dict[str, Measure]:
+def _flat(record: xr.Dataset) -> Measures:
     """Return what the crawl costs on even ground, of what the high walk costs, of robots as built."""
     cost = record.isel(ground=0).cost
     ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
     return estimated("flat_cost_ratio", ratio, "-")
 
 
-def _rough(rough: xr.Dataset) -> dict[str, Measure]:
+def _rough(rough: xr.Dataset) -> Measures:
     """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little.
 
     Each seed of each kind and height is a ground of its own, and a robot of its own.
@@ -387,30 +398,34 @@ def _rough(rough: xr.Dataset) -> dict[str, Measure]:
     crawl, semi, erect, level = (rough.forward.sel(arm=arm, drop=True).stack(one=("ground", "seed")) for arm in SINGLE)
     met_enough = met >= 1.0
 
-    def share(name: str, ahead: xr.DataArray) -> dict[str, Measure]:
+    def share(name: str, ahead: xr.DataArray) -> Measures:
         return estimated(name, ahead.astype(float) if met_enough else [float("nan")], "-", middle=np.mean)
 
-    return {
-        "met_judged": Measure(met, "-"),
-        "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
-        **share("erect_open_loop_ahead_share", erect > crawl),
-        **share("erect_ahead_share", level > crawl),
-        **share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl)),
-    }
+    return Measures(
+        {
+            "met_judged": Measure(met, "-"),
+            "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
+        },
+        share("erect_open_loop_ahead_share", erect > crawl),
+        share("erect_ahead_share", level > crawl),
+        share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl)),
+    )
 
 
-def _transitions(record: xr.Dataset) -> dict[str, Measure]:
+def _transitions(record: xr.Dataset) -> Measures:
     """Return how many transitions stay upright, and how far the robot walks after them at least."""
-    return {
-        "transitions": Measure(float(record.change_tilt.size), "-"),
-        "transitions_upright": Measure(float((record.change_tilt < FALLEN).mean()), "-"),
-        "transition_after_least": Measure(float(record.change_after.min()), "m"),
-        **{
+    return Measures(
+        {
+            "transitions": Measure(float(record.change_tilt.size), "-"),
+            "transitions_upright": Measure(float((record.change_tilt < FALLEN).mean()), "-"),
+            "transition_after_least": Measure(float(record.change_after.min()), "m"),
+        },
+        {
             f"transition_tilt_{surface}": Measure(float(record.change_tilt.sel(surface=surface).max()), "rad")
             for surface in record.surface.values
         },
-        "transition_tilt": Measure(float(record.change_tilt.max()), "rad"),
-    }
+        {"transition_tilt": Measure(float(record.change_tilt.max()), "rad")},
+    )
 
 
 def _share_of_best(record: xr.Dataset) -> xr.DataArray:

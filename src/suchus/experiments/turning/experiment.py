@@ -12,7 +12,7 @@ from suchus.control import TurningCurve, Walking, turn
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.figures.gait_diagram import gait_lines
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -169,9 +169,9 @@ class Turning(Experiment):
         length = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
         return np.asarray(heading_change(record, START + gait.period, end) / length)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         for name in record.gait.values:
             of_gait = record.sel(gait=name)
             off = abs(of_gait.radius / of_gait.asked - 1.0)

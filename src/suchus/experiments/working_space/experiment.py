@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from suchus.design import LEGS, Robot
 from suchus.design.checks import Checks
-from suchus.experiment import Experiment, Measure, Outcome, Progress, Simulated, silent
+from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.figures import captioned
 from suchus.figures.style import COLOURS, panels, styled
 from suchus.gaits import GAITS
@@ -76,10 +76,10 @@ class WorkingSpace(Experiment):
             record = record.merge(_highest(self.robot, found, state))
         return Simulated(record=record)
 
-    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+    def measure(self, record: xr.Dataset) -> Measures:
         """Return volumes, areas and heights of both states with what the counting leaves open."""
         cell, rooms = record.attrs["cell"], {}
-        measures: dict[str, Measure] = {}
+        measures = Measures()
         for state in STATES:
             snout = record[f"snout_{state}"].values
             both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can
