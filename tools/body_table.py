@@ -1,11 +1,12 @@
 """Try every experiment and tool on every body of the shelf and of files, for the tables in docs/robots_from_files.md.
 
-Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--table]
+Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--anew] [--table]
 
 Each pair is tried at the command line in a short form: it answers, or it refuses in a sentence with the exit code 2;
 anything else is written down as it came. The result of each pair goes into docs/bodies.json as soon as it is known, so
-that a run that was stopped goes on; the tables are made from that file alone. ``--only`` tries the rows named anew,
-``--bodies`` none but these bodies, and ``--table`` nothing but writes the tables.
+that a run that was stopped goes on; the tables are made from that file alone. ``--only`` names rows and ``--bodies``
+bodies, of which what is not yet known is tried, with ``--anew`` all of it: ``--bodies caiman --anew`` renews a column,
+``--only swimming --bodies six.toml --anew`` a cell. ``--table`` tries nothing and writes the tables.
 """
 
 import argparse
@@ -15,9 +16,10 @@ import json
 import shlex
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
+from time import process_time
 from unittest import mock
 
 import gymnasium
@@ -99,22 +101,23 @@ def robot_of(body: str) -> Robot:
     return robot
 
 
-def main() -> int:
+def main(words: Sequence[str] | None = None) -> int:
     """Try what is not yet known, and write the tables; return 1 where a pair neither answered nor refused."""
+    rows = (*sorted(EXPERIMENTS, key=lambda name: name not in LEAST), *TOOLS)
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--only", action="append", default=[], metavar="ROW")
-    parser.add_argument("--bodies", nargs="+", default=BODIES, metavar="BODY")
+    parser.add_argument("--only", nargs="+", default=rows, choices=rows, metavar="ROW")
+    parser.add_argument("--bodies", nargs="+", default=BODIES, choices=BODIES, metavar="BODY")
+    parser.add_argument("--anew", action="store_true")
     parser.add_argument("--table", action="store_true")
-    given = parser.parse_args()
+    given = parser.parse_args(words)
     found = json.loads(FOUND.read_text()) if FOUND.exists() else {}
-    for row in () if given.table else (*sorted(EXPERIMENTS, key=lambda name: name not in LEAST), *TOOLS):
-        if given.only and row not in given.only:
-            continue
+    for row in () if given.table else (row for row in rows if row in given.only):
         for body in sorted(given.bodies, key=lambda body: robot_of(body).tables is not None):  # they take long
-            if row in given.only or body not in found.get(row, {}):
+            if given.anew or body not in found.get(row, {}):
+                began = process_time()
                 found.setdefault(row, {})[body] = answer = tried(row, body)
                 FOUND.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
-                print(f"{row} {body}: {answer}", flush=True)
+                print(f"{row} {body} ({process_time() - began:.0f} s): {answer or 'answers'}", flush=True)
     write(found)
     every = [(row, body, answer) for row, cells in found.items() for body, answer in cells.items()]
     odd = [(row, body) for row, body, answer in every if answer.startswith("exit ")]

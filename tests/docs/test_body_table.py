@@ -50,6 +50,33 @@ def test_a_cell_tells_answers_refusals_and_failures_apart():
     ]
 
 
+def test_cells_rows_and_columns_are_renewed_by_themselves(tmp_path, monkeypatch, capsys):
+    page, found = tmp_path / "page.md", tmp_path / "bodies.json"
+    page.write_text("before\n" + "old\n".join(tool.MARKS) + "after\n")
+    found.write_text(json.dumps({"turning": {"caiman": "exit 1: it fell", "swimmer": ""}, "view": {"caiman": "x"}}))
+    asked = []
+    monkeypatch.setattr(tool, "PAGE", page)
+    monkeypatch.setattr(tool, "FOUND", found)
+    monkeypatch.setattr(tool, "tried", lambda row, body: asked.append((row, body)) or "")
+
+    def tried_by(words):
+        asked.clear()
+        return tool.main(words.split()), sorted(asked)
+
+    assert tried_by("--only turning --bodies caiman swimmer") == (1, [])
+    assert tried_by("--only turning --bodies caiman eight.toml") == (1, [("turning", "eight.toml")])
+    assert tried_by("--only turning --bodies caiman --anew") == (0, [("turning", "caiman")])
+    assert tried_by("--table") == (0, [])
+    _, column = tried_by("--bodies caiman --anew")
+    assert {body for _, body in column} == {"caiman"}
+    assert len(column) == len(EXPERIMENTS) + len(tool.TOOLS)
+    assert json.loads(found.read_text())["turning"] == {"caiman": "", "swimmer": "", "eight.toml": ""}
+    assert page.read_text().startswith("before\n<!-- bodies")
+    assert "old" not in page.read_text()
+    with pytest.raises(SystemExit):
+        tool.main(["--only", "turnings"])
+
+
 def test_the_files_hold_what_they_are_called_and_a_name_and_its_file_are_one_robot(tmp_path):
     robots = {name: ROBOTS.resolve(path) for name, path in write_files(tmp_path).items()}
     assert tuple(robots) == FILES
