@@ -214,26 +214,56 @@ def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Sou
 
 def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
     """Yield what the package itself has on a shelf."""
+    if not scattered:
+        yield from _one_each(package, kind, _stamped(package))
+        return
     for name, file in _modules(package, kind).items():
-        if name.startswith("_"):
-            continue
-        module = f"{package}.{name}"
-        place = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
-        for thing, attribute in _names(file, kind) if scattered else ((name, ""),):
-            yield Source(name=thing, place=place, module=module, attribute=attribute, file=file, shipped=True)
+        if not name.startswith("_"):
+            for thing, attribute in _names(file, kind):
+                yield _of_package(package, name, file, thing, attribute)
 
 
-def _modules(package: str, kind: str) -> dict[str, Path]:
+@lru_cache(maxsize=64)
+def _one_each(package: str, kind: str, stamped: "_Stamped") -> tuple[Source, ...]:
+    """Return what the modules of a package declare, one thing each."""
+    files = _files(kind, stamped).items()
+    return tuple(_of_package(package, name, file, name, "") for name, file in files if not name.startswith("_"))
+
+
+def _of_package(package: str, name: str, file: Path, thing: str, attribute: str) -> Source:
+    place = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
+    return Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
+
+
+def _modules(package: str, kind: str) -> Mapping[str, Path]:
     """Return the files of a package's modules by name, those of folders that declare the kind; nothing is imported."""
+    return _files(kind, _stamped(package))
+
+
+_Stamped = tuple[tuple[str, int, tuple[int, ...]], ...]
+"""Folders of a package, when each was changed and when those in it were [ns]: what lies in them is as it was then."""
+
+
+def _stamped(package: str) -> _Stamped:
     if package in sys.modules:
         folders = list(sys.modules[package].__path__)
     else:
         spec = find_spec(package)
         folders = list(spec.submodule_search_locations or ()) if spec else []
+    found = []
+    for folder in folders:
+        changed = os.stat(folder).st_mtime_ns  # noqa: PTH116  a shelf is asked some thousand times a minute
+        inside = (os.stat(f"{folder}/{name}").st_mtime_ns for name, is_folder in _listed(folder, changed) if is_folder)  # noqa: PTH116
+        found.append((folder, changed, tuple(inside)))
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _files(kind: str, stamped: _Stamped) -> Mapping[str, Path]:
     return {
         name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
-        for place in folders
-        for name, is_folder in _listed(place, Path(place).stat().st_mtime_ns)
+        for place, changed, _ in stamped
+        for name, is_folder in _listed(place, changed)
     }
 
 

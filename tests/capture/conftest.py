@@ -1,6 +1,8 @@
+from functools import cache
+
 import pytest
 
-from suchus.capture import Camera, SyntheticAnimal
+from suchus.capture import Camera, SyntheticAnimal, film_animal, observe
 from suchus.gaits import GAITS
 from suchus.land import crawl as let_crawl
 from suchus.robots import ROBOTS
@@ -24,6 +26,17 @@ def noisy():
 @pytest.fixture(scope="session")
 def clean():
     return Camera(rate=100.0, noise=0.0, lost=0.0, heading=0.0, scale=None, heights=True, seed=0)
+
+
+@pytest.fixture(scope="session")
+def read_film():
+    """What is read of a film of an animal, once for all that look at it."""
+
+    @cache
+    def read(animal, camera, cycles):
+        return observe(film_animal(animal, camera, cycles=cycles))
+
+    return read
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,7 @@
 """Film a walk that is known, with camera noise, and get it back."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,17 +36,24 @@ def metres(robot, gait, field):
     return [reach * getattr(limb, field) for limb, reach in zip(gait.limbs, limb_reaches(robot), strict=True)]
 
 
-def filmed(caiman, crawl, camera) -> tuple[Walk, Gait]:
-    walk = observe(film(caiman, crawl, camera), tail_share=driven_share(caiman))
-    return walk, to_gait(walk, caiman, GAITS["belly_crawl"], name="back").gait
+@pytest.fixture(scope="module")
+def filmed(caiman, crawl):
+    """What is read of a film of the crawl, and the gait that it makes; once for each camera."""
+
+    @cache
+    def read(camera) -> tuple[Walk, Gait]:
+        walk = observe(film(caiman, crawl, camera), tail_share=driven_share(caiman))
+        return walk, to_gait(walk, caiman, GAITS["belly_crawl"], name="back").gait
+
+    return read
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_our_crawl_comes_back_as_commanded(caiman, crawl, noisy, seed):
+@pytest.mark.parametrize("seed", [0, *(pytest.param(i, marks=pytest.mark.slow("a further film")) for i in (1, 2))])
+def test_our_crawl_comes_back_as_commanded(caiman, filmed, noisy, seed):
     told = GAITS["belly_crawl"]
     rng = np.random.default_rng(seed)
     camera = replace(noisy, seed=seed, heading=float(rng.uniform(-3, 3)), scale=float(rng.uniform(200, 2000)))
-    _, back = filmed(caiman, crawl, camera)
+    _, back = filmed(camera)
     np.testing.assert_allclose(back.period, told.period, rtol=0.005)
     assert apart(back.limb_phases, told.limb_phases).max() < PHASE
     assert apart(back.number("axis_lag"), told.number("axis_lag")) < PHASE
@@ -59,7 +67,9 @@ def test_our_crawl_comes_back_as_commanded(caiman, crawl, noisy, seed):
     np.testing.assert_allclose(metres(caiman, back, "ahead"), metres(caiman, told, "ahead"), atol=0.006)
 
 
-@pytest.mark.parametrize(("name", "rate"), [("salamander", 200.0), ("pleurobot", 100.0)])
+@pytest.mark.parametrize(
+    ("name", "rate"), [("salamander", 200.0), pytest.param("pleurobot", 100.0, marks=pytest.mark.slow("a third body"))]
+)
 def test_the_walk_of_another_body_comes_back_as_commanded(name, rate):
     robot = ROBOTS[name]
     told, step = own_gait(robot), coarse_step(robot)
@@ -85,8 +95,8 @@ def test_who_has_not_the_points_of_the_tracks_cannot_be_filmed(name, missing):
         keypoints(robot, record)
 
 
-def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):
-    walk, _ = filmed(caiman, crawl, noisy)
+def test_our_crawl_comes_back_as_simulated(crawl, filmed, noisy):
+    walk, _ = filmed(noisy)
     part = crawl.sel(time=slice(START, START + 8.0 - 1e-6))
     time = part.time.values - START
     trunk = first_harmonic(time, -sum(part.joint_angle.sel(joint=f"spine_yaw_{i}") for i in (1, 2, 3)).values, 4.0)
@@ -101,8 +111,8 @@ def test_our_crawl_comes_back_as_simulated(caiman, crawl, noisy):
         assert GAITS["belly_crawl"].duty_factor - 0.04 < walk.value(f"duty_{leg}") < load + 0.04
 
 
-def test_heights_give_lift_and_tail_pitch(caiman, crawl, noisy):
-    walk, back = filmed(caiman, crawl, replace(noisy, heights=True))
+def test_heights_give_lift_and_tail_pitch(caiman, crawl, filmed, noisy):
+    walk, back = filmed(replace(noisy, heights=True))
     pitch = float(crawl.joint_angle.sel(joint="tail_pitch", time=slice(START, None)).mean())
     np.testing.assert_allclose(back.number("tail_pitch"), pitch, atol=0.02)
     heights = crawl.foot_position.sel(xyz="z", time=slice(START, None))
@@ -111,8 +121,8 @@ def test_heights_give_lift_and_tail_pitch(caiman, crawl, noisy):
     assert walk.upright
 
 
-def test_what_was_captured_runs_as_far(caiman, crawl, noisy, tmp_path):
-    walk = observe(film(caiman, crawl, noisy), tail_share=driven_share(caiman))
+def test_what_was_captured_runs_as_far(caiman, crawl, filmed, noisy, tmp_path):
+    walk, _ = filmed(noisy)
     captured = to_gait(walk, caiman, GAITS["belly_crawl"], name="caiman_walk")
     file = write_gait(captured, walk, tmp_path / "caiman_walk.toml")
     read = blueprint.read(file, Gait, GAITS)
@@ -121,7 +131,7 @@ def test_what_was_captured_runs_as_far(caiman, crawl, noisy, tmp_path):
     np.testing.assert_allclose(displacement(again)[0], displacement(crawl)[0], rtol=0.1)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow("a second film"))])
 def test_a_lateral_sequence_walk_of_a_lizard_comes_back(caiman, lizard, noisy, seed):
     camera = replace(noisy, rate=100.0, noise=0.0008, seed=seed)
     walk = observe(film_animal(lizard, camera, cycles=5))
@@ -140,8 +150,8 @@ def test_a_lateral_sequence_walk_of_a_lizard_comes_back(caiman, lizard, noisy, s
 
 
 @pytest.mark.parametrize("duty", ["retraction", "contact"])
-def test_the_gait_bends_as_the_animal_did(caiman, lizard, clean, duty):
-    walk = observe(film_animal(lizard, clean, cycles=4))
+def test_the_gait_bends_as_the_animal_did(caiman, lizard, clean, read_film, duty):
+    walk = read_film(lizard, clean, 4)
     gait = to_gait(walk, caiman, GAITS["belly_crawl"], name="lizard", duty=duty).gait
     clock, here = np.linspace(0.0, 1.0, 200, endpoint=False), movement(caiman, gait)
     axis = here.axis_phase(clock[:, None] + np.array(gait.limb_phases))
@@ -162,19 +172,19 @@ def test_a_travelling_tail_is_told_not_dropped(caiman, lizard, clean):
     assert "the trunk bends" not in notes
 
 
-def test_a_footfall_in_which_the_girdles_pull_against_each_other_bends_as_it_was_seen(caiman, lizard, clean):
+def test_a_footfall_in_which_the_girdles_pull_against_each_other_bends_as_it_was_seen(caiman, lizard, clean, read_film):
     pace = replace(lizard, limb_phases=(0.0, 0.5, 0.0, 0.5))
     walk = observe(film_animal(pace, clean, cycles=4))
     gait = to_gait(walk, caiman, GAITS["belly_crawl"], name="x").gait
-    other = to_gait(observe(film_animal(lizard, clean, cycles=4)), caiman, GAITS["belly_crawl"], name="x").gait
+    other = to_gait(read_film(lizard, clean, 4), caiman, GAITS["belly_crawl"], name="x").gait
     for number in ("trunk_bend", "tail_bend", "axis_lag", "tail_lag"):
         np.testing.assert_allclose(gait.number(number), other.number(number), atol=0.01)
     np.testing.assert_allclose(gait.number("trunk_bend"), lizard.spine_bend, rtol=AMPLITUDE)
 
 
-def test_girdles_stroke_alike_or_apart(caiman, crawl, noisy):
+def test_girdles_stroke_alike_or_apart(caiman, filmed, noisy):
     """Slip lets hind feet go back farther than front feet, of which the mean is what was commanded."""
-    walk = observe(film(caiman, crawl, noisy), tail_share=driven_share(caiman))
+    walk, _ = filmed(noisy)
     alike, apart = (to_gait(walk, caiman, GAITS["belly_crawl"], name="x", girdles=how) for how in ("alike", "apart"))
     front, hind = metres(caiman, apart.gait, "stroke")
     assert hind > 1.1 * front
@@ -184,10 +194,10 @@ def test_girdles_stroke_alike_or_apart(caiman, crawl, noisy):
     assert not any("half strokes differ" in note for note in apart.notes)
 
 
-def test_heading_scale_and_losses_change_nothing_on_clean_tracks(caiman, crawl, clean):
-    first, _ = filmed(caiman, crawl, replace(clean, heights=False))
-    second, _ = filmed(caiman, crawl, replace(clean, heights=False, heading=-2.5, scale=913.0))
-    third, _ = filmed(caiman, crawl, replace(clean, heights=False, lost=0.1))
+def test_heading_scale_and_losses_change_nothing_on_clean_tracks(filmed, clean):
+    first, _ = filmed(replace(clean, heights=False))
+    second, _ = filmed(replace(clean, heights=False, heading=-2.5, scale=913.0))
+    third, _ = filmed(replace(clean, heights=False, lost=0.1))
     for name, seen in first.numbers.items():
         if seen.unit.startswith("m"):
             continue  # in pixels in the second film
@@ -197,7 +207,7 @@ def test_heading_scale_and_losses_change_nothing_on_clean_tracks(caiman, crawl, 
             np.testing.assert_allclose(third.value(name), seen.value, atol=0.02, err_msg=name)
 
 
-def test_mirrored_tracks_give_the_mirrored_walk(lizard, clean):
+def test_mirrored_tracks_give_the_mirrored_walk(lizard, clean, read_film):
     tracks = film_animal(lizard, clean, cycles=4)
     other = {"LF": "RF", "RF": "LF", "LH": "RH", "RH": "LH"}
     mirrored = replace(
@@ -205,7 +215,7 @@ def test_mirrored_tracks_give_the_mirrored_walk(lizard, clean):
         points=tuple(other.get(name, name) for name in tracks.points),
         position=tracks.position * np.array([1.0, -1.0, 1.0]),
     )
-    one, two = observe(tracks), observe(mirrored)
+    one, two = read_film(lizard, clean, 4), observe(mirrored)
     np.testing.assert_allclose(two.value("duty_RF"), one.value("duty_LF"), atol=1e-6)
     np.testing.assert_allclose(two.value("tail_lag"), one.value("tail_lag"), atol=1e-6)
     # seen from RF's stance, which is half a cycle away, the mirrored spine bends the same way
@@ -217,7 +227,7 @@ def test_a_film_of_one_seed_is_one_film(caiman, crawl, noisy):
     np.testing.assert_array_equal(one.position, two.position)
 
 
-def test_too_fast_an_animal_is_slowed_down_and_it_is_told(caiman, lizard, clean):
-    captured = to_gait(observe(film_animal(lizard, clean, cycles=4)), caiman, GAITS["belly_crawl"], name="x")
+def test_too_fast_an_animal_is_slowed_down_and_it_is_told(caiman, lizard, clean, read_film):
+    captured = to_gait(read_film(lizard, clean, 4), caiman, GAITS["belly_crawl"], name="x")
     assert captured.gait.period > lizard.period
     assert any("turn faster than its servo can" in note for note in captured.notes)

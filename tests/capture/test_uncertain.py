@@ -29,7 +29,7 @@ def duties(walk):
     return [walk.numbers[f"duty_{leg}"] for leg in LEGS]
 
 
-@pytest.mark.parametrize("varies", [0.07, 0.10])
+@pytest.mark.parametrize("varies", [pytest.param(0.07, marks=pytest.mark.slow("a second film")), 0.10])
 def test_a_pace_that_varies_does_not_bias_the_duty_factor(walker, sharp, varies):
     pace = 1.0 + varies * np.random.default_rng(0).standard_normal(10).clip(-2, 2)
     for seen in duties(observe(film_animal(walker, sharp, cycles=10, pace=pace))):
@@ -37,16 +37,24 @@ def test_a_pace_that_varies_does_not_bias_the_duty_factor(walker, sharp, varies)
         assert seen.error < 0.05
 
 
-def test_the_period_is_the_mean_of_the_strides_and_its_spread_theirs(walker, sharp):
+def test_the_period_is_the_mean_of_the_strides_and_its_spread_theirs(walker, sharp, read_film):
     pace = np.tile([0.9, 1.1], 5)
     seen = observe(film_animal(walker, sharp, cycles=10, pace=pace)).numbers["period"]
     np.testing.assert_allclose(seen.value, walker.period, rtol=0.01)
     assert 0.03 < seen.spread / walker.period < 0.11
-    steady = observe(film_animal(walker, sharp, cycles=10)).numbers["period"]
+    steady = read_film(walker, sharp, 10).numbers["period"]
     assert steady.spread < 0.01 * walker.period
 
 
-@pytest.mark.parametrize(("start", "share"), [(0.2, 0.2), (0.2, 0.3), (0.9, 0.3), (0.5, 0.3)])
+@pytest.mark.parametrize(
+    ("start", "share"),
+    [
+        (0.2, 0.2),
+        pytest.param(0.2, 0.3, marks=pytest.mark.slow("a second film")),
+        pytest.param(0.9, 0.3, marks=pytest.mark.slow("a third film")),
+        (0.5, 0.3),
+    ],
+)
 def test_a_foot_hidden_in_the_same_part_of_every_cycle_is_not_read_wrong(walker, sharp, start, share):
     tracks = film_animal(walker, sharp, cycles=10)
     walk = observe(hidden(tracks, "LF", tracks.time / walker.period, start, share))
@@ -55,7 +63,7 @@ def test_a_foot_hidden_in_the_same_part_of_every_cycle_is_not_read_wrong(walker,
     assert apart(walk.numbers["phase_RF"], 0.5) <= walk.numbers["phase_RF"].error
 
 
-def test_a_foot_whose_whole_swing_is_hidden_is_named_and_left_out_of_the_gait(caiman, walker, sharp):
+def test_a_foot_whose_whole_swing_is_hidden_is_named_and_left_out_of_the_gait(caiman, walker, sharp, read_film):
     tracks = film_animal(walker, sharp, cycles=10)
     walk = observe(hidden(tracks, "LF", tracks.time / walker.period, 0.96, 0.42))
     seen = walk.numbers["duty_LF"]
@@ -66,7 +74,7 @@ def test_a_foot_whose_whole_swing_is_hidden_is_named_and_left_out_of_the_gait(ca
     assert note in captured.notes
     others = [walk.value(f"duty_{leg}") for leg in LEGS[1:]]
     np.testing.assert_allclose(captured.gait.duty_factor, np.mean(others), atol=1e-4)
-    assert not observe(film_animal(walker, sharp, cycles=10)).notes
+    assert not read_film(walker, sharp, 10).notes
 
 
 def test_fifteen_frames_a_second_are_not_surer_than_they_are_right(walker, sharp):

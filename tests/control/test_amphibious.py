@@ -93,7 +93,7 @@ def test_in_between_it_goes_on_as_before():
 
 
 def test_a_load_that_flickers_changes_it_no_more_often_than_its_patience():
-    loads = np.tile(np.repeat([0.5, 0.0], 30), 20)  # 0.3 s each
+    loads = np.tile(np.repeat([0.5, 0.0], 30), 12)  # 0.3 s each
     quick = replace(GAIT, period=0.2)  # so that its feet are empty for a whole cycle
     machine = begun(replace(WAY, memory=0.0, change=0.5, patience=1.0), gait=quick)
     walks, _ = feel(machine, loads)

@@ -91,10 +91,15 @@ def test_attitude_feedback_keeps_the_high_walk_on_its_feet_on_bumps(robot):
     assert np.degrees(roll[1]).max() < 25 < np.degrees(roll[0]).max()
 
 
-def test_every_posture_turns_into_every_other(robot):
-    bumps = Ground(relief=Bumps(height=0.03, correlation=0.1, start=0.42, seed=1))
-    cases = [(a, b, Ground()) for a, b in permutations(POSTURES, 2)]
-    cases += [("low_crawl", "high_walk", bumps), ("high_walk", "low_crawl", bumps), ("semi_erect", "high_walk", bumps)]
+BUMPS = Ground(relief=Bumps(height=0.03, correlation=0.1, start=0.42, seed=1))
+ON_BUMPS = [("low_crawl", "high_walk", BUMPS), ("high_walk", "low_crawl", BUMPS), ("semi_erect", "high_walk", BUMPS)]
+EVEN = [(a, b, Ground()) for a, b in permutations(POSTURES, 2)]
+
+
+@pytest.mark.parametrize(
+    "cases", [ON_BUMPS, pytest.param(EVEN, marks=pytest.mark.slow("a walk for each pair"))], ids=["bumps", "even"]
+)
+def test_every_posture_turns_into_every_other(robot, cases):
     runs = [
         Run(
             robot=robot,

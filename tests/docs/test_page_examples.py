@@ -81,6 +81,7 @@ def tried(names, folder, paths=(), left_out="not validate", **surroundings):
     }
 
 
+@pytest.mark.slow("six batteries in a process of their own")
 def test_in_a_project(tmp_path):
     """All examples stand in one project, as a user's would; each goes through the battery of its own shelf."""
     lab = tmp_path / "lab"

@@ -74,7 +74,15 @@ def test_what_runs_on_all_walkers_needs_nothing_that_one_of_them_lacks():
 
 
 @pytest.mark.parametrize("name", ["gait_diagram", "speed_range"])
-@pytest.mark.parametrize("robot", ["pleurobot", "salamander", "salamandra", "strider", "six"])
+@pytest.mark.parametrize(
+    "robot",
+    [
+        *(pytest.param(name, marks=pytest.mark.slow("bodies much as others")) for name in ("pleurobot", "salamandra")),
+        "salamander",
+        "strider",
+        "six",
+    ],
+)
 def test_it_runs_and_is_not_judged(name, robot):
     answers(name, robot)
 
@@ -134,7 +142,10 @@ def test_a_robot_that_no_gait_of_the_shelf_suits_gets_one_drafted_and_that_is_sa
     if not lacking(body, EXPERIMENTS["gait_diagram"].needs):
         assert main([*words, "--robot", str(tmp_path / "body.toml")]) == 0
         assert f"No gait on the shelf suits {body.name}: it moves in one that was drafted" in capsys.readouterr().out
-    main(words)
+
+
+def test_of_a_robot_that_a_gait_of_the_shelf_suits_none_is_said_to_be_drafted(tmp_path, capsys):
+    assert main(["run", "gait_diagram", "--quick", "--cycles", "2", "--out", str(tmp_path / "out")]) == 0
     assert "drafted" not in capsys.readouterr().out
 
 
@@ -163,6 +174,7 @@ def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
     assert asked.on(ROBOTS["salamander"]) == asked
 
 
+@pytest.mark.slow("a whole experiment on a body of another's")
 def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():
     """The path is taken at the samples nearest to the ends of the cycles, so that one cycle is enough."""
     body = eight()

@@ -54,12 +54,18 @@ def test_every_variable_has_a_unit(name, outcomes):
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_figures_are_drawn_with_captions(name, outcomes, tmp_path):
+def test_figures_are_drawn_with_captions(name, outcomes):
     figures = MODULES[name].draw(outcomes[name])
     assert len(figures) == 4 if name == "tail_bending" else "frames" in figures
-    for stem, figure in figures.items():
+    for figure in figures.values():
         assert isinstance(figure, Figure)
         assert len(caption(figure)) > 60
+
+
+@pytest.mark.slow("each figure is written as a drawing and as pixels")
+@pytest.mark.parametrize("name", MODULES)
+def test_figures_are_written(name, outcomes, tmp_path):
+    for stem, figure in MODULES[name].draw(outcomes[name]).items():
         for file in save(figure, tmp_path, stem):
             assert file.stat().st_size > 3000
 
@@ -187,7 +193,10 @@ def test_sweep_ends_where_the_gaps_close():
     assert float(outcome.record.bend[-1]) == values(outcome)["bend_limit_of_gaps"]
 
 
-@pytest.mark.parametrize(("femur", "tibia", "joints", "gap"), [(0.05, 0.02, 1, 0.005), (0.03, 0.2, 30, 0.01)])
+@pytest.mark.parametrize(
+    ("femur", "tibia", "joints", "gap"),
+    [(0.05, 0.02, 1, 0.005), pytest.param(0.03, 0.2, 30, 0.01, marks=pytest.mark.slow("a second odd robot"))],
+)
 def test_odd_robots_are_examined_too(femur, tibia, joints, gap):
     robot = ROBOTS["caiman"]
     odd = crocodile(

@@ -36,6 +36,7 @@ _LATE, _LATEST = 0.015, 0.3  # [cycle]; least and most by which a keypoint may b
 _GAIN, _FRAMES = 18.0, 30  # twice the likelihood gained that makes it sure; frames that it takes
 _EXPLAINS = 0.5  # share of how the distance varies that may be left
 _BENDS = 5  # powers of time that a path is drawn with at most
+_HARMONICS = 4  # of its mean cycle at most
 _SKIN = 0.01  # [link]; its least standard deviation
 _STANDS = 0.15  # [trunk]; a body that goes and comes by less, over a whole film, stands
 
@@ -422,7 +423,7 @@ def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dic
     chain, found = list(tracks.midline), dict[str, str]()
     lags = _Lags(tracks, clock, time)
     while True:
-        seen = {pair: lags.of(pair) for pair in pairwise(chain)}
+        seen = lags.of(list(pairwise(chain)))
         sure = [pair for pair in seen if seen[pair]]
         if not sure or len(chain) < 3:
             return found
@@ -449,7 +450,7 @@ class _Lags:
         self._courses = {}
         for name in tracks.midline:
             seen = int(np.isfinite(tracks.at(name)[:, 0]).sum())
-            count = harmonics_for(seen, tracks.rate * period, most=4)
+            count = harmonics_for(seen, tracks.rate * period, most=_HARMONICS)
             rows = tracks.at(name)[:, :2].T
             self._courses[name] = [fit(tracks.time, row, period, harmonics=count, drift=bends) for row in rows]
         step = max(1.0 / tracks.rate, 0.01 * period)
@@ -457,20 +458,35 @@ class _Lags:
         inside = (time > time[0] + _LATEST * period) & (time < time[-1] - _LATEST * period)
         self._time, self._clock = time[inside], clock
 
-    def _course(self, name: str, lag: float) -> np.ndarray:
+    def _places(self, names: Collection[str], lag: float) -> dict[str, np.ndarray]:
+        """Return where points are so much later than the frames say, shape (frame, 2) each."""
         when = self._clock.read(self._time + lag)
-        return np.stack([one.trend(when) + one.swing(when) for one in self._courses[name]], axis=-1)
+        turn = np.exp(2j * np.pi * np.multiply.outer(when, np.arange(1, _HARMONICS + 1)) / self._clock.period)
+        found = {}
+        for name in names:
+            courses = self._courses[name]
+            harmonics = np.stack([one.harmonics for one in courses], axis=-1)
+            swings = (turn[:, : len(harmonics)] @ harmonics).real
+            found[name] = np.stack([one.trend(when) for one in courses], axis=-1) + swings
+        return found
 
-    def of(self, pair: tuple[str, str]) -> float:
-        """Return by how much the second one runs behind the first, 0 where that is not sure [s]."""
+    def of(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], float]:
+        """Return by how much the second point of each pair runs behind the first, 0 where that is not sure [s]."""
         if len(self._time) < _FRAMES:
-            return 0.0
-        first = self._course(pair[0], 0.0)
-        long = [np.linalg.norm(self._course(pair[1], lag) - first, axis=-1) for lag in self.lags]
-        varies = np.var(long, axis=1)
+            return dict.fromkeys(pairs, 0.0)
+        first = self._places({one for one, _ in pairs}, 0.0)
+        mean, varies = np.empty((2, len(pairs), len(self.lags)))
+        for i, lag in enumerate(self.lags):  # the turns of the mean cycle are those of all points
+            second = self._places({other for _, other in pairs}, lag)
+            for j, (one, other) in enumerate(pairs):
+                long = np.linalg.norm(second[other] - first[one], axis=-1)
+                mean[j, i], varies[j, i] = np.mean(long), np.var(long)
+        return {pair: self._surely(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
+
+    def _surely(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> float:
         best, now = int(np.argmin(varies)), len(self.lags) // 2
         residual = [one.residual for name in pair for one in self._courses[name]]
-        noise = sum(float(np.nanvar(one)) for one in residual) / 2 + (_SKIN * float(np.mean(long[now]))) ** 2
+        noise = sum(float(np.nanvar(one)) for one in residual) / 2 + (_SKIN * float(mean[now])) ** 2
         gain = len(self._tracks.time) * (varies[now] - varies[best]) / noise
         sure = gain > _GAIN and varies[best] < _EXPLAINS * varies[now]
         return float(self.lags[best]) if sure and abs(self.lags[best]) > _LATE * self._clock.period else 0.0

@@ -63,7 +63,8 @@ _STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep 
 
 def asked_rules() -> tuple[Rule, ...]:
     """Return the rules of the claims that the walks of a study of designs answer."""
-    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in claims_varied())
+    varied = claims_varied()
+    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in varied)
 
 
 def claims_varied() -> frozenset[str]:
