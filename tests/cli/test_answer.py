@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from suchus.cli.entry import main
-from suchus.cli.run import Performed, answer, show_outcome
+from suchus.cli.run import Performed, show_outcome
 from suchus.experiment import Measure, estimated
 from suchus.experiments import EXPERIMENTS
-from suchus.report import carried, quantity
+from suchus.report import answer, carried, quantity
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)

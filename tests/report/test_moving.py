@@ -162,3 +162,24 @@ def test_every_number_of_an_animal_has_a_source_and_a_range():
 def test_the_summary_says_enough_of_what_decides(make):
     page = render_page([load_result(make("displacement"))], [])
     assert '<td class="why">This. That decides it all, and it takes quite a while to say why it does.</td>' in page
+
+
+def test_a_page_leads_with_two_sentences_and_has_a_column_of_intervals_where_there_are_some(make):
+    own = write_outcome_page(make("displacement")).read_text()
+    lead = '<p class="lead">This. That decides it all, and it takes quite a while to say why it does.</p>'
+    assert f'{lead}\n<p class="soft">More.</p>' in own
+    assert "Interval" not in own
+    speed = {"speed": 0.8, "speed_low": 0.7, "speed_high": 0.9, "way": 1.0}
+    measures = {name: {"value": value, "unit": "m/s"} for name, value in speed.items()}
+    own = write_outcome_page(make("turning", measures=measures, decides="It goes.")).read_text()
+    assert own.count('<th scope="col">Interval</th>') == own.count('data-label="Interval"') == 1
+    assert '<p class="soft">' not in own.partition("</header>")[0].partition("<h1>")[2]
+
+
+def test_only_what_is_on_the_shelf_is_said_to_be_run_by_its_name(make):
+    shelf, other = (write_outcome_page(make(name)).read_text() for name in ("displacement", "drive_wave"))
+    for said in ("suchus run displacement --help", "suchus.EXPERIMENTS[&#34;displacement&#34;]"):
+        assert said in shelf or said.replace("&#34;", '"') in shelf
+    assert "Run it again" in other
+    for said in ("--help", "suchus.EXPERIMENTS", "on the shelf"):
+        assert said not in other

@@ -94,8 +94,8 @@ def _plan(draft: Draft) -> list[str]:
     lines = [
         f"{robot.name}: {robot.mass:.4g} kg, {robot.length:.4g} m, {len(place.hinges)} hinges, "
         f"{len(place.servos)} driven",
-        f"axis: {len(robot.axis)} segments from {robot.axis[0].name} to {robot.axis[-1].name}; "
-        f"{counts or 'no'} hinges; root {robot.root}",
+        f"axis: {len(robot.axis)} segment{'s' * (len(robot.axis) > 1)} from {robot.axis[0].name} to "
+        f"{robot.axis[-1].name}; {counts or 'no'} hinges; root {robot.root}",
     ]
     for girdle in robot.girdles:
         turns = ", ".join(hinge.turn for hinge in girdle.limb.hinges)

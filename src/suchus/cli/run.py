@@ -1,6 +1,5 @@
 """``suchus run NAME``: one experiment, its results into a folder."""
 
-import re
 import shlex
 import time
 from collections.abc import Sequence
@@ -25,7 +24,7 @@ from suchus.figures import styled
 from suchus.gaits import DRAFTED, GAITS
 from suchus.progress import Progress
 from suchus.record import check_writable, write_tables
-from suchus.report import OUTCOME, PAGE, carried, check_place, quantity, save_outcome
+from suchus.report import OUTCOME, PAGE, answer, carried, check_place, quantity, save_outcome
 from suchus.sources import current
 from suchus.verdict import Verdict, listed
 
@@ -98,9 +97,10 @@ def show_outcome(question: Experiment, done: Performed) -> None:
     for line in moves(question):
         console.print(escape(line))
     console.print(escape(answer(done.outcome.decides)))
-    numbers = Table("measure", "value", "interval", box=None, padding=(0, 2, 0, 0))
-    for row in carried(question.answers, done.outcome.measures):
-        numbers.add_row(*map(escape, row))
+    rows = carried(question.answers, done.outcome.measures)
+    numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
+    for row in rows:
+        numbers.add_row(*(escape(part) for part in row if part or len(numbers.columns) > 2))
     console.print(numbers)
     if done.outcome.verdicts:
         table = Table(box=None, padding=(0, 2, 0, 0))
@@ -146,11 +146,6 @@ def moves(question: Experiment) -> list[str]:
         other = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
         told.append(gait.name + (other if gait.period != shelf.period else ""))
     return [f"{robot.name} moves in the gait{'s' * (len(told) > 1)} {listed(told)}."]
-
-
-def answer(decides: str) -> str:
-    """Return the first two sentences of what decided."""
-    return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
 
 
 def run(words: Sequence[str]) -> int:

@@ -41,7 +41,7 @@ def draw_use(used: Sequence[Used], title: str) -> Figure:
             ax.barh(
                 [y + shift for y in places], widths, height=0.38, label=label, edgecolor="white", linewidth=0, **look
             )
-        ax.axvline(100, color=COLOURS["alarm"], linestyle="--", linewidth=1.4)
+        ax.axvline(100, color=COLOURS["alarm"], linestyle="--", linewidth=1.4, label="all there is")
         ax.set_yticks(list(places), [f"{one.servo}  {one.bought}".strip() for one in rows], fontsize=10)
         ax.set_xlabel("used of what the servo has [%]")
         ax.set_title(title)

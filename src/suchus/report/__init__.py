@@ -1,7 +1,7 @@
 """Outcomes become files, and files become one page."""
 
 from suchus.report.comparison import Comparison, compare, render_comparison, write_comparison
-from suchus.report.outcome_page import PAGE, carried, render_outcome_page, write_outcome_page
+from suchus.report.outcome_page import PAGE, answer, carried, render_outcome_page, write_outcome_page
 from suchus.report.page import render_page, write_page
 from suchus.report.rendering import number, quantity
 from suchus.report.result import OUTCOME, Failure, Picture, Result, load_result, whole
@@ -14,6 +14,7 @@ __all__ = [
     "Failure",
     "Picture",
     "Result",
+    "answer",
     "carried",
     "check_place",
     "compare",

@@ -6,6 +6,7 @@ It is one file that needs nothing else and no network; further replays and films
 import base64
 import csv
 import io
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite, nan
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 
 from suchus.errors import UnreadableFile
 from suchus.experiment import Measure
+from suchus.experiments import EXPERIMENTS
 from suchus.record import read_text, write
 from suchus.report.rendering import number, quantity, render, tied
 from suchus.report.result import Result, load_result
@@ -54,6 +56,7 @@ def write_outcome_page(folder: Path) -> Path:
 def render_outcome_page(result: Result) -> str:
     """Return the page of an outcome as text."""
     outcome = result.outcome
+    lead = answer(outcome["decides"])
     measures = {
         name: Measure(nan if one["value"] is None else one["value"], one["unit"])
         for name, one in outcome["measures"].items()
@@ -63,6 +66,9 @@ def render_outcome_page(result: Result) -> str:
     content = {
         "result": result,
         "outcome": outcome,
+        "on_shelf": outcome["experiment"] in EXPERIMENTS,
+        "lead": lead,
+        "more": outcome["decides"][len(lead) :].strip(),
         "robot": _named(outcome, "robot"),
         "gait": _named(outcome, "gait"),
         "verdicts": list(told(result)),
@@ -81,6 +87,11 @@ def told(result: Result) -> Iterator[dict[str, Any]]:
     for verdict in result.outcome["verdicts"]:
         whole = {**_LACKING, **verdict}
         yield {**whole, "experiment": result.name, "of_designs": _share(whole), "scatter": _scatter(whole)}
+
+
+def answer(decides: str) -> str:
+    """Return the first two sentences of what decided."""
+    return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
 
 
 def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:

@@ -29,7 +29,7 @@ def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     shown = number(value, digits)
     if unit == "rad":
         return f"{shown} rad ({number(degrees(value), 3)}°)"
-    return shown if unit in ("-", "1", "") else f"{shown} {unit}"
+    return shown if unit in ("-", "1", "") else f"{shown} {'°C' if unit == 'degC' else unit}"
 
 
 def number(value: float, digits: int = 4) -> str:

@@ -116,9 +116,9 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, f
         x = x - x.sel(time=START, method="nearest")
         draw_lines(ax, x, arms)
         end = float(record.time[-1])
-        for arm in arms:
-            built = record.repeated_forward.sel(condition=arm)
-            ax.plot([end] * built.size, built, "_", color=COLOURS[arm], markersize=11, clip_on=False)
+        for i, arm in enumerate(arms):
+            built, label = record.repeated_forward.sel(condition=arm), None if i else "each robot as built"
+            ax.plot([end] * built.size, built, "_", color=COLOURS[arm], markersize=11, clip_on=False, label=label)
         cycles = (end - START) / float(record.period[0])
         mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
         if printed:

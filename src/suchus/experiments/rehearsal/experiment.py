@@ -286,10 +286,11 @@ class Rehearsal(Experiment):
                 color=colours[RULES.index(str(rule))], label=str(rule),
             )  # fmt: skip
         for side in (-1.0, 1.0):
-            axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--")
+            bound = "beyond: flagged" if side > 0 else None
+            axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--", label=bound)
         axes[0, 0].set_xticks(np.arange(len(wires)), [_words(str(wire)) for wire in wires])
-        axes[0, 0].set_ylabel("displacement [%]")
-        axes[0, 0].legend(loc="lower right", ncols=len(rules))
+        axes[0, 0].set_ylabel("change of displacement [%]")
+        axes[0, 0].legend(loc="lower right", ncols=2)
         servos = [str(name).replace("_", " ") for name in record.servo.values]
         for marker, protocol in zip("ox", record.protocol.values, strict=False):
             off = np.degrees(record.angle_off.sel(protocol=protocol).values)
@@ -301,8 +302,9 @@ class Rehearsal(Experiment):
         return captioned(
             figure,
             "Above: what an imperfect wire changes of the displacement of each rule, against the same walk in the "
-            f"simulation; beyond the dashed lines, {LOSES:.0%}, it is flagged. Below: how far each servo is off the "
-            "simulation over ideal wires, root mean square.",
+            f"simulation; beyond the dashed lines, {LOSES:.0%}, it is flagged. Open: the gait alone; closed: three "
+            "feedback rules; steered: these and a loop that holds the heading; pattern: coupled oscillators. Below: "
+            "how far each servo is off the simulation over ideal wires, root mean square.",
         )
 
 

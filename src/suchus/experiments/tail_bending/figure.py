@@ -25,8 +25,9 @@ def tail_positions(record: xr.Dataset) -> Figure:
             line = np.vstack([[0, 0], _MM * record.joints_ours[i].values, end])
             _plates(left, line, record, shade)
             left.plot(*line.T, "-o", color=shade, markersize=4, linewidth=1.6)
-            tip = end + 40 * np.array([np.cos(bend), np.sin(bend)])
-            left.text(*tip, name, color=shade, ha="center", va="center", weight="bold")
+            along = np.array([np.cos(bend), np.sin(bend)])
+            tip, side = end + 36 * along, ("right", "center", "left")[int(np.rint(along[0])) + 1]
+            left.text(*tip, name, color=shade, ha=side, va="center", weight="bold")
             wrong = np.vstack([[0, 0], _MM * record.joints_printed[i].values])
             right.plot(*wrong.T, "-o", color=shade, markersize=4, linewidth=1.6)
             right.annotate(name, wrong[-1], (10, -10), textcoords="offset points", color=shade, weight="bold")
