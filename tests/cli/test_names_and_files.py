@@ -1,6 +1,5 @@
 """A robot or a gait is its name, its file or itself, wherever one is asked for."""
 
-import json
 from dataclasses import replace
 from math import isclose
 from pathlib import Path
@@ -9,7 +8,9 @@ import pytest
 
 from suchus import blueprint
 from suchus.cli import main, view
+from suchus.cli.options import choose
 from suchus.errors import UnknownName, UnreadableFile
+from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS, gait_of, own_gait
 from suchus.land import Run
 from suchus.optimise.spec import read_optimisation
@@ -98,10 +99,11 @@ def test_the_viewer_takes_files(here, monkeypatch):
     assert shown == ["mine, mine_walk", "strider, tripod"]
 
 
-def test_an_experiment_answers_a_file_as_the_name(here, capsys):
-    found = []
-    for robot in ("strider", "mine.toml"):
-        words = ["run", "gait_diagram", "--quick", "--cycles", "2", "--robot", robot, "--out", robot[:4], "--json"]
-        assert main(words) == 0
-        found.append(json.loads(capsys.readouterr().out)["measures"])
-    assert found[0] == found[1]
+def test_an_experiment_answers_a_file_as_the_name(here):
+    words = ["--quick", "--cycles", "2", "--robot"]
+    named, read = (
+        choose(EXPERIMENTS["gait_diagram"], "gait_diagram", [*words, robot]).experiment
+        for robot in ("strider", "mine.toml")
+    )
+    assert (named.robot.name, read.robot.name) == ("strider", "mine")
+    assert named.run().measures == read.run().measures

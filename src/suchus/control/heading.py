@@ -110,4 +110,6 @@ class Heading:
 def _most(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
     if not gait.has("strokes"):
         return 0.0
+    if rule.gain == rule.integral_gain == 0.0:  # nothing steers, and how far the limbs reach takes long to find
+        return rule.most
     return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

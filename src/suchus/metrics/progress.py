@@ -46,15 +46,15 @@ def path_length(record: xr.Dataset, start: float = START, end: float | None = No
 
     The swaying within a cycle does not count: the path is sampled once per cycle.
     """
-    if "run" in record.dims:  # each run is sampled at its own period
+    periods = np.unique(record.period)
+    if len(periods) > 1:  # each run is sampled at its own period
         lengths = [path_length(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(lengths, "run", coords="different", compat="equals")
-    part = between(record, start, end)
-    period = float(part.period)
-    every = max(1, round(period / float(part.time[1] - part.time[0])))
-    points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=slice(None, None, every))
+    places = between(record, start, end).centre_of_mass.sel(xyz=["x", "y"]).transpose(..., "time", "xyz")
+    every = max(1, round(float(periods[0]) / float(places.time[1] - places.time[0])))
+    points = places.isel(time=slice(None, None, every))
     if points.sizes["time"] < 2:
-        points = part.centre_of_mass.sel(xyz=["x", "y"]).isel(time=[0, -1])
+        points = places.isel(time=[0, -1])
     return ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
 
 
@@ -64,13 +64,14 @@ def path_speed(record: xr.Dataset, start: float = START, end: float | None = Non
     As ``path_length``, of which it is the part of each second, it does not count the swaying within a cycle; it tells
     neither forward from backward nor whether the path closes on itself.
     """
-    if "run" in record.dims:  # each run is sampled at its own period
+    periods = np.unique(record.period)
+    if len(periods) > 1:
         speeds = [path_speed(record.isel(run=i), start, end) for i in range(record.sizes["run"])]
         return xr.concat(speeds, "run", coords="different", compat="equals")
-    part = between(record, start, end)
-    every = max(1, round(float(part.period) / float(part.time[1] - part.time[0])))
-    last = every * ((part.sizes["time"] - 1) // every) or -1  # a part of a cycle at the end is not in the path's length
-    return path_length(record, start, end) / float(part.time[last] - part.time[0])
+    time = between(record, start, end).time
+    every = max(1, round(float(periods[0]) / float(time[1] - time[0])))
+    last = every * ((len(time) - 1) // every) or -1  # a part of a cycle at the end is not in the path's length
+    return path_length(record, start, end) / float(time[last] - time[0])
 
 
 def slip(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

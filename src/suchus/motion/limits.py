@@ -1,6 +1,7 @@
 """What a gait asks of joints and servos, and whether a robot can give it."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -108,6 +109,7 @@ def check_speeds(robot: Robot, gait: Gait) -> None:
         )
 
 
+@lru_cache(maxsize=256)
 def longest_strokes(robot: Robot, gait: Gait) -> float:
     """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
     if not gait.has("strokes"):
