@@ -174,7 +174,7 @@ def some_page(name):
     return pytest.param(name, marks=pytest.mark.slow("a page with its skin and picture") if others else ())
 
 
-@pytest.mark.parametrize("quick", map(some_page, EXPERIMENTS), indirect=True)
+@pytest.mark.parametrize("quick", [some_page(name) for name in EXPERIMENTS], indirect=True)
 def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):
     experiment, outcome = quick
     if hasattr(sys.modules[type(experiment).__module__], "replayed"):  # it makes such pages
