@@ -8,10 +8,8 @@ from tests.felt import felt
 from suchus.bus import FRAMINGS, Bus, BusPlace, straight
 from suchus.design import layout
 from suchus.design.scale import control_period
-from suchus.emulator import Emulator, MemoryPort, Trouble
+from suchus.emulator import USUAL, Emulator, MemoryPort, Trouble
 from suchus.robots import ROBOTS
-
-MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250"}
 
 
 class Obedient:
@@ -50,7 +48,7 @@ class Obedient:
 
 def wiring(protocol="dynamixel", robot=ROBOTS["caiman"], buses=1, boards=False):
     places = [BusPlace(port=f"bus{i}", protocol=protocol) for i in range(buses)]
-    return straight(robot, places, MODELS[protocol], boards=boards)
+    return straight(robot, places, USUAL[protocol], boards=boards)
 
 
 def emulated(protocol="dynamixel", trouble=None, **of_body):

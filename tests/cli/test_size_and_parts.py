@@ -4,7 +4,10 @@ import csv
 
 import pytest
 
+from suchus.blueprint import motors, read
 from suchus.cli import main
+from suchus.design import Robot, layout
+from suchus.robots import ROBOTS
 
 
 @pytest.fixture(autouse=True)
@@ -21,6 +24,7 @@ def _here(tmp_path, monkeypatch):
         ("size strider --standing", "strider"),
         ("size caiman --slope 80", "size.slope is 80 degrees"),
         ("size caiman --motors none.toml", "none.toml"),
+        ("size caiman belly_crawl --family nobodys", "there is no family of servos named 'nobodys'; there is"),
         ("parts no_robot", "no_robot"),
         ("parts caiman --no-outlines --wall 0", "parts.wall is 0 m"),
     ],
@@ -29,6 +33,24 @@ def test_what_makes_no_sense_is_refused_in_a_sentence_and_nothing_is_written(wor
     assert main(words.split()) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "export").exists()
+
+
+@pytest.mark.slow("a family of servos is walked with")
+def test_sizing_writes_the_servos_that_are_enough_and_a_robot_that_has_them(tmp_path, capsys):
+    family = "Dynamixel XW 12 V RS-485"
+    assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0
+    out, folder = capsys.readouterr().out, tmp_path / "export" / "caiman_size"
+    assert family in out
+    assert "EUR" in out
+    with (folder / "families.csv").open() as file:
+        assert [row["family"] for row in csv.DictReader(file)] == [family]
+    with (folder / "servos.csv").open() as file:
+        assert {row["servo"] for row in csv.DictReader(file)} == set(layout(ROBOTS["caiman"]).servos)
+    assert "<h1>" in (folder / "size.html").read_text()
+    built = read(folder / "robot.toml", Robot, ROBOTS)
+    sold = {name for name, motor in motors().items() if motor.family == family}
+    assert {built.servo(name).winding.motor for name in layout(built).servos} <= sold
+    assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0  # its own files may be written anew
 
 
 def test_a_building_sheet_of_a_foreign_body_is_written_with_its_tables_and_what_ros_needs(tmp_path, capsys):

@@ -75,7 +75,7 @@ def test_in_a_lake_it_floats_and_feels_the_water():
 
 
 @pytest.mark.slow("two cycles over each protocol")
-@pytest.mark.parametrize("protocol", ["dynamixel", "feetech"])
+@pytest.mark.parametrize("protocol", ["dynamixel", "feetech", "line"])
 def test_over_ideal_wires_it_walks_as_simulated(protocol):
     duration = START + 2 * GAIT.period
     truth = crawl(ROBOT, GAIT, duration=duration)

@@ -1,14 +1,18 @@
 """An emulated bus as other programs see it: a pseudo-terminal, or a socket of this computer."""
 
+import os
+import socket
 import threading
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
+from time import monotonic
 
 import pytest
 from tests.hardware.test_drive import GAIT, REST, ROBOT
 from tests.wires import Obedient, wiring
 
-from suchus.bus import FRAMINGS, Bus, BusGone, open_port
+from suchus.bus import FRAMINGS, Bus, BusGone, FilePort, open_port
 from suchus.emulator import Emulator, Server, Trouble
 from suchus.errors import BusFailure, InvalidDesign, Unwritable
 from suchus.hardware import BusClock, DriveSettings, Rig, drive
@@ -38,10 +42,10 @@ def bus_to(server, baud=1_000_000):
     return Bus(open_port(server.ports[0], baud), FRAMINGS["dynamixel"], wait=SOON, clocked=True)
 
 
-@pytest.mark.parametrize("sockets", [False, True])
-def test_it_is_driven_through_a_port(sockets, tmp_path):
-    with served([] if sockets else [tmp_path / "bus"], sockets=sockets) as server:
-        made = wiring()
+@pytest.mark.parametrize(("protocol", "sockets"), [("dynamixel", False), ("dynamixel", True), ("line", False)])
+def test_it_is_driven_through_a_port(protocol, sockets, tmp_path):
+    made = wiring(protocol)
+    with served([] if sockets else [tmp_path / "bus"], sockets=sockets, made=made) as server:
         made = replace(made, bus=(replace(made.bus[0], port=server.ports[0]),))
         rig = Rig(ROBOT, made, clocked=True)
         log = drive(rig, GAIT, settings=DriveSettings(duration=0.05, stop="off"), clock=BusClock(rig))
@@ -97,6 +101,59 @@ def test_a_port_that_is_not_there_or_none_is_said(tmp_path):
     for elsewhere in ("socket://192.0.2.1:5000", "socket://127.0.0.1", "socket://127.0.0.1:x"):
         with pytest.raises(InvalidDesign, match="on this computer"):
             open_port(elsewhere, 1_000_000)
+
+
+def test_a_port_that_one_may_not_open_is_said_with_the_group():
+    with served() as server:
+        name = server.ports[0]
+        if os.geteuid():
+            Path(name).chmod(0)
+        else:
+            Path(name).chmod(0o600)
+            os.seteuid(65534)  # nobody
+        try:
+            with pytest.raises(
+                BusFailure, match=r"may not be opened by you: join the group that owns it, often dialout"
+            ):
+                open_port(name, 1_000_000)
+        finally:
+            os.seteuid(os.getuid())
+    with pytest.raises(BusFailure, match="cannot be opened at 1000000 baud as a serial port"):
+        open_port("/dev/null", 1_000_000)
+
+
+def test_a_bus_whose_other_end_closes_or_reads_no_more_is_told_of_by_the_deadline():
+    ours, theirs = socket.socketpair()
+    port = FilePort("a bus", ours.fileno(), ours)
+    begun = monotonic()
+    with pytest.raises(BusGone, match=r"took \d+ of 10000000 bytes and then none for 0.05 s"):
+        port.send(bytes(10_000_000), 0.05)
+    assert monotonic() - begun < SOON
+    theirs.close()
+    with pytest.raises(BusGone, match=r"gone|ended"):
+        port.receive(SOON)
+    port.close()
+    port.close()
+
+
+def test_a_pseudo_terminal_that_is_closed_in_mid_drive_stops_it_with_its_log():
+    body = Obedient()
+    body.angles[:] = body.goals[:] = REST
+    server = Server(Emulator(wiring(), body, clocked=True))
+
+    def unplug():
+        server.serve(lambda: body.time > 0.3)
+        server.close()
+
+    thread = threading.Thread(target=unplug, daemon=True)
+    thread.start()
+    made = wiring()
+    rig = Rig(ROBOT, replace(made, bus=(replace(made.bus[0], port=server.ports[0]),)), clocked=True)
+    with pytest.raises(BusFailure, match=r"is gone|has ended.*the robot was stopped") as caught:
+        drive(rig, GAIT, settings=DriveSettings(duration=5.0), clock=BusClock(rig))
+    assert caught.value.record.sizes["time"] > 10
+    thread.join(5.0)
+    rig.close()
 
 
 def test_an_emulator_that_ends_ends_the_bus():

@@ -20,7 +20,7 @@ from suchus.robots import ROBOTS
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 NAMES = layout(ROBOT).servos
 REST = intended(ROBOT, GAIT, np.zeros(1)).targets[0]
-PROTOCOLS = pytest.mark.parametrize("protocol", ["dynamixel", "feetech"])
+PROTOCOLS = pytest.mark.parametrize("protocol", ["dynamixel", "feetech", "line"])
 
 
 class Drive:
@@ -147,6 +147,51 @@ def test_servos_without_a_watchdog_are_told_of():
     dynamixel = Drive()
     dynamixel.go()
     assert dynamixel.said == []
+
+
+def test_a_servo_with_too_old_a_firmware_has_no_watchdog_and_is_not_asked_for_one():
+    for version, told in ((38, False), (37, True)):
+        one = Drive()
+        one.emulator.servos[2].put("firmware", version)
+        one.go()
+        assert ("1 servos" in str(one.said) or "LF_knee on" in str(one.said)) == told
+        one.rig.watch(True)
+        one.emulator.pass_until(one.body.tick + 15)
+        tripped = [servo.get("bus_watchdog") == -1 for servo in one.emulator.servos]
+        assert tripped.count(False) == int(told)
+        assert tripped[2] != told
+
+
+@pytest.mark.parametrize(("keeps", "refused"), [("16", True), ("2", True), ("1", False), (None, False)])
+def test_an_adapter_that_keeps_bytes_back_is_refused_with_what_would_mend_it(keeps, refused, tmp_path, monkeypatch):
+    monkeypatch.setattr("suchus.bus.ports.ADAPTERS", tmp_path)
+    (tmp_path / "ttyUSB7").mkdir()
+    if keeps is not None:
+        (tmp_path / "ttyUSB7" / "latency_timer").write_text(f"{keeps}\n")
+    (tmp_path / "robot").symlink_to(tmp_path / "ttyUSB7")  # as /dev/serial/by-id has it
+    one = Drive()
+    one.port.name = str(tmp_path / "robot")
+    if refused:
+        with pytest.raises(BusFailure, match=rf'keeps bytes back for {keeps} ms.*udev.*ATTR{{latency_timer}}="1"'):
+            one.go()
+        assert one.body.tick == 0
+    else:
+        one.go()
+
+
+@pytest.mark.parametrize("protocol", ["dynamixel", "feetech", "line"])
+def test_a_servo_whose_own_limits_are_narrower_than_the_file_is_refused_by_name(protocol):
+    one = Drive(protocol)
+    one.emulator.servos[3].put("position_low", 2000)
+    with pytest.raises(BusFailure, match=r"RF_yaw, number 4, takes goals from 2000 to 4095 steps, and the file sends"):
+        one.go()
+    assert one.body.tick == 0
+    free = Drive(protocol)
+    for name in ("position_low", "position_high"):
+        free.emulator.servos[3].put(name, 0)
+    if protocol == "feetech":
+        free.emulator.servos[3].put("position_high", 4095)  # our emulated one knows no other way to have none
+        free.go()
 
 
 def test_lost_replies_are_counted_and_the_last_reading_stays():
@@ -280,6 +325,15 @@ def test_an_alert_stops_the_robot_and_is_named():
     with pytest.raises(BusFailure, match="RH_knee has switched itself off: electrical shock"):
         one.go()
     assert one.limp
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.9, False), (1.1, True)])
+def test_a_servo_that_gives_more_than_it_can_for_long_is_told_of(share, told):
+    one = Drive(limits=DriveLimits(memory=0.1), duration=1.0)
+    one.body.torques[7] = -share * one.wiring.servo[7].table.motor.continuous_torque
+    one.go()
+    assert any("LH_pitch gives" in sentence and "continuously" in sentence for sentence in one.said) == told
+    assert len(one.said) == int(told)
 
 
 def test_a_battery_that_sags_stops_the_robot():

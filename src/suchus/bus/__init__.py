@@ -3,7 +3,7 @@
 from suchus.bus.bus import WAIT, Bus, Counts, NoAnswer
 from suchus.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
 from suchus.bus.ports import BusGone, FilePort, Port, bit_rate, latency_timer, open_port
-from suchus.bus.tables import STEPS, TABLES, Register, Table
+from suchus.bus.tables import STEPS, TABLES, BusProtocol, Register, Table
 from suchus.bus.wiring import (
     CLOCK,
     FRAMINGS,
@@ -30,6 +30,7 @@ __all__ = [
     "Bus",
     "BusGone",
     "BusPlace",
+    "BusProtocol",
     "Counts",
     "Decoder",
     "FilePort",

@@ -1,7 +1,8 @@
 """What the packets of servo buses have in common: a request or a reply, and a decoder that survives what a wire does.
 
-Two protocols are spoken, Dynamixel 2.0 (``dynamixel``) and Feetech's for STS servos (``feetech``). They share their
-instructions and differ in header, checksum and the width of addresses and lengths.
+Three protocols are spoken: Dynamixel 2.0 (``dynamixel``), Feetech's for STS servos (``feetech``), and lines of text for
+boards of one's own (``line``). They share their instructions and differ in their frames, checksums and the width of
+addresses and lengths.
 """
 
 from abc import ABC, abstractmethod

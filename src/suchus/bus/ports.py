@@ -16,6 +16,8 @@ from suchus.errors import BusFailure, InvalidDesign
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Names of this computer that no other one reaches."""
+ADAPTERS = Path("/sys/bus/usb-serial/devices")
+"""Where Linux says how long an adapter keeps bytes back."""
 _CHUNK = 4096  # bytes of a read
 _GONE = (errno.EIO, errno.ENXIO, errno.ENODEV, errno.EPIPE, errno.ECONNRESET, errno.EBADF)
 
@@ -187,7 +189,7 @@ def _lower_latency(made: Any) -> None:
 
 def latency_timer(name: str) -> int | None:
     """Return how long an FTDI adapter keeps bytes back [ms]; None for other ports."""
-    place = Path("/sys/bus/usb-serial/devices") / Path(os.path.realpath(name)).name / "latency_timer"
+    place = ADAPTERS / Path(os.path.realpath(name)).name / "latency_timer"
     try:
         return int(place.read_text(encoding="ascii"))
     except (OSError, ValueError):

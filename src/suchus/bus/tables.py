@@ -16,6 +16,8 @@ from suchus.design import Motor
 from suchus.errors import UnknownName
 
 Sign = Literal["none", "two", "bit"]
+BusProtocol = Literal["dynamixel", "feetech", "line"]
+"""Protocols that are spoken, by name."""
 
 STEPS = 4096
 """Steps of a turn, of every servo here [-]."""
@@ -70,8 +72,8 @@ class Table:
     """As ``hardware.toml`` calls it."""
     number: int
     """What it answers when it is asked for its model [-]."""
-    protocol: str
-    """``dynamixel`` or ``feetech``."""
+    protocol: BusProtocol
+    """``dynamixel``, ``feetech`` or ``line``."""
     registers: tuple[Register, ...]
     """In the order of their addresses."""
     motor: Motor | None = None
@@ -83,6 +85,8 @@ class Table:
     tick holds voltage and temperature."""
     bauds: Mapping[int, int] = field(default_factory=dict)
     """Bit rates by the value of ``baud_rate`` [1/s]."""
+    watches_from: int = 0
+    """Firmware from which its watchdog does its work [-]."""
     persistent: int = 0
     """Addresses below this are kept without power, and refused while torque is on (``locks``) [-]."""
     full: int = 1000
@@ -94,6 +98,11 @@ class Table:
     def stall_torque(self) -> float:
         """Torque at rest [N m]; what its load is a share of."""
         return 1.0 if self.motor is None else self.motor.stall_torque
+
+    @property
+    def continuous_torque(self) -> float:
+        """Torque that it can give for ever [N m]."""
+        return 1.0 if self.motor is None else self.motor.continuous_torque
 
     @property
     def torque_per_ampere(self) -> float:
@@ -188,6 +197,7 @@ def _x_series(motor: Motor) -> Table:
         bauds=MappingProxyType(
             {0: 9600, 1: 57600, 2: 115200, 3: 1_000_000, 4: 2_000_000, 5: 3_000_000, 6: 4_000_000}
         ),
+        watches_from=38,
         persistent=64,
         full=885,
         alerts=(
@@ -242,14 +252,53 @@ def _sts(motor: Motor) -> Table:
     )  # fmt: skip
 
 
-_SERIES: Mapping[str, Callable[[Motor], Table]] = {"dynamixel": _x_series, "feetech": _sts}
+def _own_board(motor: Motor) -> Table:
+    """Return the table of a hobby servo behind a board of one's own, which speaks in lines; register n is at 2 n."""
+    hottest = round(motor.temperature_limit)
+    low = round(100 * motor.volts_range[0])
+    two: Sign = "two"
+    rows = (
+        Register(name="model_number", address=0, size=2, initial=motor.model_number),
+        Register(name="firmware", address=2, size=2, initial=1),
+        Register(name="id", address=4, size=2, initial=1),
+        Register(name="baud_rate", address=6, size=2),
+        Register(name="return_delay", address=8, size=2, unit=1e-6, writable=True, span=(0, 10_000)),
+        Register(name="operating_mode", address=10, size=2, writable=True, initial=3, span=(0, 16)),
+        Register(name="temperature_limit", address=12, size=2, writable=True, initial=hottest, span=(0, 200)),
+        Register(name="voltage_low", address=14, size=2, unit=0.01, writable=True, initial=low),
+        Register(name="position_low", address=16, size=2, unit=_STEP, sign=two, writable=True),
+        Register(name="position_high", address=18, size=2, unit=_STEP, sign=two, writable=True, initial=STEPS - 1),
+        Register(name="bus_watchdog", address=20, size=2, unit=0.02, sign=two, writable=True, span=(0, 127)),
+        Register(name="torque_enable", address=22, size=2, writable=True, span=(0, 1)),
+        Register(name="torque_limit", address=24, size=2, sign=two, writable=True, initial=1000, span=(0, 1000)),
+        Register(name="goal_position", address=28, size=2, unit=_STEP, sign=two, writable=True, initial=2048),
+        Register(name="present_position", address=30, size=2, unit=_STEP, sign=two, initial=2048),
+        Register(name="present_velocity", address=32, size=2, unit=1e-3, sign=two),
+        Register(name="present_current", address=34, size=2, unit=1e-3, sign=two),
+        Register(name="present_voltage", address=36, size=2, unit=0.01, initial=round(100 * motor.volts)),
+        Register(name="present_temperature", address=38, size=2, sign=two, initial=25),
+        Register(name="hardware_error", address=40, size=2),
+    )
+    return Table(
+        model=motor.name,
+        number=motor.model_number,
+        protocol="line",
+        registers=rows,
+        motor=motor,
+        felt=("present_position", "hardware_error"),
+        bauds=MappingProxyType(dict(enumerate((1_000_000, 500_000, 250_000, 115_200, 57_600, 2_000_000, 3_000_000)))),
+        alerts=((0, "input voltage"), (2, "overheated"), (3, "encoder"), (4, "electrical shock"), (5, "overload")),
+    )
+
+
+_SERIES: Mapping[str, Callable[[Motor], Table]] = {"dynamixel": _x_series, "feetech": _sts, "pwm": _own_board}
 TABLES: Mapping[str, Table] = MappingProxyType(
     {name: _SERIES[motor.protocol](motor) for name, motor in motors().items() if motor.protocol in _SERIES}
 )
 """The servos that we speak with, by the names of ``blueprint.motors``."""
 
 
-def _board(model: str, number: int, protocol: str, registers: tuple[Register, ...]) -> Table:
+def _board(model: str, number: int, protocol: BusProtocol, registers: tuple[Register, ...]) -> Table:
     """Return the table of a board for sensors: its number, then what it feels, in one block."""
     own = Register(name="model_number", address=0, size=2, initial=number)
     return Table(
@@ -276,12 +325,12 @@ IMU = (
 acceleration with gravity [m/s2], in the units of Bosch's BNO055, which does the same."""
 
 
-def imu_board(protocol: str) -> Table:
+def imu_board(protocol: BusProtocol) -> Table:
     """Return the table of an inertial measurement unit on a board that speaks a protocol."""
     return _board("imu", 60001, protocol, IMU)
 
 
-def load_board(protocol: str, kind: str, places: int, unit: float) -> Table:
+def load_board(protocol: BusProtocol, kind: str, places: int, unit: float) -> Table:
     """Return the table of a board that feels the normal force at several places.
 
     Args:

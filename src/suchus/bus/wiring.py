@@ -10,8 +10,9 @@ import numpy as np
 
 from suchus.bus.dynamixel import Dynamixel
 from suchus.bus.feetech import Feetech
+from suchus.bus.line import PlainLine
 from suchus.bus.packets import LAST_ID, Framing
-from suchus.bus.tables import STEPS, TABLES, Table, imu_board, load_board
+from suchus.bus.tables import STEPS, TABLES, BusProtocol, Table, imu_board, load_board
 from suchus.design import Crank, Robot, layout, servo_ranges
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign, UnsuitedRobot
@@ -21,7 +22,7 @@ T = TypeVar("T")
 CLOCK = 250
 """Identifier of the emulator's clock, which no real bus has: written with an absolute tick it lets the robot move until
 then; asked with the servos it answers last, so that the end of the answers is known [-]."""
-FRAMINGS: dict[str, Framing] = {"dynamixel": Dynamixel(), "feetech": Feetech()}
+FRAMINGS: dict[str, Framing] = {"dynamixel": Dynamixel(), "feetech": Feetech(), "line": PlainLine()}
 """The protocols by name."""
 Kind = Literal["imu", "feet", "belly", "tail"]
 FORCE_STEPS = 20000
@@ -34,7 +35,7 @@ class BusPlace:
 
     port: str
     """Path of a serial port, as /dev/serial/by-id/..., or ``socket://127.0.0.1:PORT`` of an emulator."""
-    protocol: Literal["dynamixel", "feetech"] = "dynamixel"
+    protocol: BusProtocol = "dynamixel"
     """What its servos speak."""
     baud: int = 1_000_000
     """Bit rate [1/s]."""
@@ -164,7 +165,7 @@ class Wiring:
         return board_table(board, self.bus[board.bus].protocol, robot)
 
 
-def board_table(board: BoardPlace, protocol: str, robot: Robot) -> Table:
+def board_table(board: BoardPlace, protocol: BusProtocol, robot: Robot) -> Table:
     """Return the table of a board of a robot that speaks a protocol."""
     if board.kind == "imu":
         return imu_board(protocol)

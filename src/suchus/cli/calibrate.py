@@ -98,8 +98,7 @@ def _known(options: CalibrateOptions) -> Wiring:
         raise BadCommand(f"there is no {options.hardware}: say --port PORT and --model MODEL of the servos instead.")
     if options.model not in TABLES:
         raise UnknownName("model", options.model, TABLES)
-    feetech = TABLES[options.model].protocol == "feetech"
-    place = BusPlace(port=options.port, baud=options.baud, protocol="feetech" if feetech else "dynamixel")
+    place = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
     return straight(options.robot, [place], options.model)
 
 

@@ -9,12 +9,12 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from suchus.bus import BusPlace, Wiring, straight
+from suchus.bus import BusPlace, BusProtocol, Wiring, straight
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.view import pages_of_viewer
 from suchus.design import Robot
-from suchus.emulator import EmulatedBody, Emulator, Server, Trouble
+from suchus.emulator import USUAL, EmulatedBody, Emulator, Server, Trouble
 from suchus.faults import FAULTS, from_table
 from suchus.gaits import own_gait
 from suchus.hardware import read_wiring, write_wiring
@@ -23,8 +23,11 @@ from suchus.motion import Gait
 from suchus.record import check_writable, save
 from suchus.robots import ROBOTS
 
-MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250"}
-"""Servos of an emulated robot for which no hardware is written, by protocol."""
+_BAUD = {
+    "dynamixel": 1_000_000,
+    "feetech": 1_000_000,
+    "line": 2_000_000,
+}  # [1/s]; numbers that are written out are longer
 _PLACE = Path("hardware.toml")
 
 
@@ -36,8 +39,8 @@ class EmulateOptions:
     """The robot that is emulated."""
     hardware: Path = _PLACE
     """Which servo hangs where, with the paths of the ports; written for this robot where there is no such file."""
-    protocol: Literal["dynamixel", "feetech"] = "dynamixel"
-    """What servos speak, where the file is written."""
+    protocol: BusProtocol = "dynamixel"
+    """What servos speak, where the file is written; line: hobby servos behind a board of your own."""
     clock: Literal["wall", "bus"] = "wall"
     """wall: time passes by itself; bus: the robot moves when it is told to, by suchus drive --clock bus."""
     gait: Gait | None = None
@@ -48,34 +51,10 @@ class EmulateOptions:
     """Slope of the ground, uphill positive [degrees]."""
     socket: tyro.conf.FlagCreatePairsOff[bool] = False
     """Listen on a socket of this computer in the place of a pseudo-terminal."""
-    latency: float = 0.0
-    """How long requests and replies are on their way, each [ms]."""
-    noise: float = 0.0
-    """Standard deviation of the angles that servos tell [degrees]."""
-    resolution: float = 0.0
-    """Step of the servos' angles, where it is coarser than 4096 a turn [degrees]."""
-    lost: float = 0.0
-    """Share of packets that are lost [-]."""
-    corrupt: float = 0.0
-    """Share of replies in which a bit is flipped [-]."""
-    dropped: float = 0.0
-    """Share of replies that lack a byte [-]."""
-    mute: tuple[int, ...] = ()
-    """Numbers of servos that do not answer."""
-    twin: tuple[int, ...] = ()
-    """Numbers that two servos have."""
-    hot: tuple[int, ...] = ()
-    """Numbers of servos that get hot."""
-    wet: tuple[int, ...] = ()
-    """Numbers of servos whose module takes in water."""
-    sag: float = 0.0
-    """Voltage that the battery loses in a second [V/s]."""
+    trouble: Annotated[Trouble, tyro.conf.arg(name="")] = field(default_factory=Trouble)
+    """What goes wrong on the wire and in servos."""
     fault: tuple[str, ...] = ()
     """What breaks in the servos, as limp:LF_yaw or weak:RH_pitch: a fault that suchus list shows, and its part."""
-    at: float = 0.0
-    """When servos become mute, hot, wet or broken and the battery sags [s]."""
-    seed: int = 0
-    """Seed of what is random."""
     seconds: float | None = None
     """How long to serve [s]; until Ctrl-C if it is left out."""
     view: tyro.conf.FlagCreatePairsOff[bool] = False
@@ -98,18 +77,14 @@ def emulate(words: Sequence[str]) -> int:
     options = parse(EmulateOptions, "suchus emulate", _robot_first(words), about)
     if options.out is not None:
         check_writable(options.out.parent)
-    trouble = Trouble(
-        latency=1e-3 * options.latency, noise=radians(options.noise), resolution=radians(options.resolution),
-        lost=options.lost, corrupt=options.corrupt, dropped=options.dropped, mute=options.mute, twin=options.twin,
-        hot=options.hot, wet=options.wet, sag=options.sag, at=options.at, seed=options.seed,
-    )  # fmt: skip
+    trouble = options.trouble
     clocked = options.clock == "bus"
     body = EmulatedBody(
         options.robot,
         options.gait or own_gait(options.robot),
         ground=Ground(uphill=radians(options.slope)),
         lake=None if options.lake is None else Lake(level=options.lake),
-        faults=[_fault(text, options.at) for text in options.fault],
+        faults=[_fault(text, trouble.at) for text in options.fault],
         latency=trouble.latency if clocked else 0.0,
     )
     wiring, links = _wired(options)
@@ -156,8 +131,8 @@ def _wired(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
         return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
     check_writable(options.hardware.parent)
     link = options.hardware.parent / f"{options.hardware.stem}.port"
-    place = BusPlace(port=link.name, protocol=options.protocol)
-    return straight(options.robot, [place], MODELS[options.protocol], boards=True), [] if options.socket else [link]
+    place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
+    return straight(options.robot, [place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
 
 
 def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:

@@ -11,6 +11,8 @@ from suchus.control import Sensed
 OK, RANGE, LIMIT, ACCESS = 0, 4, 6, 7  # errors of Dynamixel 2.0
 AMBIENT = 25.0
 """Temperature of the air, at which servos begin [degrees Celsius]."""
+USUAL = {"dynamixel": "XM430-W350", "feetech": "STS3250", "line": "DS3225"}
+"""Servos of an emulated robot for which no hardware is written, by protocol."""
 SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
                 "current": True, "overload": True}  # fmt: skip
 """Which alerts take the torque away, as the makers set them."""
@@ -98,7 +100,7 @@ class EmulatedServo(Device):
     def alert(self) -> int:
         """What an alert adds to the error of every reply."""
         error = self.get("hardware_error")
-        return (ALERT if error else 0) if self.table.protocol == "dynamixel" else error
+        return error if self.table.protocol == "feetech" else (ALERT if error else 0)
 
     def write(self, address: int, data: bytes) -> int:
         """Take bytes by the rules of the servo."""
@@ -108,7 +110,7 @@ class EmulatedServo(Device):
         for one in touched:
             error = self._refused(one, one.decode(data[one.address - address :][: one.size]))
             if error:
-                return error if self.table.protocol == "dynamixel" else OK
+                return OK if self.table.protocol == "feetech" else error
         self.memory[address : address + len(data)] = data
         if any(one.name == "bus_watchdog" for one in touched):
             self.put("bus_watchdog", max(self.get("bus_watchdog"), 0))
@@ -124,6 +126,8 @@ class EmulatedServo(Device):
         if one.address < self.table.persistent and (
             self.get("torque_enable") if "lock" not in self.table else self.get("lock")
         ):
+            return ACCESS
+        if one.name == "bus_watchdog" and self.get("firmware") < self.table.watches_from:
             return ACCESS
         if one.name.startswith("goal_") and "bus_watchdog" in self.table and self.get("bus_watchdog") < 0:
             return ACCESS

@@ -161,8 +161,8 @@ class Emulator:
         return [(device, Packet(packet.id, error | device.alert, answer))]
 
     def _about(self, device: Device) -> bytes:
-        """Return what an answer to a ping tells: Dynamixel the model and the firmware, Feetech nothing."""
-        if device.table.protocol == "feetech":
+        """Return what an answer to a ping tells: Dynamixel the model and the firmware, the others nothing."""
+        if device.table.protocol != "dynamixel":
             return b""
         firmware = device.get("firmware") if "firmware" in device.table else 0
         return device.get("model_number").to_bytes(2, "little") + bytes([firmware])
@@ -224,7 +224,7 @@ class Emulator:
             heating = trouble.heating if on and servo.place.id in trouble.hot else 0.0
             servo.age(period, heating, max(servo.supply - self._sagged, 0.0), now)
             if on and servo.place.id in trouble.wet:
-                servo.fail("electrical shock" if servo.table.protocol == "dynamixel" else "overload")
+                servo.fail("overload" if servo.table.protocol == "feetech" else "electrical shock")
 
     def _feel(self) -> None:
         """Let servos and boards tell what the robot feels, or felt before where that is on its way for long."""

@@ -34,7 +34,7 @@ class Trouble:
     sag: float = 0.0
     """Voltage that the battery loses in a second [V/s]."""
     at: float = 0.0
-    """When servos become mute, hot or wet and the battery begins to sag [s]."""
+    """When servos become mute, hot, wet or broken and the battery begins to sag [s]."""
     seed: int = 0
     """Seed of what is random [-]."""
 

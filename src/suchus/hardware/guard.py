@@ -17,9 +17,9 @@ class DriveLimits:
     """So far below the temperature at which a servo switches itself off people are warned [K]."""
     hot: float = 5.0
     """So far below it the robot is stopped [K]."""
-    load: float = 0.33
-    """Share of its stall torque that a servo may give for long, root mean square over ``memory`` [-]: makers rate a
-    fifth to a third; beyond it people are warned, since heat is what stops."""
+    load: float = 1.0
+    """Share of the torque that a servo can give continuously (``Motor.continuous_torque``), root mean square over
+    ``memory``, from which people are warned [-]; it is heat that stops the robot."""
     memory: float = 10.0
     """Over which the load is averaged [s]."""
     volts: float = 0.0
@@ -35,7 +35,7 @@ class DriveLimits:
         with Checks("drive_limits", self) as check:
             check.number("warm", 0.0, 100.0, "K")
             check.number("hot", 0.0, 100.0, "K")
-            check.number("load", 0.0, 1.0, "")
+            check.number("load", 0.0, 100.0, "")
             check.number("memory", 0.1, 600.0, "s")
             check.number("volts", 0.0, 100.0, "V")
             check.whole("silent", 1, 10000)
@@ -58,7 +58,7 @@ class Guard:
         self._warned: set[str] = set()
         self.warnings: list[str] = []
         """What people should know, each sentence once."""
-        self._stall = np.array([one.table.stall_torque for one in rig.servos])
+        self._continuous = np.array([one.table.continuous_torque for one in rig.servos])
         self._limit = np.array([one.table["temperature_limit"].initial for one in rig.servos])
 
     def look(self, now: RigReading) -> str:
@@ -102,12 +102,11 @@ class Guard:
         keep = np.exp(-self._rig.period / limits.memory)
         square = np.nan_to_num(now.torque) ** 2
         self._square += (1.0 - keep) * (square - self._square)
-        for i in np.flatnonzero(np.sqrt(self._square) > limits.load * self._stall):
+        for i in np.flatnonzero(np.sqrt(self._square) > limits.load * self._continuous):
             self.tell(
                 f"load {names[i]}",
-                f"{names[i]} gives {np.sqrt(self._square[i]):.2f} N m for long, more than {limits.load:.0%} of its "
-                "stall "
-                f"torque of {self._stall[i]:g} N m: it will get hot.",
+                f"{names[i]} gives {np.sqrt(self._square[i]):.2f} N m for long, and can give "
+                f"{self._continuous[i]:g} N m continuously: it will get hot.",
             )
         for i in np.flatnonzero(now.temperature >= self._limit - limits.warm):
             self.tell(

@@ -433,11 +433,11 @@ def _cord(robot: Robot, cable: Cable) -> Cord:
     if tail is None or not tail.cabled or cable.hinges != tail.driven:
         half = cable.cord_spacing / 2
         bent = np.linspace(0.0, cable.bend_limit, _STEPS).tolist()
-        straight = tuple((b, b * half / cable.pulley, -b * half, b * half) for b in bent)
+        straight = tuple((b, b * half / cable.pulley, 0.0 - b * half, b * half) for b in bent)
         return Cord(name=cable.name, section=nan, travel=cable.bend_limit * half, table=straight)
     most = min(cable.bend_limit, bend_limit(tail))
     bends = np.linspace(0.0, most, _STEPS)
-    toward, away = cable_changes(tail, bends)
+    toward, away = (change + 0.0 for change in cable_changes(tail, bends))  # no -0
     turns = servo_angle(tail, bends)
     table = tuple(zip(bends.tolist(), turns.tolist(), toward.tolist(), away.tolist(), strict=True))
     return Cord(name=cable.name, section=tail.joints * tail.pitch, travel=float(-toward[-1]), table=table)

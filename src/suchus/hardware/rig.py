@@ -36,7 +36,6 @@ TRIED = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 """Bit rates at which servos are looked for that do not answer at the one that the file names [1/s]."""
 PATIENT = 0.1
 """How long a reply is waited for before anything moves [s]: long enough for a computer that does other things too."""
-_EMPTY = Packet(0, 0)
 _AGAIN = 8  # times that a question is asked before the robot moves: a tenth of all packets may be lost
 _LEAST = 0.25  # share of the wait that must be left of a tick, or a board be given, to ask more than the servos
 _WATCHDOG = 5  # steps of 20 ms
@@ -169,6 +168,7 @@ class Rig:
             heard=np.zeros(count, dtype=bool),
             age=np.zeros(count, dtype=int),
         )
+        self._watched = np.array(["bus_watchdog" in one.table for one in self.servos])
         self.jumps = np.zeros(count, dtype=int)
         """How often in a row a servo said that it is where it cannot be, shape (servo,) [-]."""
 
@@ -198,15 +198,14 @@ class Rig:
         """Return the bytes on a bus in a tick, and how many replies are among them."""
         place = self.wiring.bus[number]
         framing, members = FRAMINGS[place.protocol], self._members[number]
-        frame = len(framing.reply(_EMPTY))
         total = answers = 0
         if members:
             table = self.servos[members[0]].table
             length = table.block(table.felt)[1]
             goal = table["goal_position"]
             ids = [self.servos[i].id for i in members]
-            total += len(framing.sync_read(ids, 0, length)) + len(members) * (frame + length)
-            total += len(framing.sync_write(goal.address, {one: bytes(goal.size) for one in ids}))
+            total += len(framing.sync_read(ids, 0, length)) + len(members) * len(framing.reply(_typical(length)))
+            total += len(framing.sync_write(goal.address, {one: _typical(goal.size).data for one in ids}))
             answers += len(members)
         extra = [self._bytes_of(number, one) for one in self._turns[number]]
         asked = [self._bytes_of(number, one) for one in self._always[number]] + ([max(extra)] if extra else [])
@@ -217,10 +216,10 @@ class Rig:
         framing = FRAMINGS[self.wiring.bus[number].protocol]
         if isinstance(one, BoardPlace):
             table = self.wiring.tables(one, self.robot)
-            return len(framing.sync_read((one.id,), 0, 1)) + len(framing.reply(_EMPTY)) + table.block(table.felt)[1]
+            return len(framing.sync_read((one.id,), 0, 2)) + len(framing.reply(_typical(table.block(table.felt)[1])))
         health = self.servos[one].table.health
         assert health is not None
-        return len(framing.read(1, 0, 1)) + len(framing.reply(_EMPTY)) + self.servos[one].table.block(health)[1]
+        return len(framing.read(1, 0, 2)) + len(framing.reply(_typical(self.servos[one].table.block(health)[1])))
 
     def _check_time(self) -> None:
         for number, place in enumerate(self.wiring.bus):
@@ -341,7 +340,11 @@ class Rig:
                     f"{one.name}, number {one.id}, is not in its mode for positions: set its operating mode to "
                     f"{one.table['operating_mode'].initial} with its maker's program."
                 )
-            if "bus_watchdog" not in one.table or self._read(bus, i, "firmware") < 38:
+            self._check_range(bus, i)
+            self._watched[i] = "bus_watchdog" in one.table and (
+                self._read(bus, i, "firmware") >= one.table.watches_from
+            )
+            if not self._watched[i]:
                 said.append(one.name)
         total, answers = self.bytes_per_tick(number)
         seconds = total * BITS / self.wiring.bus[number].baud + delay
@@ -359,9 +362,24 @@ class Rig:
             return [
                 f"{said[0] if len(said) == 1 else f'{len(said)} servos'} on {bus.port.name} would hold the last goal "
                 "with "
-                "full torque if this computer died: these models have no watchdog. Put a relay into their supply."
+                "full torque if this computer died: they have no watchdog, or too old a firmware for it (Dynamixel X: "
+                "from 38). Renew the firmware, or put a relay into their supply."
             ]
         return []
+
+    def _check_range(self, bus: Bus, i: int) -> None:
+        """Refuse a servo that would not go where its file sends it, since its own limits are narrower."""
+        one = self.servos[i]
+        low, high = (self._read(bus, i, name) for name in ("position_low", "position_high"))
+        if low == high == 0:  # how Feetech says that there are none
+            return
+        ends = sorted(one.zero + one.sign * round(angle / self.steps.unit) for angle in (one.low, one.high))
+        if ends[0] < low or ends[1] > high:
+            raise BusFailure(
+                f"{one.name}, number {one.id}, takes goals from {low} to {high} steps, and the file sends it from "
+                f"{ends[0]} to {ends[1]}: its zero is wrong, or set its position limits "
+                f"({one.table['position_low'].address} and {one.table['position_high'].address}) anew."
+            )
 
     def _read(self, bus: Bus, i: int, register: str) -> int:
         one = self.servos[i]
@@ -509,7 +527,9 @@ class Rig:
         """Give all servos their torque where they are, and be sure of it; return where they were sent [rad]."""
         everybody = range(len(self.servos))
         steps = self.steps.of(goals)
-        self.surely("bus_watchdog", dict.fromkeys(everybody, 0))  # ends an older one, which would keep goals away
+        self.surely(
+            "bus_watchdog", dict.fromkeys(np.flatnonzero(self._watched).tolist(), 0)
+        )  # ends an older one, which would keep goals away
         self.surely("goal_position", dict(enumerate(steps.tolist())))
         self.surely("torque_limit", {i: one.table.full for i, one in enumerate(self.servos)})
         self.surely("torque_enable", dict.fromkeys(everybody, 1))
@@ -518,13 +538,12 @@ class Rig:
     @property
     def patience(self) -> float:
         """Time without a word from us after which a servo that watches stands still and takes no goals [s]."""
-        able = [one.table["bus_watchdog"].unit for one in self.servos if "bus_watchdog" in one.table]
-        return _WATCHDOG * min(able, default=np.inf)
+        units = (self.servos[i].table["bus_watchdog"].unit for i in np.flatnonzero(self._watched))
+        return _WATCHDOG * min(units, default=np.inf)
 
     def watch(self, on: bool) -> None:
         """Let servos that can watch whether their host is there, or let them rest."""
-        able = [i for i, one in enumerate(self.servos) if "bus_watchdog" in one.table]
-        self.write("bus_watchdog", dict.fromkeys(able, _WATCHDOG if on else 0))
+        self.write("bus_watchdog", dict.fromkeys(np.flatnonzero(self._watched).tolist(), _WATCHDOG if on else 0))
 
     def surely(self, register: str, values: dict[int, int]) -> None:
         """Write a register of some servos one after the other, until each says that it has it.
@@ -560,6 +579,11 @@ class Rig:
 JUMPS = 3
 """How often in a row a reading may be refused since nothing moves so fast, before it is believed and the robot stopped
 [-]."""
+
+
+def _typical(length: int) -> Packet:
+    """Return a reply with so many bytes of data; what it says counts where numbers are written out."""
+    return Packet(200, 0, STEPS.to_bytes(2, "little") * (length // 2) + bytes(length % 2))
 
 
 def _listed(wanted: dict[int, str], which: Sequence[int]) -> str:

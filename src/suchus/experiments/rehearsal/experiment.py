@@ -13,7 +13,7 @@ from suchus.bus import BusPlace, Wiring, straight
 from suchus.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
 from suchus.design import Robot
 from suchus.design.checks import Checks
-from suchus.emulator import EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.emulator import USUAL, EmulatedBody, Emulator, MemoryPort, Trouble
 from suchus.errors import Diverged
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -24,8 +24,6 @@ from suchus.metrics import displacement, heading_change
 from suchus.motion import START, Gait
 from suchus.robots import ROBOTS
 
-MODELS = {"dynamixel": "XM430-W350", "feetech": "STS3250"}
-"""Servos of the emulated robot, by protocol."""
 RULES = ("open", "closed", "steered", "pattern")
 LOSES = 0.02
 """Share of its displacement from whose loss on a rule is flagged [-]; a real walk scatters by about as much."""
@@ -75,7 +73,7 @@ def rehearse(
         trouble: of the wire; none by default.
         built: how the robot is built, where that is not as its wiring says.
     """
-    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], MODELS[protocol], boards=True)  # type: ignore[arg-type]
+    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], USUAL[protocol], boards=True)  # type: ignore[arg-type]
     trouble = trouble or Trouble()
     emulator = Emulator(built or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, clocked=True)
     rig = Rig(robot, wiring, [MemoryPort(emulator)], clocked=True)
@@ -136,7 +134,7 @@ class Rehearsal(Experiment):
         with Checks(self.name(), self) as check:
             check.number("cycles", 0.1, 100.0, "")
             check.number("rule_cycles", 0.1, 100.0, "")
-            for name, known in (("protocols", MODELS), ("controls", RULES)):
+            for name, known in (("protocols", USUAL), ("controls", RULES)):
                 unknown = [one for one in getattr(self, name) if one not in known]
                 check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(known)}")
             check.that(bool(self.protocols), f"{self.name()}.protocols is empty; one at least is needed")
