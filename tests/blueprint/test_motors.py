@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.blueprint import MistakenFile, motor, motors, read_motors, render
+from suchus.blueprint import MistakenFile, read_motors, render
 from suchus.design import LINE, Motor, Servo, Winding
 from suchus.design.motor import COPPER, ROOM
 from suchus.errors import InvalidDesign, UnknownName, UnreadableFile
+from suchus.motors import motor, motors
 
 WORDS = {"name", "maker", "family", "protocol", "protection", "sources"}
 

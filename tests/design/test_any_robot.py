@@ -1,13 +1,26 @@
 """Any robot as data: what is refused, how it is laid out, and how it scales."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import Cable, Hinge, Inertia, Spring, check_needs, crocodile, layout, servo_names, servo_ranges
+from suchus import blueprint
+from suchus.design import (
+    Cable,
+    Hinge,
+    Inertia,
+    Robot,
+    Spring,
+    check_needs,
+    crocodile,
+    layout,
+    servo_names,
+    servo_ranges,
+)
 from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -208,8 +221,9 @@ def test_each_unit_scales_by_its_powers():
         scaled(CAIMAN, length_factor=0.0)
 
 
-def test_the_rules_give_back_the_articles_servo():
-    rule, own = servo_for(CAIMAN.mass, CAIMAN.length), CAIMAN.hind_leg.servo
+def test_the_rules_give_back_the_servo_that_the_articles_robot_had_before_it_was_bought():
+    former = blueprint.read(Path(__file__).parents[2] / "examples" / "former_caiman.toml", Robot, ROBOTS)
+    rule, own = servo_for(CAIMAN.mass, CAIMAN.length), former.hind_leg.servo
     for name in ("kp", "kd", "torque", "speed", "armature", "damping"):
         assert getattr(rule, name) == pytest.approx(getattr(own, name), rel=0.1), name
 

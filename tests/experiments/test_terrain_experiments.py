@@ -27,7 +27,7 @@ def rough(quick_outcome):
 
 
 def test_slower_cycles_walk_slower_and_cheaper(speeds):
-    walked = speeds.record.sel(servo_model="slew")
+    walked = speeds.record.sel(servo_model="own")
     assert (walked.speed.diff("slower") < 0).all()
     assert (walked.cost.diff("slower") < 0).all()
 
@@ -44,10 +44,10 @@ def test_froude_number_and_duty_factor_fit_the_gaits(speeds):
 
 def test_a_speed_line_costs_no_speed_and_does_not_change_the_work_out_of_reason(speeds):
     """A DC motor's torque falls with its speed; the robot walks as fast, and its shafts do work of the same size."""
-    slew, line = (speeds.record.sel(servo_model=model) for model in ("slew", "line"))
-    assert line.speed.values == pytest.approx(slew.speed.values, rel=0.08)
-    assert (line.cost != slew.cost).all()
-    assert ((line.cost > 0.5 * slew.cost) & (line.cost < 2.0 * slew.cost)).all()
+    line, full = (speeds.record.sel(servo_model=model) for model in ("own", "other"))
+    assert line.speed.values == pytest.approx(full.speed.values, rel=0.08)
+    assert (line.cost != full.cost).all()
+    assert ((line.cost > 0.5 * full.cost) & (line.cost < 2.0 * full.cost)).all()
 
 
 def test_animals_are_named_beside_their_speed_and_a_short_run_is_not_judged(speeds):
@@ -61,7 +61,7 @@ def test_animals_are_named_beside_their_speed_and_a_short_run_is_not_judged(spee
 def test_other_gaits_than_the_high_walk_are_measured_too():
     record = xr.Dataset(
         {name: (("gait", "servo_model", "slower"), np.full((1, 2, 1), 0.2)) for name in _UNITS},
-        coords={"gait": ["low_crawl"], "servo_model": ["slew", "line"], "slower": [1.0]},
+        coords={"gait": ["low_crawl"], "servo_model": ["own", "other"], "slower": [1.0]},
     )
     experiment = replace(EXPERIMENTS["speed_range"], gaits=(GAITS["low_crawl"],), slower=(1.0,))
     assert experiment.measure(record)["speed_low_crawl"].value == 0.2

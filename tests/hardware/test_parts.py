@@ -9,7 +9,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.blueprint import motor
 from suchus.design import Servo, layout, with_servos
 from suchus.hardware import commands, straight, trajectory_text
 from suchus.hardware.outlines import CORD_HOLE, plates_dxf, stl, top_dxf
@@ -17,6 +16,7 @@ from suchus.hardware.parts import area, sheet
 from suchus.hardware.ros import PLUGIN, controllers, described, note
 from suchus.kinematics.tail import cable_changes
 from suchus.model import compile_model
+from suchus.motors import motor
 from suchus.paper.tables import LEG_CHAIN, SPINE_CHAIN
 from suchus.report.building_sheet import floats_said, mass_said, printed, tables
 from suchus.robots import ROBOTS

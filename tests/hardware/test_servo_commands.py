@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.blueprint import MistakenFile, motor
+from suchus.blueprint import MistakenFile
 from suchus.design import Servo, cable_joints, crocodile, layout, servo_names, with_named_servos
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.gaits import own_gait
@@ -33,6 +33,7 @@ from suchus.hardware import (
 from suchus.kinematics.tail import servo_angle
 from suchus.model.export.urdf import urdf
 from suchus.motion import START, intended
+from suchus.motors import motor
 from suchus.robots import ROBOTS
 
 STRAIGHT = straight(ROBOTS["caiman"])

@@ -8,7 +8,6 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
-from suchus.blueprint import motor
 from suchus.design import Servo, layout, servo_names, with_servos
 from suchus.design.motor import COPPER
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
@@ -17,6 +16,7 @@ from suchus.hardware import cases, fitted, loads_of_each, share_at_limit, size, 
 from suchus.hardware.loads import FULL_WOUND, borne, given_in, use_of_each
 from suchus.hardware.sizing import FACTORS, does, families_of, places, use
 from suchus.land import Limp
+from suchus.motors import motor
 from suchus.robots import ROBOTS
 
 STS = motor("STS3250")

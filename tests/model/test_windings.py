@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.blueprint import motor
 from suchus.design import LINE, Servo, with_servos, with_speed_lines
 from suchus.design.motor import COPPER, ROOM
 from suchus.errors import InvalidDesign
@@ -18,6 +17,7 @@ from suchus.land.batch import Beginning
 from suchus.land.loop import Loop
 from suchus.model import activations, compile_model, warming
 from suchus.model.export.mjcf import mjcf
+from suchus.motors import motor
 
 COARSE = 0.005
 STS = motor("STS3250")

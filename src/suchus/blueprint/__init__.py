@@ -2,7 +2,7 @@
 
 from suchus.blueprint.gaits import read_gait
 from suchus.blueprint.mistakes import MistakenFile
-from suchus.blueprint.motors import motor, motors, read_motors
+from suchus.blueprint.motors import read_motors
 from suchus.blueprint.read import described, described_robot, read
 from suchus.blueprint.write import render, write
 
@@ -10,8 +10,6 @@ __all__ = [
     "MistakenFile",
     "described",
     "described_robot",
-    "motor",
-    "motors",
     "read",
     "read_gait",
     "read_motors",

@@ -11,9 +11,9 @@ from math import pi
 from types import MappingProxyType
 from typing import Literal
 
-from suchus.blueprint import motors
 from suchus.design import Motor
 from suchus.errors import UnknownName
+from suchus.motors import motors
 
 Sign = Literal["none", "two", "bit"]
 BusProtocol = Literal["dynamixel", "feetech", "line"]
@@ -295,7 +295,7 @@ _SERIES: Mapping[str, Callable[[Motor], Table]] = {"dynamixel": _x_series, "feet
 TABLES: Mapping[str, Table] = MappingProxyType(
     {name: _SERIES[motor.protocol](motor) for name, motor in motors().items() if motor.protocol in _SERIES}
 )
-"""The servos that we speak with, by the names of ``blueprint.motors``."""
+"""The servos that we speak with, by the names of ``suchus.motors``."""
 
 
 def _board(model: str, number: int, protocol: BusProtocol, registers: tuple[Register, ...]) -> Table:

@@ -1,7 +1,8 @@
 """One set of numbers for every size: what follows from a body's mass and length alone.
 
 With the mass M, the length L and the time T = sqrt(L / g), everything that is neither an angle nor a share scales; the
-coefficients are those of the article's robot. A salamander of 3 g and a body of 60 kg then walk alike.
+coefficients are those of the article's robot, for servos before they were bought (``examples/former_caiman.toml``). A
+salamander of 3 g and a body of 60 kg then walk alike.
 """
 
 import re

@@ -8,7 +8,7 @@ from suchus.motion import GaitInMetres
 
 gait = GaitInMetres(
     name="high_walk",
-    period=0.8,
+    period=1.4,
     duty_factor=0.68,
     limb_phases=(0.0, 0.5, 0.44, -0.06),
     stroke=0.040,
@@ -29,13 +29,18 @@ gait = GaitInMetres(
 
 _AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls 3 instead of 7 degrees"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
-    ("period", 0.6, 1.4, "0.27 m/s at 0.6 s, 0.11 m/s at 1.4 s; shorter ones ask joints for more than 8 rad/s"),
+    (
+        "period",
+        1.3,
+        2.4,
+        "0.11 m/s at 1.4 s, 0.06 m/s at 2.4 s; in shorter ones knees reach what their servos can give",
+    ),
     ("limb_phases[0]", 0.0, 0.0, "phases count from the left front foot"),
     ("limb_phases[1]", 0.5, 0.5, "left and right alternate, as in the article's diagonal gait"),
     ("limb_phases[2]", 0.375, 0.5, _AFTER),
     ("limb_phases[3]", -0.125, 0.0, _AFTER),
     ("duty_factor", 0.65, 0.72, "below 0.65 the body rolls more than 9 degrees; longer stance asks for faster swings"),
-    ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask the knee for more than 8 rad/s"),
+    ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask more speed of the knee than its servo has"),
     ("lift", 0.022 / FRONT, 0.045 / FRONT, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
     ("limbs[0].outward", 0.0, 0.0, "erect feet stand below their hips"),
     ("limbs[1].outward", 0.0, 0.0, "erect feet stand below their hips"),

@@ -6,7 +6,6 @@ from math import nan, pi
 
 import numpy as np
 
-from suchus.blueprint import motors as shipped
 from suchus.design import Cable, Motor, Robot, Rod, Servo, layout
 from suchus.design.body import servos_of
 from suchus.design.checks import require
@@ -15,6 +14,7 @@ from suchus.design.physics import WATER_DENSITY
 from suchus.design.pieces import foam_centres, volumes
 from suchus.kinematics.tail import bend_limit, cable_changes, servo_angle
 from suchus.kinematics.tree import body_masses, centre_of_mass, frames
+from suchus.motors import motors as shipped
 
 PLASTIC = 1240.0
 """Density of printed plastic (PLA) [kg/m3]."""

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.blueprint import motors as shipped
 from suchus.design import Motor, Robot, Servo, layout, with_named_servos
 from suchus.design.scale import coarse_step
 from suchus.errors import InvalidDesign, UnknownName
@@ -24,6 +23,7 @@ from suchus.hardware.loads import (
     records_of_each,
     strong,
 )
+from suchus.motors import motors as shipped
 from suchus.progress import Progress, silent, staged
 
 FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)

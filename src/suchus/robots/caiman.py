@@ -6,25 +6,22 @@ A number without a source beside it is chosen: ``chosen`` says why, and how far 
 from math import pi, radians
 
 from suchus.design import Chosen, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
+from suchus.motors import motor
 
-_KP, _KD, _SPEED = 40.0, 0.6, 7.0
-
-
-def _servo(torque: float) -> Servo:
-    return Servo(
-        kp=_KP,
+_servo = Servo.of(
+    motor("STS3250"),
+    like=Servo(
+        kp=40.0,
         ki=0.0,
-        kd=_KD,
+        kd=0.6,
         integral_limit=0.5,
-        torque=torque,
-        speed=_SPEED,
+        torque=4.9,
+        speed=7.0,
         armature=0.005,
         friction=0.03,
         damping=0.05,
-    )
-
-
-_LIMB_SERVO, _TRUNK_SERVO = _servo(3.0), _servo(4.0)
+    ),
+)
 
 _hind_leg = Leg(
     hip_offset=0.070,  # Table I, a0
@@ -36,7 +33,7 @@ _hind_leg = Leg(
     yaw_range=(radians(-100), radians(100)),
     pitch_range=(radians(-75), radians(150)),
     knee_range=(radians(-140), radians(140)),
-    servo=_LIMB_SERVO,
+    servo=_servo,
 )
 _FORE = 0.9  # fore legs of crocodilians are 0.8 to 0.9 of the hind legs
 _front_leg = Leg(
@@ -49,7 +46,7 @@ _front_leg = Leg(
     yaw_range=_hind_leg.yaw_range,
     pitch_range=_hind_leg.pitch_range,
     knee_range=_hind_leg.knee_range,
-    servo=_LIMB_SERVO,
+    servo=_servo,
 )
 
 tables = Tables(
@@ -64,8 +61,8 @@ tables = Tables(
         link_mass=0.18,
         yaw_range=(radians(-45), radians(45)),
         pitch_range=(radians(-60), radians(60)),
-        yaw_servo=_servo(2.5),
-        pitch_servo=_TRUNK_SERVO,
+        yaw_servo=_servo,
+        pitch_servo=_servo,
     ),
     thorax=Thorax(mass=0.38, shoulder=0.050, width=0.100, height=0.060),
     head=Head(mass=0.22, snout=0.2125, width=0.080, height=0.045),
@@ -89,8 +86,8 @@ tables = Tables(
         mass=0.45,
         pitch_range=(radians(-70), radians(60)),
         bend_limit=pi / 2,
-        pitch_servo=_servo(2.5),
-        cable_servo=_servo(2.5),
+        pitch_servo=_servo,
+        cable_servo=_servo,
     ),
     contact=Contact(foot_friction=0.8, skin_friction=0.4, time_constant=0.02),
 )
@@ -99,6 +96,7 @@ robot = crocodile(tables)
 """The article's robot."""
 
 _PID = "1 to 2 degrees of static droop in stance, damping close to critical; integral action would wind up in stance"
+_BOUGHT = "from an STS3215 for 12 V on three empty cells to an STS3250 on three full ones"
 _CASE = "room for a hobby servo's case, and a belly that clears the ground in the crawl"
 _FORE_LEG = "the article gives the hind leg only; crocodilians' fore legs are 0.8 to 0.9 as long"
 _FOLD = "the legs can fold under the body for erect postures, and a 270 degree servo turns that far"
@@ -107,16 +105,16 @@ _BRACKET = "what brackets of this size allow, and what rising needs"
 _Row = tuple[str, float, float, str]
 
 
-def _servo_rows(path: str, low: float, high: float, why: str) -> tuple[_Row, ...]:
+def _servo_rows(path: str, asked: str) -> tuple[_Row, ...]:
     return (
-        (f"{path}.torque", low, high, why),
+        (f"{path}.torque", 2.4, 5.2, f"{_BOUGHT}; {asked}"),
+        (f"{path}.speed", 3.9, 8.3, f"{_BOUGHT}, which turn slower by the same share"),
         (f"{path}.kp", 20.0, 80.0, _PID),
         (f"{path}.ki", 0.0, 20.0, _PID),
         (f"{path}.kd", 0.3, 1.2, _PID),
         (f"{path}.integral_limit", 0.1, 1.0, "unused while ki is zero"),
-        (f"{path}.speed", 5.0, 10.0, "no-load speed of a hobby servo of this torque class"),
         (f"{path}.armature", 0.002, 0.01, "rotor inertia times the square of a 250:1 gear of that class"),
-        (f"{path}.friction", 0.01, 0.1, "about 1 % of the torque limit"),
+        (f"{path}.friction", 0.01, 0.1, "about 1 % of the torque at standstill"),
         (f"{path}.damping", 0.01, 0.1, "a gear of that class, driven backward"),
     )
 
@@ -129,10 +127,10 @@ def _leg_rows(path: str) -> tuple[_Row, ...]:
             f"{path}.mass",
             0.15,
             0.30,
-            "three 60 g servos and brackets; an isometric alligator of this length has 3.1 kg",
+            "three servos of 75 g and brackets; an isometric alligator of this length has 3.1 kg",
         ),
         *((f"{path}.{joint}_range[{i}]", -2.5, 2.7, _FOLD) for joint in ("yaw", "pitch", "knee") for i in (0, 1)),
-        *_servo_rows(f"{path}.servo", 2.0, 4.0, "1.3 N m in the crawl, 2.6 N m at the hip when the robot rises"),
+        *_servo_rows(f"{path}.servo", "1.3 N m in the crawl, 2.6 N m at the hip when the robot rises"),
     )
 
 
@@ -152,10 +150,10 @@ _ROWS: tuple[_Row, ...] = (
     ("pelvis.width", 0.08, 0.14, _CASE),
     ("pelvis.height", 0.05, 0.08, _CASE),
     ("spine.radius", 0.025, 0.04, _CASE),
-    ("spine.link_mass", 0.12, 0.25, "two 60 g servos and a bracket"),
+    ("spine.link_mass", 0.12, 0.25, "two servos of 75 g and a bracket"),
     *((f"spine.{axis}_range[{i}]", -1.3, 1.3, _BRACKET) for axis in ("yaw", "pitch") for i in (0, 1)),
-    *_servo_rows("spine.yaw_servo", 1.5, 4.0, "the crawl asks for 2.5 N m at the peaks"),
-    *_servo_rows("spine.pitch_servo", 2.5, 5.0, "lifting the level forebody asks for 3.1 N m at the first pitch joint"),
+    *_servo_rows("spine.yaw_servo", "the crawl asks for 2.5 N m at the peaks"),
+    *_servo_rows("spine.pitch_servo", "lifting the level forebody asks for 3.1 N m at the first pitch joint"),
     ("thorax.mass", 0.30, 0.45, "with the head at most 0.6 kg, or the trunk's servos cannot lift it"),
     ("thorax.shoulder", 0.03, 0.07, "the shoulders clear the last joint"),
     ("thorax.width", 0.08, 0.14, _CASE),
@@ -211,8 +209,8 @@ _ROWS: tuple[_Row, ...] = (
     ),
     *((f"tail.pitch_range[{i}]", -1.3, 1.3, _BRACKET) for i in (0, 1)),
     ("tail.bend_limit", 1.0, 2.4, "15 degrees a joint"),
-    *_servo_rows("tail.pitch_servo", 1.5, 4.0, "rising asks for 1.9 N m"),
-    *_servo_rows("tail.cable_servo", 1.5, 4.0, "bending against ground and springs asks for 1 N m"),
+    *_servo_rows("tail.pitch_servo", "rising asks for 1.9 N m"),
+    *_servo_rows("tail.cable_servo", "bending against ground and springs asks for 1 N m"),
     ("contact.foot_friction", 0.5, 1.0, "rubber on a floor"),
     ("contact.skin_friction", 0.2, 0.6, "plastic on a floor"),
     ("contact.time_constant", 0.01, 0.03, "a rubber sole; displacement within 1 % over the range"),

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from suchus import rotation
-from suchus.design import GRAVITY, Robot, Rod, Segment, layout
+from suchus.design import GRAVITY, Robot, Rod, Segment, Servo, layout
+from suchus.design.body import servos_of
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_leg_servos, with_speed_line
@@ -40,13 +41,15 @@ from suchus.robots import ROBOTS
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it
 _THICK, _THIN = 2.0, 0.9
-_SERVOS = ("servos of equal torque at any speed", "servos whose torque falls with speed")
+_FULL, _LINE = "servos of equal torque at any speed", "servos whose torque falls with speed"
 _WALKING = ANIMAL["high_walk_speed"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpeedRange(Experiment):
-    """Every gait at several cycle times, on the robot as it is and with a torque-speed line in its legs' servos.
+    """Every gait at several cycle times, on the robot as it is and with the other model of its legs' servos.
+
+    The other model of a servo whose torque falls with speed gives its full torque at any speed, and the reverse.
 
     Measured over whole cycles from the second on; the speed is that of the centre of mass along the initial heading,
     the Froude number speed squared over gravity times hip height, without a number for a table of angles, which says no
@@ -73,7 +76,7 @@ class SpeedRange(Experiment):
         default_factory=lambda: tuple(GAITS[n] for n in ("belly_crawl", "low_crawl", "semi_erect", "high_walk"))
     )
     """The gaits that it walks in."""
-    slower: tuple[float, ...] = (0.6, 0.75, 0.875, 1.0, 1.3, 1.8)
+    slower: tuple[float, ...] = (0.35, 0.45, 0.6, 0.75, 1.0, 1.3, 1.8)
     """Factors on the cycle time of each gait [-]."""
     cycles: int = 3
     """Number of cycles that are measured, after one more [-]."""
@@ -134,17 +137,19 @@ class SpeedRange(Experiment):
 
     def _walked(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
         """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
-        robots = (self.robot, _limited(self.robot))
-        runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for robot in robots for s in slower]
         longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
-        walked = simulate(
-            runs,
-            duration=float(np.ceil(round(longest / period, 6)) * period),
-            timestep=self.timestep,
-            progress=progress,
-        )
-        looked = [self._look(walked.isel(run=j), run) for j, run in enumerate(runs)]
-        return np.array(looked).reshape(2, len(slower), len(_UNITS)), walked.isel(run=0)
+        looked, shown = [], []
+        for i, robot in enumerate((self.robot, with_leg_servos(self.robot, _other))):
+            runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for s in slower]
+            walked = simulate(
+                runs,
+                duration=float(np.ceil(round(longest / period, 6)) * period),
+                timestep=self.timestep,
+                progress=staged(progress, "", 0.5 * i, 0.5 * i + 0.5),
+            )
+            looked.append([self._look(walked.isel(run=j), run) for j, run in enumerate(runs)])
+            shown.append(walked.isel(run=0))
+        return np.array(looked), shown[0]
 
     def _look(self, walked: xr.Dataset, run: Run) -> list[float]:
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
@@ -171,7 +176,7 @@ class SpeedRange(Experiment):
             {name: (dims, values[..., i], {"units": unit}) for i, (name, unit) in enumerate(_UNITS.items())},
             coords={
                 "gait": [gait.name for gait in self.gaits],
-                "servo_model": ["slew", "line"],
+                "servo_model": ["own", "other"],
                 "slower": list(self.slower),
             },
         )
@@ -184,15 +189,15 @@ class SpeedRange(Experiment):
         usual = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
         for name in record.gait.values:
             both = record.sel(gait=name)
-            slew, line = (both.sel(servo_model=model) for model in ("slew", "line"))
-            usual_cycle = slew.isel(slower=usual)
+            own, other = (both.sel(servo_model=model) for model in ("own", "other"))
+            usual_cycle = own.isel(slower=usual)
             measures |= {
                 f"speed_{name}": Measure(float(usual_cycle.speed), "m/s"),
-                f"speed_{name}_speed_line": Measure(float(line.isel(slower=usual).speed), "m/s"),
-                **ranged(f"speed_{name}_slowest", slew.speed.min(), both.speed.min("slower"), "m/s"),
-                **ranged(f"speed_{name}_fastest", slew.speed.max(), both.speed.max("slower"), "m/s"),
+                f"speed_{name}_other_servos": Measure(float(other.isel(slower=usual).speed), "m/s"),
+                **ranged(f"speed_{name}_slowest", own.speed.min(), both.speed.min("slower"), "m/s"),
+                **ranged(f"speed_{name}_fastest", own.speed.max(), both.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
-                f"cost_{name}_least": Measure(float(slew.cost.min()), "-"),
+                f"cost_{name}_least": Measure(float(own.cost.min()), "-"),
                 f"duty_{name}": Measure(float(usual_cycle.duty), "-"),
                 f"froude_{name}": Measure(float(usual_cycle.froude), "-"),
                 f"roll_{name}": Measure(float(usual_cycle.rolled), "rad"),
@@ -202,25 +207,34 @@ class SpeedRange(Experiment):
         measures["animals_high_walk_slowest"] = Measure(animals.low, "m/s")
         measures["animals_high_walk_fastest"] = Measure(animals.high, "m/s")
         if "high_walk" in record.gait.values:
-            high = record.sel(gait="high_walk", servo_model="slew")
+            high = record.sel(gait="high_walk", servo_model="own")
             measures["tail_touches_high_walk"] = Measure(float(high.tail_touches.mean()), "-")
             measures |= ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how fast and how dear each gait is, and what a torque-speed line changes."""
+        """Say how fast and how dear each gait is, and what the other model of the servos changes."""
         names = [gait.name for gait in self.gaits]
         return self.told(
             measures,
             fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
             cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
-            changed=max(abs(measures[f"speed_{name}_speed_line"] / measures[f"speed_{name}"] - 1.0) for name in names),
+            falls=_falls(self.robot),
+            changed=max(
+                abs(measures[f"speed_{name}_other_servos"] / measures[f"speed_{name}"] - 1.0) for name in names
+            ),
             animals=ANIMAL["high_walk_speed"].who,
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speed, cost, duty factor and Froude number over cycle time."""
-        return {"speed_range": draw_speed_range(outcome.record, gait_lines(outcome.record.gait.values))}
+        return {
+            "speed_range": draw_speed_range(
+                outcome.record,
+                gait_lines(outcome.record.gait.values),
+                (_LINE, _FULL) if _falls(self.robot) else (_FULL, _LINE),
+            )
+        }
 
 
 _UNITS = {
@@ -236,9 +250,15 @@ _UNITS = {
 }
 
 
-def _limited(robot: Robot) -> Robot:
-    """Return the robot with a torque-speed line in its legs' servos."""
-    return with_leg_servos(robot, with_speed_line)
+def _other(servo: Servo) -> Servo:
+    """Return a servo with a torque-speed line if it has none, else with its full torque at any speed."""
+    return with_speed_line(servo) if servo.winding is None else replace(servo, winding=None)
+
+
+def _falls(robot: Robot) -> bool:
+    """Return whether the torque of all servos of its limbs falls with their speed."""
+    place, servos = layout(robot), servos_of(robot)
+    return all(servos[name].winding is not None for limb in place.limbs for name in place.servos[limb.servos])
 
 
 def _lying(robot: Robot, part: xr.Dataset) -> float:
@@ -275,8 +295,8 @@ def _radii(segments: Sequence[Segment], along: np.ndarray) -> np.ndarray:
     return np.maximum(found, 0.0)
 
 
-def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw speed, cost, duty factor and Froude number over cycle time, the servos with a speed line thinly."""
+def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]], servos: tuple[str, str]) -> Figure:
+    """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly."""
     with styled():
         figure, axes = panels(2, 2, width=9.6, height=8.0, sharex=True)
         rows = (
@@ -287,14 +307,14 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
         )
         for ax, (name, label, scale) in zip(axes.flat, rows, strict=True):
             for gait in record.gait.values:
-                for model, width in (("line", _THIN), ("slew", _THICK)):
+                for model, width in (("other", _THIN), ("own", _THICK)):
                     of_gait = record.sel(gait=gait, servo_model=model)
-                    style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "line" else 6}
-                    if model == "line":
-                        style |= {"label": f"_{style['label']}, {_SERVOS[1]}", "alpha": 0.7}
+                    style = dict(lines[str(gait)]) | {"linewidth": width, "markersize": 3 if model == "other" else 6}
+                    if model == "other":
+                        style |= {"label": f"_{style['label']}, {servos[1]}", "alpha": 0.7}
                     ax.plot(of_gait.period, scale * of_gait[name], **style)
             ax.set_xscale("log")
-            ax.set_xticks([0.5, 1, 2, 4], ["0.5", "1", "2", "4"])
+            ax.set_xticks([0.5, 1, 2, 4, 8], ["0.5", "1", "2", "4", "8"])
             ax.minorticks_off()
             ax.set_ylabel(label)
         band = axes[0, 0].axhspan(_WALKING.low, _WALKING.high, color="#EFE3C8", zorder=0)
@@ -305,12 +325,12 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]])
             ax.set_xlabel("cycle time [s]")
         handles, labels = axes[0, 0].get_legend_handles_labels()
         models = [Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_THICK, _THIN)]
-        handles, labels = [*handles, *models, band], [*labels, *_SERVOS, f"{_WALKING.who}, high walk"]
+        handles, labels = [*handles, *models, band], [*labels, *servos, f"{_WALKING.who}, high walk"]
         figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=11)
     return captioned(
         figure,
-        "Every gait over its cycle time. Thin: legs whose servos lose torque with speed, whose cost includes what the "
-        f"motor loses. Band: what {_WALKING.who} do in the high walk.",
+        f"Every gait over its cycle time. Thin: legs with {servos[1]}. The cost of servos whose torque falls "
+        f"includes what their motors lose. Band: what {_WALKING.who} do in the high walk.",
     )
 
 

@@ -51,7 +51,7 @@ RULES = (
 VARIED = Varied(
     claims=("high_walk_speed_low", "high_walk_speed_high", "tail_on_ground_in_high_walk"),
     designs=("robot",),
-    settings={"slower": (0.75, 0.875, 1.0, 1.3)},
+    settings={"slower": (0.45, 0.6, 0.75, 1.0)},
     samples=32,
 )
 

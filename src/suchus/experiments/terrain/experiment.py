@@ -71,7 +71,7 @@ class Terrain(Experiment):
     needs = ("foot_paths",)
     judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_from: ClassVar[Mapping[str, float]] = {
-        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 8.0,
+        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 14.0,
     }  # fmt: skip
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -100,7 +100,7 @@ class Terrain(Experiment):
     """Runs of each posture on each ground [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """By how much the robots and grounds of the seeds differ from their design."""
-    walked: float = 8.0
+    walked: float = 14.0
     """Duration for which each run walks [s], 0.5 to 3600."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
