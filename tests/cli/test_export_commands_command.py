@@ -40,8 +40,17 @@ def test_bad_words_are_one_sentence_and_leave_nothing(words, tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
-def test_the_default_gait_is_exported_and_what_its_servos_lack_is_said(tmp_path, capsys):
+FORMER = Path(__file__).parents[2] / "examples" / "former_caiman.toml"
+
+
+def test_the_default_gait_is_exported_and_its_servos_lack_nothing(tmp_path, capsys):
     assert main(["export-commands"]) == 0
+    assert "warning" not in capsys.readouterr().out
+    assert (tmp_path / "export" / "belly_crawl_commands" / "commands.csv").exists()
+
+
+def test_weaker_servos_are_exported_for_and_what_they_lack_is_said(tmp_path, capsys):
+    assert main(["export-commands", "--robot", str(FORMER)]) == 0
     out = capsys.readouterr().out
     assert "warning: spine_yaw_1 is at its torque limit of 2.5 N m for 2" in out
     assert "STS3250 (4.9 N m) would do." in out
@@ -51,7 +60,7 @@ def test_the_default_gait_is_exported_and_what_its_servos_lack_is_said(tmp_path,
 
 
 def test_a_gait_that_no_servo_follows_is_refused_and_the_loads_are_written_all_the_same(tmp_path, capsys):
-    assert main(["export-commands", "belly_crawl", "--tracking", "0.1"]) == 2
+    assert main(["export-commands", "belly_crawl", "--robot", str(FORMER), "--tracking", "0.1"]) == 2
     err = capsys.readouterr().err
     assert "spine_yaw_1 is at its torque limit" in err
     assert err.count("\n") == 1

@@ -59,7 +59,7 @@ def test_strong_trunks_stand_and_weak_ones_do_not(outcome):
 def test_legs_decide_the_crawl_and_all_three_lengths_the_stand(value):
     assert value["gain_leg_crawling"] == pytest.approx(0.09 / 0.175, abs=0.05)  # the hips' height over the leg's length
     for part in ("spine", "head"):
-        assert abs(value[f"gain_{part}_crawling"]) < 0.05
+        assert abs(value[f"gain_{part}_crawling"]) < 0.2 * value["gain_leg_crawling"]
         assert value[f"gain_{part}_standing"] == pytest.approx(1.0, abs=0.05)
     assert value["gain_leg_standing"] == pytest.approx(0.94, abs=0.15)
 

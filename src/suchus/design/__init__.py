@@ -29,7 +29,14 @@ from suchus.design.motor import LINE, Heat, Motor, Winding
 from suchus.design.needs import MEASURED, NEEDS, STANDING, check_needs, lacking
 from suchus.design.physics import GRAVITY, WATER_DENSITY, WATER_VISCOSITY
 from suchus.design.segment import Inertia, Rod, Segment, Shell
-from suchus.design.servos import with_named_servos, with_servos, with_speed_line, with_speed_lines, with_spring
+from suchus.design.servos import (
+    with_full_torque,
+    with_named_servos,
+    with_servos,
+    with_speed_line,
+    with_speed_lines,
+    with_spring,
+)
 from suchus.design.tables import Head, Leg, Pelvis, Spine, Tables, Tail, Thorax
 
 __all__ = [
@@ -92,6 +99,7 @@ __all__ = [
     "tables_of",
     "unit_at",
     "value_at",
+    "with_full_torque",
     "with_named_servos",
     "with_servos",
     "with_speed_line",

@@ -32,6 +32,11 @@ def with_speed_line(servo: Servo) -> Servo:
     return servo if servo.winding is not None else replace(servo, winding=LINE, damping=0.0)
 
 
+def with_full_torque(servo: Servo) -> Servo:
+    """Return a servo that gives its torque at any speed and heat, up to its speed: one without a motor."""
+    return replace(servo, winding=None)
+
+
 def with_speed_lines(robot: Robot) -> Robot:
     """Return a robot with ``with_speed_line`` for each of its servos."""
     return with_servos(robot, with_speed_line)

@@ -9,7 +9,16 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.design import STANDING, Robot, check_needs, front_segment, layout, with_speed_lines
+from suchus.design import (
+    STANDING,
+    Robot,
+    check_needs,
+    front_segment,
+    layout,
+    with_full_torque,
+    with_servos,
+    with_speed_lines,
+)
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period, scaled, scaled_fields
 from suchus.errors import InvalidDesign, UnknownName
@@ -380,7 +389,7 @@ class Task:
     @property
     def body(self) -> Robot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
-        return with_speed_lines(self.robot) if self.speed_lines else self.robot
+        return with_speed_lines(self.robot) if self.speed_lines else with_servos(self.robot, with_full_torque)
 
     @property
     def period(self) -> float:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from suchus.design import Robot, Servo, layout
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.design.servos import with_servos, with_speed_line
+from suchus.design.servos import with_full_torque, with_servos, with_speed_line
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
@@ -137,7 +137,7 @@ class GallopLimits(Experiment):
         stronger = torque / self._own.torque
 
         def changed(servo: Servo) -> Servo:
-            return with_speed_line(replace(servo, torque=servo.torque * stronger, speed=speed, winding=None))
+            return with_speed_line(replace(with_full_torque(servo), torque=servo.torque * stronger, speed=speed))
 
         return with_servos(self.robot, changed)
 

@@ -14,7 +14,7 @@ from suchus.design import GRAVITY, Robot, Rod, Segment, Servo, layout
 from suchus.design.body import servos_of
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.design.servos import with_leg_servos, with_speed_line
+from suchus.design.servos import with_full_torque, with_leg_servos, with_speed_line
 from suchus.experiment import (
     Experiment,
     Measure,
@@ -252,7 +252,7 @@ _UNITS = {
 
 def _other(servo: Servo) -> Servo:
     """Return a servo with a torque-speed line if it has none, else with its full torque at any speed."""
-    return with_speed_line(servo) if servo.winding is None else replace(servo, winding=None)
+    return with_speed_line(servo) if servo.winding is None else with_full_torque(servo)
 
 
 def _falls(robot: Robot) -> bool:
