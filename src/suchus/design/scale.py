@@ -16,6 +16,7 @@ from suchus.design.checks import require
 from suchus.design.ground import Contact
 from suchus.design.hinge import Servo, Spring
 from suchus.design.meaning import meanings, unit
+from suchus.design.motor import Winding
 from suchus.design.physics import GRAVITY
 from suchus.errors import InvalidDesign
 
@@ -29,8 +30,9 @@ COARSEST = 20.0
 _POWERS = {
     "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
     "N": (1, 1, -2), "J": (1, 2, -2), "W": (1, 2, -3),
+    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # motors of one supply, as warm
 }  # fmt: skip
-_UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|m|s)(\d*)$")
+_UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|V|A|K|m|s)(\d*)$")
 
 
 def gravity_time(length: float) -> float:
@@ -237,6 +239,8 @@ def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
             factor = _factor(unit(about.get(field.name, "")), factors)
             if factor != 1.0:
                 changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
+    if isinstance(design, Winding) and changed:
+        changed["motor"] = ""  # in another size it is none that is sold
     return replace(design, **changed)  # type: ignore[type-var]
 
 

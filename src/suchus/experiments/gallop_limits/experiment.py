@@ -10,9 +10,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.design import Robot, Servo, layout
+from suchus.design.body import servos_of
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
-from suchus.design.servos import with_full_torque, with_servos, with_speed_line
+from suchus.design.servos import with_full_torque, with_named_servos, with_speed_line
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
@@ -57,7 +58,11 @@ class GallopLimits(Experiment):
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
     torques: tuple[float, ...] = (1.5, 3.0, 6.0)
-    """Torque limits of the legs' servos [N m]; those of the trunk and tail keep their ratio to them."""
+    """Torque limits of the legs' servos [N m]."""
+    trunk_over_legs: float = 4.0 / 3.0
+    """Torque limit of the servos that pitch the trunk over the legs' [-]; so in the search for bounds and trots."""
+    others_over_legs: float = 2.5 / 3.0
+    """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
     repeats: int = 3
     """Robots that are built of each design: the middle of theirs counts, and no gait that only the design can [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
@@ -71,6 +76,8 @@ class GallopLimits(Experiment):
         with Checks(self.name(), self) as check:
             check.rising("speeds", 0.1, 1e3, "rad/s")
             check.rising("torques", 1e-6, 1e6, "N m")
+            check.number("trunk_over_legs", 0.1, 10.0, "")
+            check.number("others_over_legs", 0.1, 10.0, "")
             check.number("seconds", 0.05, 60.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.whole("repeats", 1, 1000)
@@ -134,12 +141,18 @@ class GallopLimits(Experiment):
 
     def _with(self, torque: float, speed: float) -> Robot:
         """Return the robot with other servos, each with a torque-speed line."""
-        stronger = torque / self._own.torque
+        legs = {layout(self.robot).servos[index] for index in self._legs}
 
-        def changed(servo: Servo) -> Servo:
-            return with_speed_line(replace(with_full_torque(servo), torque=servo.torque * stronger, speed=speed))
+        def over_legs(name: str) -> float:
+            return 1.0 if name in legs else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
 
-        return with_servos(self.robot, changed)
+        return with_named_servos(
+            self.robot,
+            {
+                name: with_speed_line(replace(with_full_torque(servo), torque=torque * over_legs(name), speed=speed))
+                for name, servo in servos_of(self.robot).items()
+            },
+        )
 
     def _replays(
         self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
