@@ -31,6 +31,7 @@ CHECKED = (
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
+from suchus import blueprint  # noqa: E402
 from suchus.design import Robot, crocodile  # noqa: E402
 from suchus.experiment import Outcome  # noqa: E402
 from suchus.experiments import EXPERIMENTS  # noqa: E402
@@ -76,6 +77,12 @@ def pytest_runtest_setup() -> None:
 @pytest.fixture(scope="session")
 def robot() -> Robot:
     return ROBOTS["caiman"]
+
+
+@pytest.fixture(scope="session")
+def former() -> Robot:
+    """Return the article's robot as it was before its servos were such as are sold."""
+    return blueprint.read(Path(__file__).parents[1] / "examples" / "former_caiman.toml", Robot, ROBOTS)
 
 
 @pytest.fixture(scope="session")

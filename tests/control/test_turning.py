@@ -44,7 +44,7 @@ def test_curves_on_the_shelf_walk_the_circle_to_either_side(robot):
     asked = np.array([1.1, -1.1])
     for name in ("semi_erect", "high_walk"):
         runs = [Run(robot=robot, gait=GAITS[name], control=turn(CURVES[name], radius)) for radius in asked]
-        start, end = START + 0.8, START + 0.8 * 7
+        start, end = START + GAITS[name].period, START + 7 * GAITS[name].period
         record = simulate(runs, duration=end, timestep=0.005)
         walked = path_length(record, start, end).values / heading_change(record, start, end).values
         assert walked == pytest.approx(asked, rel=0.1)

@@ -84,7 +84,7 @@ def test_attitude_feedback_keeps_the_high_walk_on_its_feet_on_bumps(robot):
         for rule in (None, AttitudeRule())
         for ground in grounds
     ]
-    record = simulate(runs, duration=8.0, timestep=0.005, every=5)
+    record = simulate(runs, duration=14.0, timestep=0.005, every=5)
     way = displacement(record).sel(xyz="x").values.reshape(2, -1)
     assert way[1].min() > 1.0 > way[0].min()
     roll = np.abs(tilt(between(record))["roll"]).max("time").values.reshape(2, -1)

@@ -269,9 +269,16 @@ def test_a_robot_that_comes_apart_ends_its_episode_with_a_sentence_and_the_other
     assert env.pack.time.tolist() == [0.0, 0.1]
 
 
-def test_servos_lose_torque_with_speed_unless_it_is_switched_off():
-    for lines, winding in ((True, LINE), (False, None)):
-        task = replace(CRAWL, speed_lines=lines)
+def test_servos_lose_torque_with_speed_unless_it_is_switched_off(former):
+    sold = ROBOTS["caiman"].servo("LF_yaw").winding
+    of_former = replace(CRAWL, robot=former)
+    for asked, lines, winding in (
+        (CRAWL, True, sold),
+        (CRAWL, False, None),
+        (of_former, True, LINE),
+        (of_former, False, None),
+    ):
+        task = replace(asked, speed_lines=lines)
         assert task.body.servo("LF_yaw").winding == winding
         assert task.body.servo("tail_cable").winding == winding
         kind = int(Pack(task, 1).loop.batch.model.actuator("LF_yaw").dyntype[0])

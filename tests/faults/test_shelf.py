@@ -127,7 +127,6 @@ def test_an_episode_breaks_as_a_run_of_a_batch_does_to_the_byte(shelved):
     envs, pack = pytest.importorskip("suchus.envs", exc_type=ImportError), import_module("suchus.envs.pack")
     task = replace(
         envs.TASKS["Fault"],
-        speed_lines=False,
         gait=GAIT,
         jitter=0.0,
         breaks=envs.Breaks(faults=(made(shelved),), earliest=0.13, latest=0.13),
@@ -231,8 +230,8 @@ def test_a_table_that_says_no_fault_is_refused_in_one_short_sentence(table, erro
 @pytest.mark.parametrize(
     ("fault", "error", "words"),
     [
-        (Slow("LF_yaw", 0.0), InvalidDesign, ["turns at 0 rad/s", "0.001 to 7 rad/s"]),
-        (Slow("LF_yaw", 7.5), InvalidDesign, ["7.5 rad/s", "0.001 to 7"]),
+        (Slow("LF_yaw", 0.0), InvalidDesign, ["turns at 0 rad/s", "0.001 to 7.873 rad/s"]),
+        (Slow("LF_yaw", 7.9), InvalidDesign, ["7.9 rad/s", "0.001 to 7.873"]),
         (Slow("LF_yaw", float("nan")), InvalidDesign, ["nan"]),
         (Slow("LF"), UnknownName, ["joint", "'LF'", "LF_yaw"]),
         (Backlash("LF_yaw", -0.1), InvalidDesign, ["gap of -0.1 rad", "0 to 1 rad"]),
@@ -256,7 +255,7 @@ def test_what_cannot_be_is_refused_in_one_sentence(fault, error, words):
 
 
 def test_numbers_at_the_ends_of_their_ranges_are_allowed():
-    ends = [Slow("LF_yaw", 7.0), Slow("RF_yaw", 1e-3), Backlash("LH_yaw", 1.0), Backlash("RH_yaw", 0.0)]
+    ends = [Slow("LF_yaw", 7.873), Slow("RF_yaw", 1e-3), Backlash("LH_yaw", 1.0), Backlash("RH_yaw", 0.0)]
     check_faults([*ends, Offset("LF_knee", np.pi), Offset("RF_knee", -np.pi)], CAIMAN, 3.0)
 
 

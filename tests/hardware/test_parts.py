@@ -46,7 +46,7 @@ def test_masses_and_centre_are_those_of_the_simulation(name):
         assert joint.at == pytest.approx(data.xanchor[model.joint(joint.name).id] - data.xpos[root], abs=1e-9)
 
 
-def test_servos_sit_on_the_body_ahead_of_their_hinge_and_weigh_what_they_are_bought_for(bought):
+def test_servos_sit_on_the_body_ahead_of_their_hinge_and_weigh_what_they_are_bought_for(bought, former):
     found = sheet(bought)
     assert sum(one.servos for one in found.bodies) == pytest.approx(19 * motor("STS3250").mass)
     seats = {part.name: part.body for part in found.parts if part.kind == "servo"}
@@ -62,8 +62,8 @@ def test_servos_sit_on_the_body_ahead_of_their_hinge_and_weigh_what_they_are_bou
     heavy = [one for one in thick.bodies if one.rest < 0.0]
     assert heavy
     assert all(f"{one.name} by {-1000 * one.rest:.0f} g" in mass_said(thick)[-1] for one in heavy)
-    assert "suchus size chooses some" in mass_said(sheet(ROBOTS["caiman"]))[0]
-    unknown = sheet(ROBOTS["caiman"]).bodies[0]
+    assert "suchus size chooses some" in mass_said(sheet(former))[0]
+    unknown = sheet(former).bodies[0]
     assert np.isnan(unknown.servos)
     assert np.isnan(unknown.rest)
 

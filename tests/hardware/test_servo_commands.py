@@ -94,7 +94,9 @@ def test_speeds_are_the_derivative_of_the_angles(robot, limbs_gait):
 def test_too_fast_a_gait_is_refused_with_servo_speed_and_limit(robot, crawl_gait):
     hasty = replace(crawl_gait, period=0.3)
     servo_map = replace(STRAIGHT, rate=200.0)
-    with pytest.raises(OutsideLimits, match=r"turns \w+ of robot 'caiman' at [\d.]+ rad/s .* up to 7 rad/s is allowed"):
+    with pytest.raises(
+        OutsideLimits, match=r"turns \w+ of robot 'caiman' at [\d.]+ rad/s .* up to 7\.873 rad/s is allowed"
+    ):
         check_commands(robot, hasty, servo_map, commands(robot, hasty, servo_map))
     check_commands(robot, crawl_gait, STRAIGHT, commands(robot, crawl_gait, STRAIGHT))
 
@@ -135,13 +137,13 @@ def load(**changes):
 
 def test_other_servos_are_put_in_their_places_in_an_equal_robot_too(robot):
     again = crocodile(copy.deepcopy(robot.tables))
-    other = Servo.of(motor("STS3250"), like=robot.servo("spine_yaw_1"))
+    other = Servo.of(motor("XM540-W270"), like=robot.servo("spine_yaw_1"))
     for one in (robot, again, copy.deepcopy(robot)):
         made = with_named_servos(one, {"spine_yaw_1": other, "RH_knee": other, "tail_cable": other})
         changed = {name for name in servo_names() if made.servo(name) != one.servo(name)}
         assert changed == {"spine_yaw_1", "LH_knee", "RH_knee", "tail_cable"}
         assert made.servo("LH_knee") == other
-    stronger = replace(other, torque=6.0)
+    stronger = replace(other, torque=other.torque + 1.0)
     assert with_named_servos(robot, {"LF_yaw": other, "RF_yaw": stronger}).servo("LF_yaw") == stronger
     cranked = ROBOTS["salamandra"]
     made = with_named_servos(cranked, {"LF_crank": other})
@@ -170,7 +172,7 @@ def test_the_share_at_the_limit_counts_samples_of_each_servo(robot):
     torque = np.zeros((2, 4, 19))
     torque[0, 1, 0] = -robot.servo("LF_yaw").torque
     torque[1, :3, 18] = robot.servo("tail_cable").torque
-    torque[1, 3, 18] = 0.99 * robot.servo("tail_cable").torque
+    torque[1, 3, 18] = 0.5 * robot.servo("tail_cable").torque
     still = (("run", "time", "servo"), np.zeros((2, 4, 19)))
     coords = {"servo": list(servo_names()), "time": 0.01 * np.arange(4)}
     record = xr.Dataset({"servo_torque": (("run", "time", "servo"), torque), "servo_velocity": still}, coords=coords)

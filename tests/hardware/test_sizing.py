@@ -89,7 +89,8 @@ def test_currents_and_heat_follow_from_torque_and_speed(bought):
     assert cooler["LF_yaw"].warm_after == inf
 
 
-def test_a_servo_without_a_winding_has_no_current_and_no_heat(robot):
+def test_a_servo_without_a_winding_has_no_current_and_no_heat(former):
+    robot = former
     load = borne(robot, made(robot, np.full(9, 1.0), np.zeros(9)))["tail_cable"]
     assert isnan(load.current)
     assert isnan(load.steady)
@@ -188,8 +189,8 @@ def test_a_family_whose_servos_do_not_bear_one_supply_is_refused(robot, quick):
         size(robot, cases(robot, [quick]), family="nobody's")
 
 
-def test_a_servo_at_its_limit_is_told_the_cheapest_one_that_does_and_a_strong_one_nothing(robot, quick):
-    weak = with_servos(robot, lambda servo: replace(servo, torque=0.25) if servo.torque == 3.0 else servo)
+def test_a_servo_at_its_limit_is_told_the_cheapest_one_that_does_and_a_strong_one_nothing(former, quick):
+    weak = with_servos(former, lambda servo: replace(servo, torque=0.25) if servo.torque == 3.0 else servo)
     (case,) = cases(weak, [quick])
     (before,) = loads_of_each(weak, [case])
     assert any(load.at_limit > 0.02 for load in before.values())

@@ -46,6 +46,17 @@ def test_another_source_has_another_digest():
     assert deciding()["source"] == code_digest(*MADE_BY)[:12]
 
 
+def test_the_numbers_of_the_motors_are_in_the_digest(tmp_path, monkeypatch):
+    fresh = code_digest.__wrapped__  # what it said before is kept
+    monkeypatch.setitem(fresh.__globals__, "_PACKAGE", tmp_path)
+    (tmp_path / "motors").mkdir()
+    digests = []
+    for torque in (4.9, 5.0):
+        (tmp_path / "motors" / "motors.toml").write_text(f"torque = {torque}\n")
+        digests.append(fresh("motors"))
+    assert digests[0] != digests[1]
+
+
 def test_docstrings_are_in_no_digest_and_all_else_is():
     source = (
         '"""A room."""\nspeed = 1.0\n"""Of the body [m/s]."""\n'

@@ -44,7 +44,7 @@ def test_a_limp_servo_gives_no_torque_and_the_others_do(joint, beside):
 def test_the_gear_friction_of_a_limp_servo_stays(beside):
     rough = crocodile(
         replace(
-            CAIMAN.tables, spine=replace(CAIMAN.tables.spine, yaw_servo=replace(CAIMAN.spine.yaw_servo, friction=2.0))
+            CAIMAN.tables, spine=replace(CAIMAN.tables.spine, yaw_servo=replace(CAIMAN.spine.yaw_servo, friction=4.0))
         )
     )
     speed = {}

@@ -12,22 +12,21 @@ NAMES = ("low_crawl", "semi_erect", "high_walk")
 
 
 @pytest.fixture(scope="module")
-def limited(robot):
+def limited(former):
     front, hind = (
-        replace(leg, servo=with_speed_line(leg.servo)) for leg in (robot.tables.front_leg, robot.tables.hind_leg)
+        replace(leg, servo=with_speed_line(leg.servo)) for leg in (former.tables.front_leg, former.tables.hind_leg)
     )
-    return crocodile(replace(robot.tables, name="limited", front_leg=front, hind_leg=hind))
+    return crocodile(replace(former.tables, name="limited", front_leg=front, hind_leg=hind))
 
 
 @pytest.fixture(scope="module")
-def walks(robot, limited):
-    runs = [Run(robot=who, gait=GAITS[name]) for who in (robot, limited) for name in NAMES]
-    return simulate(runs, duration=7.0, every=2, timestep=0.005)
+def walks(robot):
+    return simulate([Run(robot=robot, gait=GAITS[name]) for name in NAMES], duration=7.0, every=2, timestep=0.005)
 
 
 def test_postures_reach_their_speeds_on_even_ground(walks):
-    speed = displacement(walks, 2.0).sel(xyz="x").values[:3] / 5.0
-    for reached, (low, high) in zip(speed, ((0.18, 0.24), (0.20, 0.44), (0.12, 0.22)), strict=True):
+    speed = displacement(walks, 2.0).sel(xyz="x").values / 5.0
+    for reached, (low, high) in zip(speed, ((0.18, 0.24), (0.18, 0.30), (0.08, 0.14)), strict=True):
         assert low < reached < high
 
 
@@ -38,15 +37,18 @@ def test_postures_are_steady_straight_and_off_the_belly(walks):
 
 
 def test_the_body_rises_from_crawl_to_high_walk(walks):
-    height = between(walks, 2.0).centre_of_mass.sel(xyz="z").mean("time").values[:3]
+    height = between(walks, 2.0).centre_of_mass.sel(xyz="z").mean("time").values
     assert height[0] < height[1] - 0.03 < height[2] - 0.04
 
 
-def test_a_torque_speed_line_costs_the_postures_no_speed_and_makes_the_fastest_joints_slower(walks, limited):
+def test_a_torque_speed_line_costs_the_postures_no_speed_and_makes_the_fastest_joints_slower(former, limited):
+    hasty = [replace(GAITS[name], period=min(GAITS[name].period, 0.8)) for name in NAMES[1:]]
+    runs = [Run(robot=who, gait=gait) for who in (former, limited) for gait in hasty]
+    walks = simulate(runs, duration=5.0, every=2, timestep=0.005)
     way = displacement(walks, 2.0).sel(xyz="x").values
-    assert way[3:] == pytest.approx(way[:3], rel=0.05)
+    assert way[2:] == pytest.approx(way[:2], rel=0.05)
     legs = abs(between(walks, 2.0).servo_velocity.isel(servo=slice(0, 12))).quantile(0.99, ["time"]).max("servo").values
-    fast = legs[:3] > limited.hind_leg.servo.speed
+    fast = legs[:2] > limited.hind_leg.servo.speed
     assert fast.any()
-    assert (legs[3:][fast] < legs[:3][fast]).all()
-    assert (legs[3:][~fast] < limited.hind_leg.servo.speed).all()
+    assert (legs[2:][fast] < legs[:2][fast]).all()
+    assert (legs[2:][~fast] < limited.hind_leg.servo.speed).all()

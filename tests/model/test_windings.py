@@ -24,6 +24,11 @@ STS = motor("STS3250")
 
 
 @pytest.fixture(scope="module")
+def robot(former):
+    return former
+
+
+@pytest.fixture(scope="module")
 def bought(robot):
     return with_servos(robot, lambda servo: Servo.of(STS, like=servo))
 

@@ -9,13 +9,13 @@ from suchus.sources import current
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 MADE_BY = (
     "blueprint", "catalog.py", "control", "design", "fault.py", "faults", "gaits", "hydro", "kinds.py", "kinematics",
-    "land", "metrics", "model", "motion", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py",
-    *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+    "land", "metrics", "model", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py",
+    "sources.py", *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )  # fmt: skip
 """Whose code decides the numbers of a run on land."""
 FLOW = (
     "blueprint", "catalog.py", "design", "fingerprint.py", "flow", "hydro", "isosurface.py", "kinds.py", "kinematics",
-    "motion", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
+    "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
 )  # fmt: skip
 """Whose code decides the numbers of a swim by CFD."""
 

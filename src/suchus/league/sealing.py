@@ -29,7 +29,7 @@ _ANSWERS = "answers"
 """Folder beside them of what the rungs answered, from which an interrupted prediction goes on."""
 _ROOMS = (
     "league", "contestants", "water", "land", "hydro", "model", "flow", "design", "motion", "control", "kinematics",
-    "robots", "gaits",
+    "robots", "gaits", "motors",
 )  # fmt: skip
 """Rooms whose source decides a prediction."""
 

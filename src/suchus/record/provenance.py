@@ -54,7 +54,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def code_digest(*rooms: str) -> str:
-    """Return the SHA-256 of the source of some rooms or modules of suchus without their docstrings.
+    """Return the SHA-256 of the source of some rooms or modules of suchus without their docstrings, and of their data.
 
     Args:
         rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
@@ -62,10 +62,9 @@ def code_digest(*rooms: str) -> str:
     text = hashlib.sha256()
     for room in rooms:
         place = _PACKAGE / room
-        for file in [place] if place.is_file() else sorted(place.rglob("*.py")):
-            text.update(
-                file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + deciding_source(file.read_bytes()) + b"\0"
-            )
+        for file in [place] if place.is_file() else sorted([*place.rglob("*.py"), *place.rglob("*.toml")]):
+            source = file.read_bytes() if file.suffix == ".toml" else deciding_source(file.read_bytes())
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")
     return text.hexdigest()
 
 
