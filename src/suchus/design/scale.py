@@ -241,7 +241,7 @@ def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
                 changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
     if isinstance(design, Winding) and changed:
         changed["motor"] = ""  # in another size it is none that is sold
-    return replace(design, **changed)  # type: ignore[type-var]
+    return replace(design, **changed)
 
 
 def _numbers(value: Any) -> bool:

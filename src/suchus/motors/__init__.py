@@ -27,7 +27,9 @@ def motors() -> Mapping[str, Motor]:
     found = {}
     for name, table in read_toml(SHIPPED).items():
         values, sources, _ = split(table)
-        given = {field: tuple(value) if isinstance(value, list) else value for field, value in values.items()}
+        given: dict[str, Any] = {
+            field: tuple(value) if isinstance(value, list) else value for field, value in values.items()
+        }
         found[name] = Motor(name=name, sources=tuple(sources.items()), **given)
     return MappingProxyType(found)
 
