@@ -7,10 +7,13 @@ from contextlib import contextmanager
 from multiprocessing import parent_process
 from multiprocessing.connection import wait
 from threading import Event, Thread, current_thread, main_thread
+from time import monotonic
 from types import FrameType
 
 SOON = 1.5
 """Time after which a process that was told to stop ends, whatever it is at [s]."""
+_LOOK = 0.1  # [s]; between two looks whether it has ended by itself
+_longer: list[float] = []  # what ``finishing`` asks for
 
 
 class Stopped(KeyboardInterrupt):
@@ -45,8 +48,10 @@ def stopping() -> Iterator[None]:
 
     def see_to_it() -> None:
         told.wait()
-        if not done.wait(SOON):
-            os._exit(128 + number[0])
+        since = monotonic()
+        while not done.wait(_LOOK):
+            if monotonic() - since > max((SOON, *_longer)):
+                os._exit(128 + number[0])
 
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
     for one in heard:
@@ -59,6 +64,20 @@ def stopping() -> Iterator[None]:
         told.set()
         for one in heard:
             signal.signal(one, signal.SIG_DFL)
+
+
+@contextmanager
+def finishing(seconds: float) -> Iterator[None]:
+    """While the block runs, a process that is told to stop may take longer: a robot is let down, and its log written.
+
+    Args:
+        seconds: after which it ends all the same [s].
+    """
+    _longer.append(seconds)
+    try:
+        yield
+    finally:
+        _longer.remove(seconds)
 
 
 def end_with_parent() -> None:

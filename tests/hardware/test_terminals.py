@@ -32,17 +32,17 @@ def wait_for(condition):
 )
 def test_a_terminal_that_closes_a_signal_and_an_emulator_that_ends_leave_a_log_and_a_limp_robot(how, code, tmp_path):
     words = [sys.executable, "-m", "suchus"]
-    heard, ours = tmp_path / "heard", None
+    heard, ours, driver = tmp_path / "heard", None, None
     with heard.open("w") as said:
         emulator = subprocess.Popen([*words, "emulate", "caiman", "--clock", "bus"], cwd=tmp_path, stdout=said)
     try:
         wait_for(lambda: "wired as" in heard.read_text())
         ours, theirs = pty.openpty()
-        driver = subprocess.Popen(
-            [*words, "drive", "belly_crawl", "--clock", "bus", "--seconds", "600", "--out", "log"],
-            cwd=tmp_path, stdin=theirs, stdout=subprocess.DEVNULL, stderr=(tmp_path / "errors").open("w"),
-            start_new_session=True,
-        )  # fmt: skip
+        with (tmp_path / "errors").open("w") as errors:
+            driver = subprocess.Popen(
+                [*words, "drive", "belly_crawl", "--clock", "bus", "--seconds", "600", "--out", "log"],
+                cwd=tmp_path, stdin=theirs, stdout=subprocess.DEVNULL, stderr=errors, start_new_session=True,
+            )  # fmt: skip
         os.close(theirs)
         bus = str(tmp_path / "hardware.port")
         wait_for(lambda: _held(bus) or driver.poll() is not None)
@@ -61,7 +61,7 @@ def test_a_terminal_that_closes_a_signal_and_an_emulator_that_ends_leave_a_log_a
             assert [end.read(one.id, DYNAMIXEL["torque_enable"]) for one in wiring().servo] == [0] * 19
             end.close()
     finally:
-        for process in (emulator, driver):
+        for process in filter(None, (emulator, driver)):
             process.kill()
             process.wait()
         if ours is not None:

@@ -31,13 +31,16 @@ from suchus.figures import styled
 from suchus.gaits import gait_of, own_gait, suits
 from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
 from suchus.motion import START, Gait
-from suchus.record import check_writable
+from suchus.record import check_writable, save
 from suchus.report import PAGE, check_place, save_outcome
+from suchus.report.result import RECORD
 from suchus.robots import ROBOTS
+from suchus.stopping import Stopped, finishing
 from suchus.water import swim_of
 
 SWIM = "swim"
 """Gait that is the robot's own wave, as in suchus view --lake."""
+_PATIENT = 60.0  # [s]; for letting a robot down and writing its log, on a computer that is told to stop
 _SHOWN = 3  # ticks whose packets a dry run prints
 _HELD = 4.0  # [s]; how long a robot stands up
 
@@ -113,13 +116,16 @@ def _drive(
     settings = DriveSettings(duration=options.seconds, stop=options.stop)
     begun = time.perf_counter()
     told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
-    with opened() as (rig, clock):
+    with finishing(_PATIENT), opened() as (rig, clock):
         check_drive(rig, gait, control)
         try:
             with _keys() as asked, working() as bars:
                 record = drive(
                     rig, gait, control, settings, clock=clock, asked=asked, say=bars.say, progress=bars.task(gait.name)
                 )
+        except Stopped as stop:
+            _hurry(getattr(stop, "record", None), folder)
+            raise
         except (BusFailure, KeyboardInterrupt) as error:
             _keep(told, getattr(error, "record", None), folder, words, time.perf_counter() - begun)
             raise
@@ -219,6 +225,17 @@ def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence
     if cause:
         console.print(cause, markup=False)
     print(f"the log, its figures and its replay: {folder / PAGE}")
+
+
+def _hurry(record: xr.Dataset | None, folder: Path) -> None:
+    """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
+    if record is not None and record.sizes["time"] > 0:
+        if folder.exists():  # figures of an earlier drive are not those of this log
+            folder = folder.with_name(f"{folder.name}_stopped")
+        folder.mkdir(parents=True, exist_ok=True)
+        kept = save(record, folder / RECORD)
+        with suppress(OSError):  # a terminal that is gone
+            print(f"the log: {kept}", flush=True)
 
 
 @contextmanager
