@@ -46,6 +46,15 @@ def test_an_interval_stands_beside_its_number_and_what_is_not_finite_is_left_out
     ]
 
 
+def test_what_is_short_in_names_is_written_out():
+    measures = {name: Measure(1.0, "-") for name in ("com_height_pp", "late_p99", "compared")}
+    assert [row[0] for row in carried((), measures)] == [
+        "centre of mass height peak to peak",
+        "late 99th percentile",
+        "compared",
+    ]
+
+
 def test_an_experiment_that_names_no_numbers_shows_its_first_ones():
     measures = {f"number_{i}": Measure(float(i), "-") for i in range(9)} | {"number_0_low": Measure(-1.0, "-")}
     found = carried((), measures)

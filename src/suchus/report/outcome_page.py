@@ -36,6 +36,8 @@ MOST = 6
 """Numbers that stand below an answer [-]."""
 _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": (), "models": ()}
 """What outcomes of version 0.1 do not say of a verdict."""
+_WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
+"""What parts of the names of measures are short for."""
 _HEAVY = 2 * 2**20
 """Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""
 
@@ -112,7 +114,13 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
         spread = ""
         if low is not None and high is not None and low.value < high.value:  # of a single repeat it is not known
             spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}"
-        rows.append((name.replace("_", " "), quantity(measures[name].value, unit, 3), spread))
+        rows.append(
+            (
+                " ".join(_WORDS.get(part, part) for part in name.split("_")),
+                quantity(measures[name].value, unit, 3),
+                spread,
+            )
+        )
     return rows
 
 
