@@ -109,6 +109,7 @@ def test_what_is_exactly_straight_has_no_phase(caiman, walker, clean, bends):
     assert "its phase has no meaning" in notes
 
 
+@pytest.mark.slow("a film of thirty cycles")
 def test_noise_is_not_refused_and_more_cycles_narrow_its_intervals(walker, sharp):
     loud = replace(sharp, noise=0.008, rate=60.0)
     short, long = (observe(film_animal(walker, loud, cycles=n)) for n in (8, 30))

@@ -100,6 +100,7 @@ def test_it_fits_a_phone(browser, address):  # noqa: F811
 
 
 @needs_browser
+@pytest.mark.slow("a browser is begun for it alone")
 def test_without_webgl_there_is_a_picture(browser, address):  # noqa: F811
     shown = browser.new_page()
     shown.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")

@@ -40,8 +40,9 @@ def rank_correlation(
     number = parameters.shape[1]
     if there.sum() < 3 or np.ptp(quantity[there]) == 0.0:
         return np.zeros(number), np.ones(number)
-    found = [stats.spearmanr(column, quantity[there]) for column in parameters[there].T]
-    return np.array([each.statistic for each in found]), np.array([each.pvalue for each in found])
+    ranks = stats.rankdata(parameters[there], axis=0)
+    found = stats.pearsonr(ranks, stats.rankdata(quantity[there])[:, None], axis=0)
+    return np.asarray(found.statistic), np.asarray(found.pvalue)
 
 
 def border(
