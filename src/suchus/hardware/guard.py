@@ -105,8 +105,8 @@ class Guard:
         for i in np.flatnonzero(np.sqrt(self._square) > limits.load * self._continuous):
             self.tell(
                 f"load {names[i]}",
-                f"{names[i]} gives {np.sqrt(self._square[i]):.2f} N m for long, and can give "
-                f"{self._continuous[i]:g} N m continuously: it will get hot.",
+                f"{names[i]} gives for long more than {limits.load:.0%} of the {self._continuous[i]:g} N m that it can "
+                "give continuously: it will get hot.",
             )
         for i in np.flatnonzero(now.temperature >= self._limit - limits.warm):
             self.tell(
