@@ -65,7 +65,7 @@ def test_a_run_measures_judges_and_explains_from_its_record():
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"ground": "sea"}, "Not judged: ground is sea, and the article's claims are judged with floor."),
+        ({"ground": "sea"}, "Not judged: ground is sea, and its claims are judged with floor."),
         ({"repeats": 3}, "Not judged: repeats is 3, and 4 at least are needed to meet what is judged."),
         ({"heights": (1.0,)}, "Not judged: heights has 1 values, and 2 at least are needed to meet what is judged."),
         ({"repeats": 5, "heights": (1.0, 2.0, 3.0)}, ""),

@@ -379,7 +379,7 @@ class Experiment(ABC):
             if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
                 here, there = (_called(getattr(one, name)) for one in (self, shelf))
                 here = f"another {here}" if here == there else here
-                return f"Not judged: {name} is {here}, and the article's claims are judged with {there}."
+                return f"Not judged: {name} is {here}, and its claims are judged with {there}."
         for name, least in self.judged_from.items():
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value

@@ -50,8 +50,9 @@ def test_no_docstring_names_what_the_article_does_not_have():
 
 def test_the_map_holds_every_claim_and_every_experiment_that_judges_one():
     page = article.paper_map()
-    assert page.count("\n| ") > len(CLAIMS) + 46
-    assert all(f"questions.md#{name}" in page for name, one in EXPERIMENTS.items() if one.claims)
+    ours = [key for key, claim in CLAIMS.items() if not claim.of]
+    assert page.count("\n| ") > len(ours) + 46
+    assert all(f"questions.md#{name}" in page for name, one in EXPERIMENTS.items() if set(one.claims) & set(ours))
 
 
 def test_every_misprint_has_its_place():

@@ -197,7 +197,7 @@ def test_what_robust_physics_says_about_lost_joints(outcome):
 def test_another_reading_of_a_lost_joint_is_measured_and_not_judged(campaign, outcome):
     full = EXPERIMENTS["joint_faults"]
     assert replace(full, kind="locked").unjudged() == (
-        "Not judged: kind is locked, and the article's claims are judged with limp."
+        "Not judged: kind is locked, and its claims are judged with limp."
     )
     assert "legs is both" in replace(full, legs="both").unjudged()
     assert "repeats is 2" in replace(full, repeats=2).unjudged()

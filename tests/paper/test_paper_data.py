@@ -65,7 +65,8 @@ def test_claims_are_complete(key):
     assert claim.unit in UNITS
     assert claim.rounding >= 0
     assert claim.sense.endswith(".")
-    assert claim.where.startswith(("I", "II", "III", "IV", "V"))
+    assert claim.of or claim.where.startswith(("I", "II", "III", "IV", "V"))
+    assert str(claim).endswith(f"({claim.of}, {claim.where})" if claim.of else f"({claim.where})")
     assert 0 < len(claim.quote) < 200
     if claim.value is None:
         assert claim.rounding == 0

@@ -30,6 +30,12 @@ WAITING = {
     "height_from_spine_head_legs",
     "height_ratio",
     "height_standing",
+    "oscillators_direction",
+    "salamander_force_times",
+    "salamander_fore_force",
+    "salamander_hind_force",
+    "salamander_hind_push",
+    "salamander_swim_stride",
     "shared_variables",
     "swim_body_wave",
     "swim_diagonal_force",
@@ -43,7 +49,8 @@ WAITING = {
     "switches_structure",
     "tilt_limbs_only",
 }
-"""Claims asked of other designs or by another rule since the table was made; ``suchus study claims`` fills them in.
+"""Claims asked of other designs or by another rule since the table was made, and those of other publications, which
+have rules since then; ``suchus study claims`` fills them in.
 
 The walks stay as they were run: ``suchus study claims --finished`` answers claims of walks from a store of them, and
 ``--only EXPERIMENT`` asks single experiments.

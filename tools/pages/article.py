@@ -84,7 +84,7 @@ def questions_of(shelf: Mapping[str, Experiment]) -> dict[str, list[str]]:
     """Return the experiments that answer for an item: those that say so, and those that judge a claim made there."""
     found: dict[str, list[str]] = {key: [] for key in items()}
     for name, experiment in shelf.items():
-        where = [experiment.shows, *(CLAIMS[key].where for key in experiment.claims)]
+        where = [experiment.shows, *(CLAIMS[key].where for key in experiment.claims if not CLAIMS[key].of)]
         for key in dict.fromkeys(key for text in where for key in named(text)):
             found[key].append(name)
     return found
@@ -102,7 +102,9 @@ def paper_map() -> str:
         ]
     judged = questions_by_claim()
     statements = [
-        (claim.where, _plain(claim.sense), _value(claim), _commands(judged[key])) for key, claim in CLAIMS.items()
+        (claim.where, _plain(claim.sense), _value(claim), _commands(judged[key]))
+        for key, claim in CLAIMS.items()
+        if not claim.of
     ]
     return page("paper_map", parts=parts, statements=statements)
 

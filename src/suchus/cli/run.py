@@ -114,7 +114,7 @@ def show_outcome(question: Experiment, done: Performed) -> None:
         for verdict in done.outcome.verdicts:
             claim = verdict.claim
             table.add_row(
-                escape(f"{claim.quantity} ({claim.where})"),
+                escape(f"{claim.quantity} ({claim.place})"),
                 quantity(claim.value, claim.unit, 3),
                 quantity(verdict.measured, _unit(verdict, done.outcome), 3),
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",

@@ -1,20 +1,22 @@
-"""One statement of the article."""
+"""One statement of the article, or of another publication."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """A number that the article states, or a statement that can be tested."""
+    """A number that a publication states, or a statement that can be tested."""
 
     key: str
     """Its name here."""
+    of: str = ""
+    """Publication that states it; empty for the article."""
     where: str
-    """Section and figure or equation."""
+    """Section and figure or equation; of other publications what was read of them."""
     quantity: str
     """Name of the claimed quantity."""
     value: float | None
-    """The number in SI units; None where the article states no number."""
+    """The number in SI units; None where no number is stated."""
     unit: str
     """SI unit, ``-`` for none."""
     rounding: float
@@ -22,13 +24,18 @@ class Claim:
     sense: str
     """The statement in one plain sentence; it can hold where the number does not."""
     quote: str
-    """The article's own words, shortened with dots; in brackets ours, where it states a thing without words."""
+    """The publication's own words, shortened with dots; in brackets ours, where it states a thing without words."""
 
     def __str__(self) -> str:
         if self.value is None:
-            return f"{self.quantity} ({self.where})"
+            return f"{self.quantity} ({self.place})"
         unit = "" if self.unit == "-" else f" {self.unit}"
-        return f"{self.quantity}: {self.value:g}{unit} ({self.where})"
+        return f"{self.quantity}: {self.value:g}{unit} ({self.place})"
+
+    @property
+    def place(self) -> str:
+        """Return where it is stated, with the publication unless that is the article."""
+        return f"{self.of}, {self.where}" if self.of else self.where
 
 
 def said(key: str, where: str, quantity: str, sense: str, quote: str) -> Claim:

@@ -1,9 +1,10 @@
-"""Every number and every testable statement of the article, by key."""
+"""Every number and every testable statement of the article, and some of other publications, by key."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from suchus.paper.claim import Claim, said
+from suchus.paper.claims_animals import OSCILLATORS, SALAMANDERS
 from suchus.paper.claims_body import BODY
 from suchus.paper.claims_land import LAND
 from suchus.paper.tables import C1, C2, K
@@ -93,5 +94,7 @@ WATER = (
 """The claims about the water."""
 
 
-CLAIMS: Mapping[str, Claim] = MappingProxyType({claim.key: claim for claim in (*BODY, *LAND, *WATER)})
-"""All claims, in the article's order."""
+CLAIMS: Mapping[str, Claim] = MappingProxyType(
+    {claim.key: claim for claim in (*BODY, *LAND, *WATER, *SALAMANDERS, *OSCILLATORS)}
+)
+"""All claims, in the article's order; then those of other publications (``Claim.of``)."""

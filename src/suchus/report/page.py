@@ -106,7 +106,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
         "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _PUT_IN},
         "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
-        "untouched": [c for c in CLAIMS.values() if judged and c.key not in {v["claim"] for v in verdicts}],
+        "untouched": [c for c in CLAIMS.values() if judged and not c.of and c.key not in words],
         "beside": beside(robot, {result.name: result for result in results}),
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),

@@ -2,9 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
+from suchus.paper import CLAIMS
 from suchus.verdict.judging import WORDS
 from suchus.verdict.rule import Rule, listed
 from suchus.verdict.table import RULES
@@ -20,7 +21,7 @@ STANDINGS: tuple[Standing, ...] = get_args(Standing)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvidenceCount:
-    """How many claims there are of each standing, and what became of them."""
+    """How many claims of the article there are of each standing, and what became of them."""
 
     claims: int
     """Number of claims with a verdict [-]."""
@@ -32,6 +33,8 @@ class EvidenceCount:
     """Number of claims of each standing [-]."""
     agree: Mapping[Standing, int]
     """Number of those in which the article's statement, and for fits its number, came out [-]."""
+    elsewhere: Mapping[str, int] = field(default_factory=dict)
+    """Of the claims of other publications the number of each word that occurs, in the order of ``WORDS`` [-]."""
 
     def __str__(self) -> str:
         """Return the count as one or two sentences, for the README and the report alike."""
@@ -53,32 +56,43 @@ class EvidenceCount:
             "not testable": "not testable",
         }
         told = [f"{of[name]} {what}" for name, what in others.items() if of[name]]  # type: ignore[index]
-        return f"{text} The others could not: {listed(told)}." if told else text
+        text = f"{text} The others could not: {listed(told)}." if told else text
+        if not self.elsewhere:
+            return text
+        came = ", ".join(f"{count} {word}" for word, count in self.elsewhere.items())
+        return f"{text} Of {sum(self.elsewhere.values())} statements of other publications on salamanders: {came}."
 
 
 def counted(
     verdicts: Mapping[str, str], fragile: Iterable[str] = (), rules: Mapping[str, Rule] = RULES
 ) -> EvidenceCount:
-    """Return how many verdicts are evidence, and what became of them and of the others.
+    """Return how many verdicts on the article are evidence, what became of them and of the others, and elsewhere.
 
     Args:
         verdicts: the word of each claim.
         fragile: claims whose word other plausible designs reverse.
         rules: by claim; a claim without one counts as measured.
     """
+    published = {claim: word for claim, word in verdicts.items() if claim in CLAIMS and CLAIMS[claim].of}
+    verdicts = {claim: word for claim, word in verdicts.items() if claim not in published}
     standing = standings(verdicts, rules)
     of, agree = (
         Counter(standing.values()),
         Counter(standing[claim] for claim, word in verdicts.items() if word in _AGREES[standing[claim]]),
     )
-    words = Counter(word for claim, word in verdicts.items() if standing[claim] == "evidence")
     return EvidenceCount(
         claims=len(verdicts),
-        words={word: words[word] for word in WORDS if words[word]},
+        words=_by_word(word for claim, word in verdicts.items() if standing[claim] == "evidence"),
         fragile=sum(standing.get(claim) == "evidence" for claim in fragile),
         standing={name: of[name] for name in STANDINGS},
         agree={name: agree[name] for name in STANDINGS},
+        elsewhere=_by_word(published.values()),
     )
+
+
+def _by_word(words: Iterable[str]) -> dict[str, int]:
+    count = Counter(words)
+    return {word: count[word] for word in WORDS if count[word]}
 
 
 _AGREES: Mapping[Standing, Sequence[str]] = {

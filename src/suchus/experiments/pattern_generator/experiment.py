@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import radians
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -47,6 +47,8 @@ class PatternGeneratorExperiment(Experiment):
     shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
     answers = ("frequency_walk", "frequency_swim", "frequency_jump", "lag_walk", "lag_swim", "locked_share")
     needs = ("limbs", "axis")
+    judged_with = ("robot", "gait", "walk", "swim", "asymmetry")
+    judged_from: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 6.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""
@@ -152,7 +154,8 @@ class PatternGeneratorExperiment(Experiment):
                 measures[f"stride_{arm}"] = Measure(
                     float(turning.forward / turning.walked / record.attrs["length"]), "L/cycle"
                 )
-        return measures | one_drive.measures(record)
+        gained = abs(measures["turn_asymmetry"].value - measures["turn_straight"].value)
+        return measures | {"turn_gained": Measure(gained, "rad/cycle")} | one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the drive does, what steers, and how order comes about."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -53,6 +53,8 @@ class Salamander(Experiment):
         "belly_share",
     )
     needs = ("salamander_joints",)
+    judged_with = ("robot", "gait", "loaded")
+    judged_from: ClassVar[Mapping[str, float]] = {"settle": 3, "cycles": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -33,6 +33,8 @@ class SalamanderSwim(Experiment):
     shows = "Beyond the article: kinematics of swimming salamanders"
     answers = ("stride_swim", "stride_off", "strouhal", "swing_tail", "share_under")
     needs = ("salamander_joints",)
+    judged_with = ("robot", "frequencies")
+    judged_from: ClassVar[Mapping[str, float]] = {"settle": 6, "cycles": 4}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that swims; a table of angles made for it is played."""
