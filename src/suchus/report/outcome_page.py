@@ -34,8 +34,8 @@ MARKS = {
 """Sign of each verdict, for those who do not see its colour."""
 MOST = 6
 """Numbers that stand below an answer [-]."""
-_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "rule": (), "models": ()}
-"""What outcomes of version 0.1 do not say of a verdict."""
+_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
+"""What older outcomes do not say of a verdict."""
 _WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
 """What parts of the names of measures are short for."""
 _HEAVY = 2 * 2**20
