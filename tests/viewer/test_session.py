@@ -185,7 +185,7 @@ def test_repaired_joints_are_no_longer_listed():
     assert session.settings.broken == ()
     assert "LF_wrist" in session.lose("LF_wrist", "limp")
     assert "Did you mean 'slow'" in session.lose("LF_yaw", "slo")
-    assert "0.001 to 7 rad/s" in session.lose("LF_yaw", "slow", speed=9.0)
+    assert "0.001 to 7.873 rad/s" in session.lose("LF_yaw", "slow", speed=9.0)
     assert session.settings.broken == ()
 
 

@@ -57,8 +57,8 @@ class GallopLimits(Experiment):
     """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
-    torques: tuple[float, ...] = (1.5, 3.0, 6.0)
-    """Torque limits of the legs' servos [N m]."""
+    torques: tuple[float, ...] = (1.5, 3.0, 4.9)
+    """Torque limits of the legs' servos [N m]; the last is that of the robot's own."""
     trunk_over_legs: float = 4.0 / 3.0
     """Torque limit of the servos that pitch the trunk over the legs' [-]; so in the search for bounds and trots."""
     others_over_legs: float = 2.5 / 3.0
