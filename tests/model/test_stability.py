@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from body_files import giant
-from suchus.design import with_values
-from suchus.design.scale import physics_step, scaled
+from suchus.design import with_servos, with_values
+from suchus.design.scale import physics_step, scaled, swim_servo_for
 from suchus.experiments import EXPERIMENTS
 from suchus.gaits import GAITS
 from suchus.land import VACUUM, Run, simulate
@@ -37,7 +37,8 @@ def test_a_robot_that_is_nearly_as_stiff_rolls_in_the_same_steps():
 
 def test_a_run_without_ground_that_is_asked_for_no_step_takes_one_that_holds_it():
     """Its steps are explicit, where those on ground are not: a servo of strong dampers needs shorter ones."""
-    swimmer, gait = ROBOTS["swimmer"], GAITS["undulation"]
+    shelved, gait = ROBOTS["swimmer"], GAITS["undulation"]
+    swimmer = with_servos(shelved, lambda _: swim_servo_for(shelved.mass, shelved.length))
     dampers = {f"axis[{i}].hinges[0].drive.kd": 4 * part.hinges[0].drive.kd for i, part in enumerate(swimmer.axis[:-1])}
     stiff = with_values(swimmer, dampers)
     fastest = {}
@@ -47,3 +48,8 @@ def test_a_run_without_ground_that_is_asked_for_no_step_takes_one_that_holds_it(
         assert step or record.attrs["timestep"] <= longest_step(robot)
     assert min(fastest) < 0.3 * physics_step(swimmer)
     assert fastest[min(fastest)] < 15.0 < 30.0 < fastest[physics_step(swimmer)]  # the joints rattle
+
+
+def test_a_servo_with_a_motor_is_as_stiff_as_one_without(robot, former):
+    """Torque that falls with speed moves nothing at rest."""
+    assert longest_step(robot) == pytest.approx(longest_step(former), rel=1e-6)

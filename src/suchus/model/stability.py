@@ -10,6 +10,7 @@ from jaxtyping import Float
 from suchus.design import Robot
 from suchus.model.build import compile_model
 
+_KP_MOTOR, _KD_MOTOR = 4, 6  # columns of ``actuator_gainprm`` in which MuJoCo keeps the gains of a dcmotor
 _REACH = 2.785
 """Step times rate up to which a fourth-order Runge-Kutta step lets a decay decay [-]."""
 
@@ -33,7 +34,7 @@ def longest_step(robot: Robot) -> float:
     servos = _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv)
     cables = _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
     for arms, springs, dampers in (
-        (servos, -model.actuator_biasprm[:, 1], -model.actuator_biasprm[:, 2]),
+        (servos, *_gains(model)),
         (cables, _first(model.tendon_stiffness, model.ntendon), _first(model.tendon_damping, model.ntendon)),
     ):
         stiffness += arms.T @ (springs[:, None] * arms)
@@ -42,6 +43,15 @@ def longest_step(robot: Robot) -> float:
     pulled, slowed = (-np.linalg.solve(mass, one) for one in (stiffness, damping))
     rates = np.linalg.eigvals(np.block([[still, np.eye(model.nv)], [pulled, slowed]]))
     return _REACH / float(np.abs(rates).max())
+
+
+def _gains(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the proportional [N m/rad] and derivative gains [N m s/rad] of a model's servos."""
+    wound = model.actuator_dyntype == int(mujoco.mjtDyn.mjDYN_DCMOTOR)
+    return (
+        np.where(wound, model.actuator_gainprm[:, _KP_MOTOR], -model.actuator_biasprm[:, 1]),
+        np.where(wound, model.actuator_gainprm[:, _KD_MOTOR], -model.actuator_biasprm[:, 2]),
+    )
 
 
 def _first(values: Any, count: int) -> Float[np.ndarray, " n"]:

@@ -6,7 +6,7 @@ from suchus.design import Hinge, Robot, Rod, Segment, Servo, Shell
 from suchus.design.physics import WATER_DENSITY
 from suchus.design.pieces import volumes
 from suchus.design.reasons import Reason, chosen_numbers
-from suchus.design.scale import contact_for, swim_servo_for
+from suchus.design.scale import contact_for, servo_for
 from suchus.robots._plans import BY_SIZE
 
 _COUNT, _SEGMENT, _HEIGHT, _WIDTH = 11, 0.095, 0.056, 0.040
@@ -40,7 +40,7 @@ def _shapes(name: str, mass: float) -> tuple[Shell | Rod, ...]:
 
 def _swimmer(mass: float) -> Robot:
     """Return it with segments of some mass [kg]."""
-    servo = swim_servo_for(_COUNT * mass, _LENGTH)
+    servo = servo_for(_COUNT * mass, _LENGTH)
     return Robot(
         name="swimmer",
         root=f"segment_{_ROOT + 1}",
@@ -64,12 +64,6 @@ robot = _swimmer(_AFLOAT * WATER_DENSITY * sum(volumes(_swimmer(1.0)).values()) 
 """A row of equal segments that float with a twentieth of their volume above the water."""
 
 _OWN = (
-    Reason(
-        r"\.drive\.",
-        0.5,
-        2.0,
-        "holds the water at the beat of its size, as AmphiBot's motors do within 2 degrees; half and twice do too",
-    ),
     Reason(r"\.half\[0\]$", 0.9, 1.1, "neighbouring shells overlap by a tenth, so that the outline closes"),
     Reason(r"\.(start|end|radius)", 0.7, 1.3, "a flat belly, so that it does not roll to its side"),
     Reason(r"\.mass$", 0.9, 1.1, "together they float with a twentieth of their volume above the water, batteries low"),
