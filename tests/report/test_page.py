@@ -196,7 +196,7 @@ def test_the_page_of_an_outcome_tells_answer_numbers_verdicts_settings_and_data(
         'It was "put in" <i>by hand</i>.',
         "a < b",
         "suchus run question",
-        "All are as on the shelf.",
+        "All are the defaults.",
     ):
         assert said in text
     assert text.index("What is put in.") < text.index("−0.5 m") < text.index("by hand") < text.index("not finite")
