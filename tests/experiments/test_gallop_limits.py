@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.design import layout
 from suchus.errors import InvalidDesign
-from suchus.experiments.gallop_limits.experiment import GallopLimits, _first, experiment
+from suchus.experiments.gallop_limits.experiment import GallopLimits, _first, experiment, fastest
 from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS
 from suchus.metrics import flight_share
 from suchus.motion import START, cycle_targets
@@ -60,9 +60,19 @@ def test_the_explanation_follows_the_measures():
     told = experiment.explain(measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4)))
     assert "does not outrun the fastest trot or walk (0.40 m/s)" in told
     assert "it gallops with servos of 14 rad/s and all faster ones" in told
-    told = experiment.explain(measured((0.6, 0.3, 0.3), (0.4, 0.0, 0.0)))
+    told = experiment.explain(measured((0.6, 0.6, 0.6), (0.09, 0.09, 0.09)))
     assert "and outruns the fastest trot or walk" in told
     assert "no servo speed of the map" in told
+
+
+def test_a_better_servo_does_what_a_lesser_one_does():
+    one = record((0.6, 0.3, 0.9), (0.4, 0.0, 0.2))
+    strong = one.assign(speed=0.5 * one.speed).assign_coords(torque=[5.0])
+    both = xr.concat([one, strong], "torque", data_vars="minimal")
+    bound, walk = fastest(both, "bound"), fastest(both, "trot", "walk")
+    assert bound.speed.values.tolist() == [[0.6, 0.6, 0.9]] * 2
+    assert bound.flight.values.tolist() == [[0.4, 0.4, 0.2]] * 2  # of the gait that is taken
+    assert walk.speed.values.tolist() == [[0.4, 0.4, 0.4]] * 2
 
 
 def test_nothing_touches_in_flight():
