@@ -21,6 +21,7 @@ from suchus.design import (
     servo_names,
     servo_ranges,
 )
+from suchus.design.body import servos_of
 from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
 from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.gaits import GAITS
@@ -226,6 +227,17 @@ def test_the_rules_give_back_the_servo_that_the_articles_robot_had_before_it_was
     rule, own = servo_for(CAIMAN.mass, CAIMAN.length), former.hind_leg.servo
     for name in ("kp", "kd", "torque", "speed", "armature", "damping"):
         assert getattr(rule, name) == pytest.approx(getattr(own, name), rel=0.1), name
+
+
+def test_a_motor_in_another_size_is_as_warm_and_none_that_is_sold():
+    """Its power grows as the body's weight times its speed, and its thermal resistance falls as much."""
+    own, small = CAIMAN.hind_leg.servo.winding, servos_of(scaled(BODY, length_factor=0.25))["LH_knee"].winding
+    power = 0.25**3 * 0.25**0.5  # weight times speed
+    assert (own.motor, small.motor, small.volts) == ("STS3250", "", own.volts)
+    assert small.stall_current == pytest.approx(power * own.stall_current)
+    for share in (0.01, 0.02):
+        loss = share * own.volts * own.stall_current
+        assert small.heat.steady(power * loss) == pytest.approx(own.heat.steady(loss))
 
 
 @pytest.mark.parametrize(("length", "period"), [(0.1, 0.005), (0.5, 0.01), (1.01, 0.01), (3.0, 0.02)])

@@ -27,7 +27,7 @@ gait = GaitInMetres(
 ).gait(LIMBS)
 """A walking trot, each hind foot a little after its diagonal front foot."""
 
-_AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls 3 instead of 7 degrees"
+_AFTER = "after its diagonal front foot, a trot within an eighth of a cycle: the body rolls less"
 _ROWS: tuple[tuple[str, float, float, str], ...] = (
     (
         "period",
@@ -39,7 +39,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limb_phases[1]", 0.5, 0.5, "left and right alternate, as in the article's diagonal gait"),
     ("limb_phases[2]", 0.375, 0.5, _AFTER),
     ("limb_phases[3]", -0.125, 0.0, _AFTER),
-    ("duty_factor", 0.65, 0.72, "below 0.65 the body rolls more than 9 degrees; longer stance asks for faster swings"),
+    ("duty_factor", 0.65, 0.72, "with less the body rolls more; longer stance asks for faster swings"),
     ("stroke", 0.033 / FRONT, 0.045 / FRONT, "longer ones ask more speed of the knee than its servo has"),
     ("lift", 0.022 / FRONT, 0.045 / FRONT, "clears bumps of 40 mm up and down; on even ground it costs power alone"),
     ("limbs[0].outward", 0.0, 0.0, "erect feet stand below their hips"),
@@ -48,7 +48,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         "limbs[0].ahead",
         -0.04 / FRONT,
         -0.016 / FRONT,
-        "feet a little behind the hips: the body rolls 4 instead of 14 degrees",
+        "feet a little behind the hips, so that the body rolls less",
     ),
     ("limbs[1].ahead", -0.03 / HIND, -0.012 / HIND, "feet a little behind the hips"),
     (
@@ -65,7 +65,7 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
         "tail_pitch",
         0.35,
         0.45,
-        "the tail carries 2.5 N: lifted, the body rolls 14 degrees and loses a third of its speed",
+        "the tail carries some weight: lifted, the body rolls more and loses speed",
     ),
 )
 chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)

@@ -57,11 +57,11 @@ _ROWS: tuple[tuple[str, float, float, str], ...] = (
     ("limbs[0].ahead", -0.05 / FRONT, -0.02 / FRONT, "behind the hip, which turns the elbow back"),
     ("limbs[1].ahead", 0.02 / HIND, 0.05 / HIND, "ahead of the hip, which turns the knee forward"),
     ("height", 0.11 / HIND, 0.13 / HIND, "70 mm of clearance below the belly"),
-    ("trunk_bend", 0.17, 0.7, "each degree adds 2.5 mm/s; beyond 40 degrees the heading wanders"),
+    ("trunk_bend", 0.17, 0.7, "more bend adds stride; with much the heading wanders"),
     ("axis_lag", -0.15, 0.15, "zero carries each girdle's swing foot farthest ahead at touch-down"),
     ("tail_bend", 0.0, 0.52, "it changes speed by less than 2 %"),
     ("tail_lag", 0.5, 1.0, "against the trunk, which keeps the heading best"),
-    ("tail_pitch", 0.3, 0.4, "the tail carries 5 N and keeps the body from rolling"),
+    ("tail_pitch", 0.3, 0.4, "the tail carries some weight and keeps the body from rolling"),
 )
 chosen = tuple(Chosen(field=field, low=low, high=high, why=why) for field, low, high, why in _ROWS)
 """The article gives no number of it: every number with its plausible range and the reason."""
