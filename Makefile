@@ -1,13 +1,14 @@
 # Everything sets up its own .venv; every path is relative, so a checkout may live under a name with spaces.
 PYTHON ?= python3
 PY := .venv/bin/python
-INSTALL := $(PY) -m pip --disable-pip-version-check --quiet install --no-compile --editable
+PIP := $(PY) -m pip --disable-pip-version-check --quiet install --no-compile
+NEEDED := --require-hashes --constraint pins.txt --build-constraint pins.txt --requirement .venv/needs.txt
+EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder has no digest, its builders have
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
-export PIP_CONSTRAINT := constraints.txt
 
 .PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas bench docs
-.PHONY: release licences matrix sizes clean
+.PHONY: release version pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus reproduce --out out
@@ -49,23 +50,29 @@ atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on
 	$(PY) -m suchus flow-atlas --out out/atlas
 	$(PY) tools/atlas_page.py out/atlas
 
-.venv/.base:
+.venv/.base: pins.txt # only a pip of today compares digests of what is asked for by name
 	$(PYTHON) -m venv .venv
-	$(PY) -m pip --disable-pip-version-check --quiet install --no-compile "pip>=25" # an old one takes twice as long
+	sed -n '/^pip==/,/[^\\]$$/p' pins.txt > .venv/pip.txt
+	$(PIP) --require-hashes --requirement .venv/pip.txt
 	touch $@
 
-.venv/.runtime: .venv/.base pyproject.toml constraints.txt
+.venv/.runtime: .venv/.base pyproject.toml pins.txt
 	@echo "Installing suchus into .venv (once, about a minute) ..."
-	$(INSTALL) .
+	$(PY) tools/needs.py > .venv/needs.txt
+	$(PIP) $(NEEDED)
+	$(EDITABLE)
 	touch $@
 
-.venv/.dev: .venv/.base pyproject.toml constraints.txt
+.venv/.dev: .venv/.base pyproject.toml pins.txt
 	@echo "Installing suchus and what its tests need into .venv (once, half a minute) ..."
-	$(INSTALL) ".[dev]"
+	$(PY) tools/needs.py dev > .venv/needs.txt
+	$(PIP) $(NEEDED)
+	$(EDITABLE)
 	touch .venv/.runtime $@
 
 .venv/.docs: .venv/.dev
-	$(INSTALL) ".[dev,docs]"
+	$(PY) tools/needs.py dev docs > .venv/needs.txt
+	$(PIP) $(NEEDED)
 	touch $@
 
 bench: .venv/.dev
@@ -78,9 +85,14 @@ docs: .venv/.docs
 release: .venv/.dev # wheel and sdist, tried in fresh environments; nothing is published
 	$(PY) tools/make_release.py
 
-licences: .venv/.dev # of every package that is installed here, extras and development tools included
-	@$(PY) -m pip --disable-pip-version-check --quiet install pip-licenses
-	@$(PY) -m piplicenses --from=mixed --order=license --format=markdown
+version: .venv/.dev # whether all places and the tag of this commit say the same version
+	$(PY) tools/make_release.py --check
+
+pins: .venv/.dev # pins.txt anew, after a version in constraints.txt has changed
+	$(PY) tools/pins.py
+
+licences: .venv/.dev # of every package of every extra and of the development tools, installed or not
+	@$(PY) tools/licences.py
 
 matrix: .venv/.dev # every Python that is here, newest and lowest versions
 	$(PY) tools/matrix.py $(TESTS)

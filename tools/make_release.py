@@ -2,15 +2,16 @@
 
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
 ``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
-steps. It is built twice, to the same bytes, with the versions of ``release/constraints.txt``, and a bill of materials
-stands beside it. A commit whose tag says another version is refused first. Nothing is published;
-docs/publishing.md says how that is done.
+steps. It is built twice, to the same bytes, with the versions of ``release/pins.txt``, and a bill of materials
+stands beside it. A commit whose files or tag say another version is refused first, and with ``--check`` nothing else is
+done. Nothing is published; docs/publishing.md says how that is done.
 """
 
 import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from release import distributions, dockerfile
@@ -20,13 +21,23 @@ _WORDS = (("doctor",), ("demo", "--no-browser"), ("run", "displacement", "--quic
 _LEFT = ("suchus_demo.html", "out/displacement/outcome.json", "out/report.html")
 
 
-def main() -> int:
-    """Build, try, and return 0, or 1 where something is wrong."""
+def main(words: Sequence[str] = ()) -> int:
+    """Build, try, and return 0, or 1 where something is wrong.
+
+    Args:
+        words: ``--check`` if only the version is to be looked at.
+    """
     began = time.monotonic()
-    tags, version = distributions.tags(), distributions.project()["version"]
-    if wrong := distributions.mistagged(tags, version):
+    tags, versions = distributions.tags(), distributions.versions()
+    version = versions["pyproject.toml"]
+    if wrong := distributions.disagreement(versions, tags):
         print(wrong, file=sys.stderr)
         return 1
+    if "--check" in words:
+        print(f"{', '.join(versions)}{' and the tag' * bool(tags)} say version {version}.")
+        if not tags:
+            print(f"This commit has no tag; where it is to be released: git tag v{version}")
+        return 0
     place = Path(tempfile.mkdtemp(prefix="suchus release "))
     try:
         wheel, sdist = _built(place)
@@ -110,4 +121,4 @@ def _contained(place: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

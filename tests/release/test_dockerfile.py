@@ -26,14 +26,15 @@ def kept(name, ignore):
 def test_everything_that_is_copied_is_there_and_is_sent():
     ignore = (ROOT / ".dockerignore").read_text(encoding="utf-8")
     names = dockerfile.copied(STEPS)
-    assert len(names) == 5
+    assert len(names) == 6
     assert all((ROOT / name).exists() and kept(name, ignore) for name in names)
     assert not kept(".git", ignore)
+    assert not kept("tools/pins.py", ignore)
 
 
-def test_its_python_is_one_that_suchus_runs_on():
+def test_its_python_is_one_that_suchus_runs_on_and_named_by_its_digest():
     (image,) = [step.rest for step in STEPS if step.word == "FROM"]
-    assert re.fullmatch(r"python:3\.1[1-9]-slim", image)
+    assert re.fullmatch(r"python:3\.1[1-9]-slim@sha256:[0-9a-f]{64}", image)
 
 
 def test_it_begins_with_a_command_of_suchus_and_not_as_root():

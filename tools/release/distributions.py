@@ -1,6 +1,7 @@
 """Wheel and sdist: built from the checkout, and what is in them."""
 
 import hashlib
+import re
 import tarfile
 import tomllib
 import zipfile
@@ -11,6 +12,12 @@ from typing import Any
 from release.environment import PINNED, ROOT, Environment, clean, run
 
 PACKAGE = "src/suchus"
+_SAID = {
+    "pyproject.toml": r'^version = "([^"]+)"',
+    "CHANGELOG.md": r"^## (\d\S*) \(\d{4}-\d\d-\d\d\)$",  # the latest stands first
+    "CITATION.cff": r"^version: (\S+)$",
+    "recipe/recipe.yaml": r'^  version: "?([^"\s]+)',
+}
 _BESIDE = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md")
 
 
@@ -25,32 +32,50 @@ def tags(checkout: Path = ROOT) -> list[str]:
     return run(["git", "tag", "--points-at", "HEAD", "--list", "v[0-9]*"], cwd=checkout).split()
 
 
-def mistagged(tags: Sequence[str], version: str) -> str:
-    """Return in a sentence that tags say another version than pyproject.toml, or nothing."""
-    if not tags or list(tags) == [f"v{version}"]:
+def versions(checkout: Path = ROOT) -> dict[str, str]:
+    """Return the version that each file says which has one; empty where it says none."""
+    found = {}
+    for name, pattern in _SAID.items():
+        said = re.search(pattern, (checkout / name).read_text(encoding="utf-8"), re.M)
+        found[name] = said[1] if said else ""
+    return found
+
+
+def disagreement(versions: Mapping[str, str], tags: Sequence[str]) -> str:
+    """Return in a sentence that files or tags of a commit say another version than pyproject.toml, or nothing.
+
+    Args:
+        versions: what each file says, see ``versions``.
+        tags: those of the commit; none where it has none.
+    """
+    version = versions["pyproject.toml"]
+    other = [f"{name} says {said or 'none'}" for name, said in versions.items() if said != version]
+    other += [f"this commit has the tag {tag}" for tag in tags if tag != f"v{version}"]
+    if not other:
         return ""
     return (
-        f"this commit has the tag {', '.join(tags)}, and pyproject.toml says version {version}: one commit has one "
-        f"version. Say the same in pyproject.toml, CHANGELOG.md, CITATION.cff and recipe/recipe.yaml, or move the tag "
-        f"with `git tag --delete {' '.join(tags)}` and `git tag v{version}`."
+        f"pyproject.toml says version {version}, but {', '.join(other)}: one commit has one version. Say the same in "
+        f"{', '.join(versions)}, and tag the commit with `git tag v{version}`, or remove a wrong tag with `git tag "
+        "--delete`."
     )
 
 
-def build(tools: Environment, folder: Path) -> tuple[Path, Path | None]:
+def build(tools: Environment, folder: Path, checkout: Path = ROOT) -> tuple[Path, Path | None]:
     """Build into a folder, and return wheel and sdist.
 
     The wheel is made from the sdist. Where the package ``build`` is not to be had, pip makes the wheel alone.
+    What builds is pinned, with digests.
     """
     folder.mkdir(exist_ok=True)
     for old in [*folder.glob("suchus-*.whl"), *folder.glob("suchus-*.tar.gz")]:
         old.unlink()
-    pinned = clean() | {"PIP_CONSTRAINT": str(PINNED)}  # of the environment in which the build back end runs
-    if tools.pip_if_served("build"):
-        run([tools.bin / "python", "-m", "build", "--outdir", folder, ROOT], cwd=folder, env=pinned)
+    if tools.pip_if_served("build"):  # the build back end runs in an environment of its own, which pip makes
+        pinned = clean() | {"PIP_CONSTRAINT": str(PINNED)}
+        run([tools.bin / "python", "-m", "build", "--outdir", folder, checkout], cwd=folder, env=pinned)
     else:
         print("The package build is not to be had: pip builds the wheel, and there is no sdist.")
-        words = [tools.bin / "python", "-m", "pip", "wheel", "--no-deps", "--wheel-dir", folder, ROOT]
-        run(words, cwd=folder, env=pinned)
+        words = ["wheel", "--no-deps", "--build-constraint", PINNED, "--wheel-dir", folder, checkout]
+        run([tools.bin / "python", "-m", "pip", *words], cwd=folder)
     (wheel,) = folder.glob("suchus-*.whl")
     return wheel, next(iter(folder.glob("suchus-*.tar.gz")), None)
 

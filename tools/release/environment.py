@@ -1,6 +1,7 @@
 """A fresh environment: an interpreter with its packages, and commands that run in it away from the checkout."""
 
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -10,13 +11,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PINNED = Path(__file__).with_name("constraints.txt")
-"""Versions of what builds and checks a release."""
+PINNED = Path(__file__).with_name("pins.txt")
+"""Versions and digests of what builds and checks a release."""
 _OURS = ("PYTHONPATH", "PYTHONHOME", "PIP_CONSTRAINT", "VIRTUAL_ENV", "UV_CONSTRAINT", "SUCHUS_THREADS")
 
 
 class Failed(Exception):
     """A command that ended badly; its output stands in the message."""
+
+
+def pins(text: str) -> dict[str, str]:
+    """Return the entries of a file of pins by their packages' names, each a version with its digests."""
+    joined = (entry for entry in re.split(r"(?<!\\)\n", text) if "==" in entry)
+    return {entry.partition("==")[0]: entry for entry in joined}
 
 
 def clean(path: str = "") -> dict[str, str]:
@@ -70,9 +77,17 @@ class Environment:
         run([self.bin / "python", "-m", "pip", "--quiet", "install", *words], cwd=self.folder.parent)
 
     def pip_if_served(self, name: str) -> bool:
-        """Install a tool in the version of ``PINNED`` and return True, or False where it is not to be had."""
+        """Install a tool in the version of ``PINNED`` and return True, or False where it is not to be had.
+
+        Its files and those of all that it needs are compared with their digests. pip is pinned first: an old one does
+        not compare what is asked for by name.
+        """
+        pip = self.folder / "pip.txt"
         try:
-            self.pip("--constraint", PINNED, name)
+            if not pip.exists():
+                pip.write_text(pins(PINNED.read_text(encoding="utf-8"))["pip"], encoding="utf-8")
+                self.pip("--require-hashes", "--requirement", pip)
+            self.pip("--require-hashes", "--constraint", PINNED, "--build-constraint", PINNED, name)
         except Failed:
             return False
         return True
