@@ -1,5 +1,6 @@
 """Robot and flow together: momentum, energy and what is left over, repeats, and what is refused."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,10 +8,13 @@ import pytest
 
 import suchus
 from suchus.control import Swimming
+from suchus.control.holding import HeadingHold
 from suchus.coupling import Swim, simulate
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.land import Ground, Lake, Run
+from suchus.errors import InvalidDesign, UnknownName, UnreadableFile
+from suchus.fingerprint import fingerprint
+from suchus.land import Ground, Lake, Push, Run
 from suchus.land.waters import Sections, Slice, Space
+from suchus.progress import silent
 from suchus.record import COUPLED, WATER
 from suchus.water import swim_of
 
@@ -73,3 +77,68 @@ def test_a_run_in_a_flow_keeps_to_its_rung():
 def test_a_gait_that_the_flow_cannot_see_is_refused(robot, gait, why):
     with pytest.raises(InvalidDesign, match=why):
         Swim(Run(robot=robot, gait=gait, water="slice"), 0.1)
+
+
+def disturbed():
+    """A swim in which controller, noise, push and fault all have a say."""
+    robot = suchus.ROBOTS["swimmer"]
+    gait = swim_of(robot, frequency=1.0)
+    push = Push(force=(0.0, 0.3, 0.0), at=0.02, duration=0.035, body=robot.axis[0].name)
+    return Run(
+        robot=robot, gait=gait, water=SLICE, control=Swimming(ramp=0.1, heading=HeadingHold()), noise=0.01,
+        pushes=(push,), faults=(suchus.Limp("tail_yaw_5", at=0.045),), label="disturbed",
+    )  # fmt: skip
+
+
+class Killed(BaseException):
+    """A process that ends where it is."""
+
+
+def killed(run, file):
+    """A swim that is killed at 0.06 s of 0.1 s, each of whose steps was kept."""
+
+    def look(swim):
+        swim.samples.add("seen", swim.time, x=swim.stepper.now.place[0])
+        if swim.time > 0.06:
+            raise Killed
+
+    with pytest.raises(Killed):
+        Swim(run, 0.1).go(0.1, watch=look, checkpoint=file, checkpoint_every=0.0, progress=silent)
+
+
+def test_a_swim_that_was_killed_goes_on_to_the_same_bytes(tmp_path):
+    run, shares = disturbed(), []
+    file = tmp_path / f"{fingerprint(Swim(run, 0.1).setup)[:16]}.kept-swim"
+    whole = simulate([run], duration=0.1)
+    killed(run, file)
+    rest = simulate([run], duration=0.1, keep=tmp_path, progress=lambda stage, share: shares.append(share))
+    assert min(shares) > 0.5
+    assert rest.identical(whole)
+    assert [*tmp_path.iterdir()] == [file]
+    ended = Swim(run, 0.1)
+    ended.go(0.1, checkpoint=file, progress=silent)
+    assert 0 < ended.samples.count("seen") < len(ended.series.time)
+    with pytest.raises(UnreadableFile, match="written by another setup"):
+        Swim(replace(run, seed=1), 0.1).go(0.1, checkpoint=file, progress=silent)
+
+
+def test_who_commands_otherwise_than_before_does_not_go_on(tmp_path):
+    run = disturbed()
+    one, other = Swim(run, 0.1), Swim(replace(run, seed=1), 0.1)
+    one.step(0.1)
+    with pytest.raises(UnreadableFile, match=r"its controller commands otherwise at t = 0 s than it did"):
+        other.resume(one.state())
+
+
+def test_a_push_acts_in_each_go_through_a_stretch():
+    run = replace(disturbed(), noise=0.0, faults=())
+    swims = [Swim(one, 0.06) for one in (run, replace(run, pushes=()))]
+    for swim in swims:
+        swim.go(0.06, progress=silent)
+    for swim, impulse in zip(swims, (0.3 * 0.035, 0.0), strict=True):
+        steps = np.diff([0.0, *swim.series.time])
+        from_water = steps @ np.array(swim.series.force)[:, 1]
+        momentum = (swim.stepper.mass() @ swim.stepper.now.rate)[1]
+        assert momentum - from_water == pytest.approx(impulse, abs=3e-4)
+    ends = {round(time, 9) for time in swims[0].series.time}
+    assert {0.02, 0.05, 0.06} <= ends  # the control periods in which it begins and ends

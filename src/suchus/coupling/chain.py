@@ -190,7 +190,7 @@ class MidlineChain:
         """Return the motions of the parts for a unit rate of each coordinate; see ``twists``."""
         return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
 
-    def body(self, path: "Path", axes: int, least: float, half_height: np.ndarray) -> flow.Midline | flow.Trunk:
+    def body(self, path: "Way", axes: int, least: float, half_height: np.ndarray) -> flow.Midline | flow.Trunk:
         """Return the robot as a body of the flow that goes along a path."""
 
         def spine(time: float) -> flow.MidlineState:
@@ -200,7 +200,7 @@ class MidlineChain:
             return flow.Midline(spine=spine, cuts=self.cuts)
         return flow.Trunk(spine=spine, half_height=half_height, cuts=self.cuts)
 
-    def motion(self, path: "Path", axes: int, least: float) -> Callable[[float], flow.Pose]:
+    def motion(self, path: "Way", axes: int, least: float) -> Callable[[float], flow.Pose]:
         """Return where the centre of the same body is along a path."""
         return lambda time: path.seen(time, lambda posture: self.state(posture, least))[1].along(axes)
 
@@ -210,7 +210,7 @@ def _summed(steps: np.ndarray) -> np.ndarray:
     return np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
 
 
-class Path:
+class Way:
     """A chain's way through one step: the cubic that has its places and rates at both ends."""
 
     def __init__(self, time: float, posture: ChainState) -> None:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 import xarray as xr
@@ -35,6 +35,16 @@ class Series:
     """Times at which the added mass was computed anew [s], and by how much it then differed: the spectral radius of
     the difference over the whole inertia [-]."""
 
+    def state(self) -> dict[str, np.ndarray]:
+        """Return all that is kept as arrays, by name."""
+        return {one.name: np.array(getattr(self, one.name)) for one in fields(self)}
+
+    @classmethod
+    def of(cls, state: Mapping[str, np.ndarray]) -> "Series":
+        """Return what ``state`` gave."""
+        arrays = ("force", "links")
+        return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
+
 
 def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, added: np.ndarray) -> xr.Dataset:
     """Return the record of a coupled run: that of the robot, and beside it what the water did.
@@ -55,7 +65,7 @@ def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, 
     about = {"units": "1", "long_name": "the flow as JSON, with its settings"}
     names = ["root_x", "root_y", "root_yaw", *chain.joints]
     inertia = {"units": "kg, kg m, kg m2", "long_name": "added mass at the start, of each coordinate in each"}
-    at, radius = np.array(series.radius).reshape(-1, 2).T
+    radius = np.array(series.radius).reshape(-1, 2)[:, 1]
     spread = {
         "units": "1",
         "long_name": "by how much the added mass was off when it was computed anew: spectral radius",
@@ -68,7 +78,6 @@ def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, 
             "radius": (("run",), [float(radius.max(initial=0.0))], spread),
         }
     )
-    del at
     links = [f"link_{k + 1}" for k in range(int(chain.links.max()) + 1)]
     return found.assign_coords(link=links, coordinate=names, coordinate_too=names)
 

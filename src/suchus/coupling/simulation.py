@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -9,6 +10,7 @@ import xarray as xr
 from suchus import land
 from suchus.coupling.swim import Swim
 from suchus.errors import Diverged, InvalidDesign
+from suchus.fingerprint import fingerprint
 from suchus.land.readings import with_equal_variables
 from suchus.land.run import Run
 from suchus.progress import Progress, portion, silent
@@ -20,6 +22,7 @@ def simulate(
     duration: float = 9.0,
     timestep: float | None = None,
     every: int = 1,
+    keep: Path | str | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate runs whatever their water is, each as ``land.simulate`` does or with the flow around it.
@@ -32,6 +35,8 @@ def simulate(
         duration: [s].
         timestep: of the physics [s]; that of the robots' size, and in a flow of its steps, if None.
         every: keep one sample of so many control periods.
+        keep: folder in which each run in a flow, robot and water, is kept as far as it has come, in a file named after
+            the run; where it holds one, the run goes on from there, to the same bytes. None keeps nothing.
         progress: told the share that is done.
 
     Returns:
@@ -41,6 +46,8 @@ def simulate(
     Raises:
         InvalidDesign: see ``land.simulate`` and ``Swim``.
         OutsideLimits: a gait that a robot's joints cannot follow, or water too fast for the timestep.
+        UnreadableFile: what is kept of a run is damaged.
+        Unwritable: a run cannot be kept.
     """
     runs = tuple(runs)
     solved = [i for i, run in enumerate(runs) if run.solved is not None]
@@ -59,7 +66,9 @@ def simulate(
         order += others
     for number, (i, swim) in enumerate(zip(solved, swims, strict=True), start=count - len(solved)):
         with suppress(Diverged):  # its record says when and why
-            swim.go(swim.ticks * swim.stepper.period, progress=portion(progress, number, count))
+            kept = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
+            part = portion(progress, number, count)
+            swim.go(swim.ticks * swim.stepper.period, progress=part, checkpoint=kept)
         parts.append(swim.record().isel(time=slice(None, None, every)))
         order.append(i)
     alike = with_equal_variables(parts)

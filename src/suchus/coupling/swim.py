@@ -10,19 +10,21 @@ were found last. What the robot was told in its last go, less what the flow says
 from collections.abc import Callable
 from functools import cached_property
 from math import prod
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.coupling.chain import ChainState, MidlineChain, Path
+from suchus.coupling.chain import ChainState, MidlineChain, Way
 from suchus.coupling.recorded import Series, recorded
 from suchus.design import layout
 from suchus.design.scale import control_period, physics_step
 from suchus.design.water import Water
 from suchus.errors import Diverged, InvalidDesign, OutsideLimits
 from suchus.fault import check_faults
+from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.land.run import Run, check_pushes
 from suchus.land.stepper import PlaneState, Stepper, Stretch
@@ -31,6 +33,7 @@ from suchus.motion import check_limits, cycle_targets
 from suchus.progress import Progress
 from suchus.water import Outline, cycle, displaced, recoil
 from suchus.water.immersed import folded, half_heights
+from suchus.water.samples import Samples
 from suchus.water.setting import DENSITY, SwimSetting
 
 OFF_PLANE = 0.12
@@ -48,6 +51,8 @@ FINER = 5
 _ROUNDS, _SETTLED = 10, 1e-4
 """Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
 and the change of the acceleration, over its size, at which they have [-]."""
+_CHANGING = ("force", "push", "added", "kept", "computed", "greatest", "strikes", "start_added")
+"""What a swim changes of its own."""
 _WIDER = 1.25
 """Swing that the box has room for, over that of the commanded midline [-]."""
 
@@ -82,9 +87,9 @@ class Swim:
         self.stepper = Stepper(run, self.chain.joints, self.timestep, self.ticks)
         self._signs = np.ones(self.chain.size)
         self._signs[:2] = -1.0
-        start = self.stepper.state.place
+        start = self.stepper.now.place
         self._corner = np.array([self.chain.root + start[0], start[1]])
-        self.path = Path(0.0, self._seen(self.stepper.state))
+        self.path = Way(0.0, self._seen(self.stepper.now))
         self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
         self.series = Series()
         self._force = np.zeros(self.chain.size)
@@ -93,6 +98,9 @@ class Swim:
         self._kept = self._added
         self._computed: np.ndarray | None = None
         self._greatest, self._strikes = 0.0, 0
+        self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
+        self.samples = Samples()
+        """What a ``watch`` of ``go`` keeps; a checkpoint holds it too."""
         self._renew()
         self._start_added = self._added
 
@@ -238,7 +246,7 @@ class Swim:
 
         Returns the stretch, and the mean acceleration in it.
         """
-        h, before = count * self.timestep, self.stepper.state_at_begin.rate
+        h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
         inertia = self.stepper.mass() + self._kept
         guess = push
@@ -278,13 +286,14 @@ class Swim:
             )
         allowed = min(allowed, LONGEST * self.run.gait.period / self.water.cells)
         count = stepper.until(until, max(int(allowed / self.timestep), 1))
-        h, start, began = count * self.timestep, self.time, self._seen(stepper.state)
+        h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
         stepper.begin()
         stretch, push = self._gone(count, self._force, self._push)
         told = self._force - self._added @ (push - self._push)
         posture = self._seen(stretch.end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
+        self._placed = posture
         found = self._found(posture)
         self._greatest = max(self._greatest, self._size(found))
         left = first = self._size(found - told) / max(self._greatest, 1e-300)
@@ -356,13 +365,31 @@ class Swim:
             )  # fmt: skip
 
     def go(
-        self, until: float, *, progress: Progress | None = None, watch: Callable[["Swim"], None] | None = None
-    ) -> None:  # fmt: skip
-        """Go on until a time, a whole number of control periods [s].
+        self,
+        until: float,
+        *,
+        progress: Progress | None = None,
+        watch: Callable[["Swim"], None] | None = None,
+        checkpoint: Path | None = None,
+        checkpoint_every: float = 15.0,
+    ) -> None:
+        """Go on until a time, a whole number of control periods [s]; the same bytes, stopped and gone on or not.
+
+        Args:
+            until: time to reach [s].
+            progress: told the share that is done; None shows a progress bar.
+            watch: called after every step; what it keeps belongs into ``samples``.
+            checkpoint: file in which robot, flow and samples are kept; if it exists, the swim goes on from there.
+            checkpoint_every: wall-clock seconds between two savings [s].
 
         Raises:
             Diverged: see ``step``; with the record so far.
+            UnreadableFile: the checkpoint is broken or belongs to another run.
+            Unwritable: the checkpoint cannot be written.
         """
+        if checkpoint is not None and checkpoint.exists():
+            store.load(self, checkpoint)
+        saver = store.Saver(checkpoint, checkpoint_every)
         cells = prod(self.sim.setup.grid.cells)
         with Bar(self.time, until, cells, show=progress is None) as bar:
             while self.time < until - 0.5 * self.timestep:
@@ -373,10 +400,54 @@ class Swim:
                     raise Diverged(str(error), time=self.time, record=self.record()) from error
                 if watch is not None:
                     watch(self)
+                saver.save(self)
                 bar.move(self.time)
                 if progress is not None:
                     progress("swimming", self.time / until)
+        saver.save(self, now=True)
         self.stepper.finish()
+
+    # --- stopped and gone on -----------------------------------------------------------------------------------
+
+    @property
+    def setup(self) -> object:
+        """What is simulated, and for how long; who has the same can go on from the other's state."""
+        return self.run, self.timestep, self.ticks, self.water
+
+    def state(self) -> store.State:
+        """Return all that changes, of the flow and of the robot, between two steps."""
+        now = self.path.at(self.time)
+        postures = {
+            f"{which}.{name}": getattr(posture, name)
+            for which, posture in (("posture", now), ("placed", self._placed))
+            for name in ChainState._fields
+        }
+        parts = {
+            "flow": self.sim.state(), "robot": self.stepper.state(), "series": self.series.state(),
+            "samples": self.samples.state(),
+        }  # fmt: skip
+        own = {name: getattr(self, f"_{name}") for name in _CHANGING}
+        return {
+            **postures, **{f"own.{name}": np.array(value) for name, value in own.items() if value is not None},
+            **{f"{part}.{name}": value for part, one in parts.items() for name, value in one.items()},
+        }  # fmt: skip
+
+    def resume(self, state: store.State) -> None:
+        """Go on from the state of a swim of the same run; to be asked of a fresh one."""
+
+        def part(name: str) -> store.State:
+            start = f"{name}."
+            return {key.removeprefix(start): value for key, value in state.items() if key.startswith(start)}
+
+        self.stepper.resume(part("robot"))
+        self._placed, posture = (ChainState(**part(name)) for name in ("placed", "posture"))
+        self.path.go(self.time, self._placed, self.time, self._placed)
+        self.sim.resume(part("flow"))
+        self.path.go(self.time, posture, self.time, posture)
+        self.sim.forget()
+        for name, value in part("own").items():
+            setattr(self, f"_{name}", value if value.ndim else value.item())
+        self.series, self.samples = Series.of(part("series")), Samples.of(part("samples"))
 
     # --- what is kept ------------------------------------------------------------------------------------------
 

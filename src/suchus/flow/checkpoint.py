@@ -13,11 +13,10 @@ import numpy as np
 
 from suchus.errors import UnreadableFile
 from suchus.fingerprint import fingerprint
-from suchus.flow.setup import Setup
 from suchus.reading import check_file
 from suchus.writing import keep
 
-VERSION = 10
+VERSION = 11
 """Layout of the file; rises with every change of it."""
 
 MARK = b"suchus flow checkpoint %d\n" % VERSION
@@ -35,8 +34,8 @@ class Resumable(Protocol):
     """What can be saved and go on from what was saved."""
 
     @property
-    def setup(self) -> Setup:
-        """What is simulated."""
+    def setup(self) -> object:
+        """What is simulated; who has the same can go on from the other's state."""
 
     def state(self) -> State:
         """Return all that changes."""

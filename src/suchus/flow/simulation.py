@@ -353,7 +353,7 @@ class Simulation(Fields):
             each[number] = motion
         accelerate(self.water, joined(each), self._taken.dt)
         self._outlines = [moved_on(one, motion) for one, motion in zip(self._outlines, each, strict=True)]
-        self._forget()
+        self.forget()
         self._log.rows.pop()
         self._note(self._taken)
 
@@ -377,7 +377,8 @@ class Simulation(Fields):
             raise UnknownName("body", name, names or ("none",))
         return names.index(name)
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
+        """Ask bodies that bend anew from now on: what they are told from outside has become another."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, Remembered):
@@ -390,7 +391,7 @@ class Simulation(Fields):
     def restore(self, kept: Snapshot) -> None:
         """Go back to a snapshot of this simulation; what follows is what followed it then, to the same bytes."""
         give(self, kept)
-        self._forget()
+        self.forget()
         self._taken = None
         if kept.arrays["b"].size:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
@@ -403,7 +404,8 @@ class Simulation(Fields):
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
         return {
-            **numbers, **self.water.state(), **swimmers, "frame": self.frame, "rows": rows, "held": self._log.held
+            **numbers, **self.water.state(), **swimmers, "frame": self.frame, "rows": rows, "held": self._log.held,
+            "b": self.water.b,
         }  # fmt: skip
 
     def resume(self, state: store.State) -> None:
@@ -416,8 +418,11 @@ class Simulation(Fields):
         self._fastest = self.water.fastest()
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
+        self.forget()
         poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
         self.water.place(self._bodies, poses, self.time)
+        if self.water.b.shape == state["b"].shape:
+            self.water.b[:] = state["b"]  # as it was after ``accelerate``
         self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
 
     # --- a run -------------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 """A batch of MuJoCo simulations, each with its own ground, water and faults, and what its sensors say of a period."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import mujoco
@@ -265,6 +265,19 @@ class SimulationBatch:
         self.readings[who], self._shafts[who], self.worked[who] = self.sensors[who], self._lengths[who], 0.0
         if self.waters:
             self.worked[who, :4] = self.waters.acts()[who]
+
+    def felt(self, sim: int) -> dict[str, np.ndarray]:
+        """Return copies of what controllers and faults of a run decide by: sensors, angles at the shafts, places."""
+        return {name: values[sim].copy() for name, values in self._decided_by.items()}
+
+    def feel(self, sim: int, felt: Mapping[str, np.ndarray]) -> None:
+        """Let controllers and faults of a run decide by what was ``felt`` at another time."""
+        for name, values in self._decided_by.items():
+            values[sim] = felt[name]
+
+    @property
+    def _decided_by(self) -> dict[str, np.ndarray]:
+        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked}
 
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without a push, also after it has diverged; its faults are the injector's.

@@ -120,6 +120,22 @@ class Recorder:
         if self._temperature.shape[-1]:
             self._temperature[alive, sample] = self._batch.activations[alive][:, self._warm] + self._air[alive]
 
+    def state(self) -> dict[str, np.ndarray]:
+        """Return copies of all samples, by name."""
+        return {name: values.copy() for name, values in self._kept.items()}
+
+    def resume(self, state: Mapping[str, np.ndarray]) -> None:
+        """Take up the samples that another recorder of the same runs kept."""
+        for name, values in self._kept.items():
+            values[:] = state[name]
+
+    @property
+    def _kept(self) -> dict[str, np.ndarray]:
+        return {
+            "readings": self._readings, "qpos": self._qpos, "phase": self._phase, "targets": self._targets,
+            "water": self._water, "worked": self._worked, "temperature": self._temperature,
+        }  # fmt: skip
+
     def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
         """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
 

@@ -1,14 +1,19 @@
 """One robot with its servos, springs, controller and troubles, stepped by whoever knows what the water does to it.
 
 Time goes on in stretches of whole physics steps. A stretch can be gone through as often as it takes until force and
-motion agree: it begins each time in the same state, and what the controller commanded the first time is kept.
+motion agree: it begins each time in the same state, and what was commanded and pushed the first time is kept. A stretch
+ends where a fault begins, or a push does or ends.
+
+``state`` and ``resume`` let a run that was stopped go on to the same bytes. Controllers and faults have no state to
+write down: they decide again by all that they felt, and must come to the same commands.
 
 The root moves in its plane, along, to the left and about the vertical; the others of its coordinates are as good as
 locked, by an inertia that ``LOCKED`` times exceeds the robot's.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -19,7 +24,7 @@ from mujoco.batch import SimulationError
 from suchus import hydro
 from suchus.control import Command
 from suchus.design import layout
-from suchus.errors import Diverged
+from suchus.errors import Diverged, UnreadableFile
 from suchus.land.loop import Loop
 from suchus.land.readings import Recorder
 from suchus.land.run import Run
@@ -60,8 +65,19 @@ class _Saved:
 
     state: np.ndarray
     step: int
-    last: Command | None
-    commands: dict[int, Command] = field(default_factory=dict)
+    last: "_Decision | None"
+    decisions: dict[int, "_Decision"] = field(default_factory=dict)
+
+
+class _Decision(NamedTuple):
+    """What was decided at the beginning of a control period, by what was felt then."""
+
+    command: Command
+    """What the servos are commanded."""
+    pushed: np.ndarray
+    """Forces from outside [N]."""
+    felt: dict[str, np.ndarray]
+    """What controller and faults decided by; see ``SimulationBatch.felt``."""
 
 
 class Stepper:
@@ -90,14 +106,21 @@ class Stepper:
         ]  # fmt: skip
         self._data = mujoco.MjData(self.model)
         self._applied = self._physics.bind("qfrc_applied")
+        self._pushed = self._physics.bind("xfrc_applied")
         self._user = self._physics.bind("userdata")
         self._works = [self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")]
         self._whole = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
-        self.state_at_begin: PlaneState = self.state
+        self.at_begin: PlaneState = self.now
         """State in which the present stretch began."""
         self._saved: _Saved | None = None
-        self._last: Command | None = None
+        self._last: _Decision | None = None
+        self._decided: list[_Decision] = []
+        self._is_read = False
+        ends = [time / loop.period for push in run.pushes for time in (push.at, push.at + push.duration)]
+        ticks_of = [np.ceil(fault.at / loop.period - 1e-9) for fault in run.faults]
+        ticks_of += [round_(end) for end in ends for round_ in (np.floor, np.ceil)]
+        self._troubles = np.unique(np.array(ticks_of, int)) * self._per_tick
         self.burden(np.zeros((len(self.dofs), len(self.dofs))))
         self._physics.forward()
         self._batch.read(slice(None))
@@ -110,7 +133,7 @@ class Stepper:
         return self.steps * self.timestep
 
     @property
-    def state(self) -> PlaneState:
+    def now(self) -> PlaneState:
         """Root and joints now."""
         qpos, qvel = self._batch.qpos[0], self._batch.qvel[0]
         w, x, y, z = qpos[3:7]
@@ -174,12 +197,13 @@ class Stepper:
 
     def begin(self) -> None:
         """Begin a stretch here."""
-        self.state_at_begin = self.state
+        self.at_begin = self.now
         self._saved = _Saved(self._physics.state[0].copy(), self.steps, self._last)
 
     def until(self, time: float, most: int) -> int:
-        """Return how many physics steps the next stretch may have, so that none goes beyond a time [s]."""
-        return max(min(most, round(time / self.timestep) - self.steps), 1)
+        """Return how many physics steps the next stretch may have, so that none goes beyond a time [s] or a trouble."""
+        ahead = self._troubles[self._troubles > self.steps]
+        return max(min([most, round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
 
     def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> Stretch:
         """Go through the stretch that was begun, in so many steps, under a constant force of the water.
@@ -204,7 +228,7 @@ class Stepper:
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
             assert self._last is not None
-            self._batch.ctrl[0] = self._last.targets[0]
+            self._batch.ctrl[0] = self._last.command.targets[0]
             before = self._batch.qvel[0].copy()
             try:
                 self._physics.step(None, 1, int(mujoco.mjtStage.mjSTAGE_VEL))
@@ -220,33 +244,82 @@ class Stepper:
         self._look()
         rate = self._batch.qvel[0]
         return Stretch(
-            end=self.state, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate)
+            end=self.now, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate)
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:
-        """Take the command of a control period, which is thought of once, and keep a sample."""
+        """Take what a control period is commanded, which is thought of once, and keep a sample."""
         tick = self.steps // self._per_tick
-        again = tick in saved.commands
-        if not (again and self.steps == saved.step):  # then the sensors are those of the end of the last go
-            self._batch.read(slice(None))
+        again = tick in saved.decisions
+        first = not (again and self.steps == saved.step)  # else the sensors are those of the end of the last go
+        if first:
+            self._read()
         if not again:
-            self._loop.tick = self._loop.clocks[:] = tick
-            self._loop.decide()
-            saved.commands[tick] = self._loop.command
-        self._last = saved.commands[tick]
-        if not (again and self.steps == saved.step):
+            saved.decisions[tick] = self._thought(tick)
+            self._decided.append(saved.decisions[tick])
+        self._last = saved.decisions[tick]
+        self._pushed[0] = self._last.pushed
+        self._is_read = False
+        if first:
             self._store(tick)
+
+    def _thought(self, tick: int) -> _Decision:
+        felt = self._batch.felt(0)
+        self._loop.tick = self._loop.clocks[:] = tick
+        self._loop.decide()
+        return _Decision(self._loop.command, self._pushed[0].copy(), felt)
+
+    def _read(self) -> None:
+        if not self._is_read:
+            self._batch.read(slice(None))
 
     def _store(self, tick: int) -> None:
         assert self._last is not None
         if tick <= self._ticks:
-            self._recorder.store(tick, self._last.phase, self._last.targets)
+            self._recorder.store(tick, self._last.command.phase, self._last.command.targets)
 
     def finish(self) -> None:
         """Keep the last sample, if the run has come to the end of a control period."""
         if self.steps % self._per_tick == 0:
-            self._batch.read(slice(None))
+            self._read()
             self._store(self.steps // self._per_tick)
+
+    # --- stopped and gone on -----------------------------------------------------------------------------------
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return all with which this run can go on in another process, between two stretches."""
+        self._read()  # where a control period ends the next decision is by this, else by what is read later
+        felt = [one.felt for one in self._decided]
+        return {
+            "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
+            "targets": np.array([one.command.targets[0] for one in self._decided]),
+            **{f"felt.{name}": np.array([one[name] for one in felt]) for name in (felt[0] if felt else ())},
+            **{f"now.{name}": values for name, values in self._batch.felt(0).items()},
+            **{f"samples.{name}": values for name, values in self._recorder.state().items()},
+        }  # fmt: skip
+
+    def resume(self, state: Mapping[str, np.ndarray]) -> None:
+        """Go on from the state of a run of the same robot that was stopped; to be asked of a fresh one.
+
+        Raises:
+            UnreadableFile: controller or faults decide otherwise than they did then.
+        """
+        parts = {kind: _under(state, f"{kind}.") for kind in ("felt", "now", "samples")}
+        for tick, targets in enumerate(state["targets"]):
+            self._batch.feel(0, {name: values[tick] for name, values in parts["felt"].items()})
+            self._last = self._thought(tick)
+            self._decided.append(self._last)
+            if not np.array_equal(self._last.command.targets[0], targets):
+                raise UnreadableFile(
+                    f"what was kept of the run {self._loop.runs[0].label!r} cannot go on: its controller commands "
+                    f"otherwise at t = {tick * self.period:.4g} s than it did. Delete what was kept to start anew."
+                )
+        self.steps = int(state["steps"])
+        self._recorder.resume(parts["samples"])
+        self._batch.feel(0, parts["now"])
+        self._physics.state[0] = state["physics"]
+        self._is_read = self.steps % self._per_tick == 0
+        self.at_begin = self.now
 
     def end(self, time: float, cause: str) -> None:
         """Let the run have ended at a time [s], with the last samples that were taken until then."""
@@ -255,6 +328,11 @@ class Stepper:
     def record(self) -> xr.Dataset:
         """Return what was read, in the schema of a run; NaN where nothing has been yet."""
         return self._recorder.record(np.arange(self._ticks + 1) * self.period)
+
+
+def _under(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:
+    """Return the values whose names begin so, by the rest of their names."""
+    return {name.removeprefix(start): values for name, values in state.items() if name.startswith(start)}
 
 
 def _above(left: Float[np.ndarray, "n n"], room: Bool[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:

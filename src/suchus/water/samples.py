@@ -5,7 +5,7 @@ what came after the last pause, Ctrl-C likewise; and since a run pauses at the s
 one that was stopped ends with the same bytes as one that was not.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from hashlib import sha256
 from io import BytesIO
 from math import prod
@@ -45,15 +45,28 @@ class Samples:
         samples = self._series[series]
         return {name: np.stack([sample[name] for sample in samples]) for name in samples[0]}
 
+    def state(self) -> dict[str, np.ndarray]:
+        """Return the samples so far by ``series/name``."""
+        return {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
+
+    @classmethod
+    def of(cls, state: Mapping[str, np.ndarray]) -> "Samples":
+        """Return what ``state`` gave."""
+        samples = cls()
+        for key, values in state.items():
+            series, name = key.split("/")
+            for sample, value in zip(samples._series.setdefault(series, [{} for _ in values]), values, strict=True):
+                sample[name] = value
+        return samples
+
     def save(self, path: Path, time: float, about: str) -> None:
         """Write the samples so far.
 
         Raises:
             Unwritable: naming the place.
         """
-        state = {f"{series}/{name}": values for series in self._series for name, values in self.series(series).items()}
         content = BytesIO()
-        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **state)
+        np.savez(content, allow_pickle=False, until=np.array(time), about=np.array(_short(about)), **self.state())
         keep(path, sealed(content.getvalue()))
 
     def load(self, path: Path, time: float, about: str) -> None:
@@ -74,10 +87,8 @@ class Samples:
         state = store.arrays(data, path)
         try:
             until, whose = float(state.pop("until")), str(state.pop("about"))
-            columns = [(key.split("/")[0], key.split("/")[1], values) for key, values in state.items()]
-            lengths = {series: len(values) for series, _, values in columns}
-            sound = all(len(values) == lengths[series] for series, _, values in columns)
-            sound &= all(f"{series}/time" in state for series in lengths)
+            found = self.of(state)._series
+            sound = all(f"{series}/time" in state for series in found)
         except (ValueError, TypeError, LookupError):
             sound = False
         if not sound:
@@ -86,11 +97,7 @@ class Samples:
             raise UnreadableFile(f"{path} belongs to another swim; give that one's settings, or another checkpoint.")
         if until < time * (1 - 1e-12):
             raise UnreadableFile(f"{path} ends before its checkpoint does; delete both to start anew.")
-        for series, name, values in columns:
-            samples = self._series.setdefault(series, [{} for _ in values])
-            for sample, value in zip(samples, values, strict=True):
-                sample[name] = value
-        for series, samples in self._series.items():
+        for series, samples in found.items():
             self._series[series] = [sample for sample in samples if sample["time"] <= time * (1 + 1e-12)]
 
 

@@ -18,7 +18,14 @@ from suchus.experiments._replayed import replayed
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.experiments.swim_free.flow_figure import draw_in_flow, film_slice
-from suchus.experiments.swim_free.in_flow import flow_measures, flow_runs, residual_text, swum, water_of
+from suchus.experiments.swim_free.in_flow import (
+    flow_kept,
+    flow_measures,
+    flow_runs,
+    residual_text,
+    swum,
+    water_of,
+)
 from suchus.figures.vortices import film_vortices
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
@@ -27,6 +34,7 @@ from suchus.motion import LIMBS_BACK, Gait, suits
 from suchus.record import WATER
 from suchus.robots import ROBOTS
 from suchus.water import Outline, swim, swim_of
+from suchus.water.samples import all_kept
 from suchus.water.sections import likely
 from suchus.water.slender import cruise, cycle, reactive
 
@@ -108,6 +116,9 @@ class SwimFree(Experiment):
     """Cycles that are swum in the flow, from rest; speeds are of the last [-]."""
     tail_height: float = 0.0
     """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
+    keep: str = ""
+    """Folder in which swims in a flow, robot and water, are kept as far as they have come: an interrupted run goes on
+    from there to the same bytes; empty keeps nothing."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -179,13 +190,14 @@ class SwimFree(Experiment):
         )
         if not flow:
             return Simulated(record=record, replays=self._replays(record))
-        found, first = swum(flow, self.flow_cycles, progress)
+        found, first = swum(flow, self.flow_cycles, self.keep, progress)
         record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs["flow"] = self.water
         films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
         return Simulated(
             record=record, replays={**self._replays(record), **self._flow_replay(first)}, films=films,
             tables={"residual.md": residual_text(record)},
+            kept=all_kept(self.keep, flow_kept([run.label for run in flow])),
         )  # fmt: skip
 
     def _flow_runs(self, motions: Mapping[str, Gait]) -> list[Run]:

@@ -16,7 +16,7 @@ from suchus.land import Run
 from suchus.land.waters import Slice, Space
 from suchus.motion import Gait
 from suchus.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
-from suchus.water.samples import Samples
+from suchus.water.samples import kept_in
 
 _KEPT = (
     "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
@@ -48,7 +48,12 @@ def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: S
     ]
 
 
-def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
+def flow_kept(labels: Sequence[str]) -> list[str]:
+    """Return the names of what is kept of unfinished swims in a flow."""
+    return [f"flow {label}" for label in labels]
+
+
+def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
     """Return what is kept of swims in a flow, and the record of the first.
 
     A later swim that diverges ends there, with NaN beyond.
@@ -56,10 +61,12 @@ def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Datas
     Args:
         runs: of ``flow_runs``.
         cycles: that are swum [-].
+        keep: folder in which swims are kept, from which they go on; empty keeps nothing.
         progress: told the share that is done.
 
     Raises:
         Diverged: the first swim did.
+        UnreadableFile: what is kept is broken or belongs to other swims.
     """
     swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
     records, seen = [], xr.Dataset()
@@ -67,7 +74,10 @@ def swum(runs: Sequence[Run], cycles: int, progress: Progress) -> tuple[xr.Datas
         part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
         film = _Film(swim, cycles) if number == 0 else None
         with suppress(*([Diverged] if number else [])):
-            swim.go(swim.ticks * swim.stepper.period, progress=part, watch=film)
+            swim.go(
+                swim.ticks * swim.stepper.period, progress=part, watch=film,
+                checkpoint=kept_in(keep, *flow_kept([run.label])),
+            )  # fmt: skip
         records.append(swim.record().isel(run=0))
         seen = film.dataset() if film is not None else seen
         del swim.sim
@@ -109,7 +119,7 @@ class _Film:
     """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
 
     def __init__(self, swim: Swim, cycles: int) -> None:
-        self._swim, self._samples = swim, Samples()
+        self._swim = swim
         self._end, frequency = cycles * swim.run.gait.period, 1.0 / swim.run.gait.period
         self._frequency = frequency
         self._vortices = VortexSampler(frequency, self._end, FRAMES)
@@ -119,21 +129,21 @@ class _Film:
     def __call__(self, swim: Swim) -> None:
         """Take a frame if one is due."""
         if self._window is None:
-            self._vortices.sample(swim.sim, self._samples)
+            self._vortices.sample(swim.sim, swim.samples)
             return
         left = (self._end - swim.sim.time) * self._frequency
-        if left < 1.0 - (self._samples.count("frames") + 1) / FRAMES + 1e-6:
+        if left < 1.0 - (self._swim.samples.count("frames") + 1) / FRAMES + 1e-6:
             seen = {"vorticity": self._window.fields(swim.sim)["vorticity"]}
             values = {**seen, **midline_values(midline(swim.sim))}
-            self._samples.add("frames", swim.sim.time, **values)
+            self._swim.samples.add("frames", swim.sim.time, **values)
 
     def dataset(self) -> xr.Dataset:
         """Return what was seen; nothing of a swim that ended too soon."""
-        if not self._samples.count("frames"):
+        if not self._swim.samples.count("frames"):
             return xr.Dataset()
         if self._window is None:
-            return wake(self._swim.sim).merge(self._vortices.record(self._samples))
-        series = self._samples.series("frames")
+            return wake(self._swim.sim).merge(self._vortices.record(self._swim.samples))
+        series = self._swim.samples.series("frames")
         phase = (series["time"] - self._end) * self._frequency + 1.0
         found = self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
         return found.rename({str(name): f"field_{name}" for name in found.variables})
