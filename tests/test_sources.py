@@ -116,6 +116,7 @@ def test_the_settings_name_files_beside_them(lab):
     ("settings", "words"),
     [
         ('robot = ["a.toml"]', "has 'robot', which is not known; .* Did you mean 'robots'?"),
+        ("robot = []\nx = 1\ngait = []", "has 'robot', 'x', 'gait', which are not known; .* mean 'robots', 'gaits'?"),
         ('robots = "a.toml"', "has robots = 'a.toml'; a list of files is needed"),
         ('robots = ["none.toml"]', "names 'none.toml' among robots; there is no such .py or .toml file"),
         ('faults = ["robots/short.toml"]', "there is no such .py file"),

@@ -198,8 +198,8 @@ class Experiment(ABC):
     shows: ClassVar[str]
     """Which sections, figures or equations of the article it answers."""
     answers: ClassVar[tuple[str, ...]] = ()
-    """Names of the three to six measures that carry the answer, as the terminal shows them; the first that are finite
-    where none is named."""
+    """Names of the measures that carry the answer: the terminal shows the first six of them that a run has, three at
+    least; the first that are finite where none is named."""
     needs: ClassVar[tuple[str, ...]] = ()
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     reproduces: ClassVar[bool] = True

@@ -383,11 +383,14 @@ def _opened(folder: Path) -> Project:
 @lru_cache(maxsize=8)
 def _read(folder: Path, *_: int) -> Project:
     told, where = read_toml(folder / SETTINGS), folder / SETTINGS
-    for key in told:
-        if key not in SHELVES:
-            near = get_close_matches(key, SHELVES, n=1)
-            hint = f" Did you mean {near[0]!r}?" if near else ""
-            raise UnreadableFile(f"{where} has {key!r}, which is not known; there is {', '.join(SHELVES)}.{hint}")
+    unknown = [key for key in told if key not in SHELVES]
+    if unknown:
+        near = [close[0] for key in unknown if (close := get_close_matches(key, SHELVES, n=1))]
+        hint = f" Did you mean {', '.join(map(repr, near))}?" if near else ""
+        them = "which is" if len(unknown) == 1 else "which are"
+        raise UnreadableFile(
+            f"{where} has {', '.join(map(repr, unknown))}, {them} not known; there is {', '.join(SHELVES)}.{hint}"
+        )
     return Project(folder, {shelf: tuple(_named(folder, shelf, files)) for shelf, files in told.items()})
 
 

@@ -11,7 +11,7 @@ from suchus.control import OpenLoop
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.shore import experiment as shore
-from suchus.experiments.shore.figure import _obliquely, levelled, posture_times
+from suchus.experiments.shore.figure import _obliquely, draw_decides, levelled, posture_times
 from suchus.land import Ground, simulate
 from suchus.record import ground_text
 from suchus.rotation import about, rotate
@@ -45,7 +45,7 @@ def kept(**changes):
         found[f"metre_{name}"] = ("where", np.array(value))
     found["metre_weight"] = ("where", np.full(3, 30.0))
     return found.assign_coords(where=["land", "surface", "deep"]).assign_attrs(
-        beyond=1.0, depth=0.6, approach=0.0, shown=0
+        beyond=1.0, depth=0.6, approach=0.0, shown=0, metacentric_height=0.01
     )
 
 
@@ -67,6 +67,30 @@ def test_who_tilts_by_more_than_sixty_degrees_has_fallen_and_is_not_ashore(degre
 
 
 @pytest.mark.parametrize(
+    ("tilt", "walks", "ground", "over"),
+    [(61.0, 0.0, 0.009, True), (61.0, 1.0, 0.009, False), (61.0, 0.0, 0.011, False), (59.0, 0.0, 0.009, False)],
+)
+def test_who_falls_while_it_swims_and_floats_free_has_capsized(tilt, walks, ground, over):
+    """What it does later does not count: at the end it lies on the ground and moves its limbs."""
+    heel, legs, load = np.full((3, 20), 0.1), np.ones((3, 20)), np.full((3, 20), 0.5)
+    heel[0, 4:], legs[0, :6], load[0, :6] = radians(tilt), walks, ground
+    record = kept(tilt=heel, walks=legs, ground=load)
+    assert shore.capsized(record).tolist() == [over, False, False]
+    assert ("after 2 s it capsizes" in shore.ending(record)) == over
+    measures = measured(record)
+    assert measures["capsized"].value == over
+    said = SHORE.explain({name: measure.value for name, measure in measures.items()})
+    assert ("1 of these while they swam: upright its metacentric height is 10.0 mm" in said) == over
+
+
+def test_nobody_ashore_is_said_of_the_time_that_was_simulated():
+    measures = {name: measure.value for name, measure in measured(kept()).items()}
+    assert "half of these within 8 s" in SHORE.explain(measures)
+    none = measures | {"ashore_share": 0.0, "time_ashore": np.nan}
+    assert "0% of the runs came ashore within the 2 s that were simulated" in SHORE.quick().explain(none)
+
+
+@pytest.mark.parametrize(
     ("ahead", "share", "walks", "inside"),
     [(-0.5, 0.009, 0.0, True), (-0.5, 0.011, 0.0, False), (-0.5, 0.0, 1.0, False), (0.1, 0.0, 0.0, False)],
 )
@@ -80,13 +104,15 @@ def test_it_is_in_the_water_if_it_swims_there_and_floats_free(ahead, share, walk
     assert shore.in_water(other).all() == inside
 
 
-def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
-    record = kept()
+def measured(record):
+    """Return the measures of some paths to the shore, beside three into the water."""
     into = kept(ahead=np.full((3, 20), -1.0), ground=np.zeros((3, 20)), walks=np.zeros((3, 20)))
     into["kind"] = ("case", np.array(["into_water"] * 3))
-    found = EXPERIMENTS["shore"].measure(
-        xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override")
-    )
+    return SHORE.measure(xr.concat([record, into], "case", data_vars="minimal", combine_attrs="override"))
+
+
+def test_measures_count_who_came_ashore_fell_and_changed_its_mind():
+    found = measured(kept())
     assert found["ashore_share"].value == pytest.approx(1 / 3)
     assert found["falls"].value == 1.0
     assert found["switches"].value == 2.0
@@ -205,9 +231,21 @@ def test_a_robot_is_drawn_when_its_head_is_ahead_of_its_feet():
         {"time": time, "xyz": ["x", "y", "z"]},
     )
     path = xr.Dataset({"ahead": ("moment", ahead)}, {"moment": time})
-    times = posture_times(level, path)
+    times = posture_times(level, path, 1.0, 1.0)
     assert np.interp(times, time, reach) == pytest.approx([0.0] * 4, abs=0.02)
-    assert np.diff(np.interp(times, time, ahead)) == pytest.approx([1.0] * 3, abs=0.25)
+    assert np.diff(np.interp(times, time, ahead)) == pytest.approx([1.04] * 3, abs=0.25)
+    for length, count in ((0.1, 4), (2.5, 3), (5.0, 2), (7.0, 1)):  # of longer ones fewer find room on the way
+        assert len(posture_times(level, path, length, 1.0)) == count
+
+
+@pytest.mark.parametrize("air", [False, True])
+def test_a_robot_without_air_has_no_map_of_it_and_where_nobody_came_ashore_is_no_scale(air):
+    record = kept(ahead=np.full((3, 20), -1.0)) if not air else kept()
+    if air:
+        record["kind"] = ("case", np.array(["ashore", "ashore", "air"]))
+    figure = draw_decides(record.assign_attrs(air_released=0.0))
+    assert len(figure.axes) == (3 if air else 1)
+    assert [bool(ax.get_title("left")) for ax in figure.axes[:2]] == ([True, True] if air else [False])
 
 
 def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.design import layout
 from suchus.design.ground import STONE, Bumps, Step, Stone
+from suchus.design.servos import with_full_torque, with_named_servos, with_servos
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.speed_range.experiment import _UNITS
+from suchus.experiments.speed_range.experiment import _UNITS, _models, _with_other
 from suchus.experiments.terrain.experiment import SINGLE, _met
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
@@ -65,6 +67,19 @@ def test_other_gaits_than_the_high_walk_are_measured_too():
     )
     experiment = replace(EXPERIMENTS["speed_range"], gaits=(GAITS["low_crawl"],), slower=(1.0,))
     assert experiment.measure(record)["speed_low_crawl"].value == 0.2
+
+
+def test_servos_of_two_kinds_are_called_so_and_all_have_their_full_torque_in_the_other_model(robot):
+    """Servos that were bought for some joints only: a motor in these, none in the others."""
+    bare = with_servos(robot, with_full_torque)
+    some = with_named_servos(bare, {"LF_yaw": robot.servo("LF_yaw")})  # its mirror image with it
+    full, line = "servos of equal torque at any speed", "servos whose torque falls with speed"
+    assert _models(bare) == (full, line)
+    assert _models(robot) == (line, full)
+    assert _models(some) == ("servos of which 2 of 12 lose torque with speed", full)
+    legs = [name for name in layout(robot).servos if name[:2] in ("LF", "RF", "LH", "RH")]
+    assert {_with_other(some).servo(name).winding for name in legs} == {None}
+    assert None not in {_with_other(bare).servo(name).winding for name in legs}
 
 
 def test_the_commanded_circle_comes_out_within_ten_percent(quick_outcome):

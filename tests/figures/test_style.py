@@ -5,6 +5,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
+from body_files import imported_quadruped
 from suchus.design import behind_hips
 from suchus.figures import (
     COLOURS,
@@ -82,6 +83,22 @@ def test_the_drawing_shows_the_length_of_the_robot(name):
     tailed = name not in ("strider", "swimmer")  # nothing behind the hips bends; no hips
     assert (f"{1000 * behind_hips(robot):.0f} mm of it tail" in caption(figure)) == tailed
     assert ("pale end of the tail" in caption(figure)) == (robot.tables is not None)
+
+
+@pytest.mark.parametrize("name", ["caiman", "swimmer", "quadruped"])
+def test_both_views_of_the_drawing_have_one_scale(name, tmp_path):
+    """A flat body, one without legs, and one on legs so long that the height of the drawing is bound."""
+    figure = dimension_drawing(imported_quadruped(tmp_path) if name == "quadruped" else ROBOTS[name])
+    figure.draw_without_rendering()
+    scales = [
+        one
+        for ax in figure.axes
+        for one in (
+            ax.get_window_extent().width / np.ptp(ax.get_xlim()),
+            ax.get_window_extent().height / np.ptp(ax.get_ylim()),
+        )
+    ]
+    assert scales == pytest.approx([scales[0]] * 4, rel=1e-6)
 
 
 def test_figures_do_without_pyplot():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from suchus.paper import CLAIMS
 from suchus.verdict import RULES, Clause, Rule, counted, standings
 from suchus.verdict.judging import WORDS
 
@@ -63,7 +64,12 @@ def test_a_fit_and_an_identity_that_fail_are_no_evidence_either():
 
 
 def test_nothing_is_counted_of_no_verdicts_and_a_claim_without_a_rule_counts_as_measured():
-    assert str(counted({})) == "Of 0 claims of the article 0 could come out either way."
+    assert str(counted({})) == ""
+    assert str(counted({"a": "reproduced"}, (), {"a": MEASURED})).startswith("Of 1 claim of the article 1 could")
+    (published,) = [name for name, claim in CLAIMS.items() if claim.of][:1]
+    assert str(counted({published: "reproduced"})) == (
+        "Of 1 statement of other publications on salamanders: 1 reproduced."
+    )
     assert counted({"of nobody": "contradicted"}).words == {"contradicted": 1}
 
 

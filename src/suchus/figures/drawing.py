@@ -17,13 +17,15 @@ from suchus.skin.plain import ends
 _TILT = radians(20)  # of the shank outward, for the drawing only
 _BODY, _FIN, _LIMB = "#C9DCCB", "#E4EEE5", "#4D6B57"
 _EDGE: dict[str, Any] = {"edgecolor": _LIMB, "linewidth": 1.2}
+_TITLE = 0.45  # height of a view's title with the space around it [inch]
+_TALL = 1.3  # greatest height of the drawing over its width [-]
 
 
 def dimension_drawing(robot: Robot) -> Figure:
     """Return a robot from above and from the side with its main dimensions [mm]."""
     measured = not lacking(robot, MEASURED)
     with styled(axes__grid=False):
-        figure, axes = panels(2, 1, height=5.4, sharex=True, height_ratios=[1.5, 1])
+        figure, axes = panels(2, 1, sharex=True)
         if measured:
             _from_above(axes[0, 0], robot)
             _from_the_side(axes[1, 0], robot)
@@ -34,6 +36,7 @@ def dimension_drawing(robot: Robot) -> Figure:
             ax.set_aspect("equal")
             ax.set_axis_off()
             ax.set_title(title, color=COLOURS["neutral"])
+        _to_one_scale(figure, axes[:, 0])
     tail = "" if lacking(robot, ("limbs", "tail_yaw")) else f"{_mm(behind_hips(robot))} mm of it tail, "
     return captioned(
         figure,
@@ -41,6 +44,15 @@ def dimension_drawing(robot: Robot) -> Figure:
         f"{tail}{robot.mass:.3g} kg, {len(layout(robot).servos)} servos. "
         f"Circles are joints{'; the pale end of the tail is passive' if measured else ''}. Dimensions in mm.",
     )
+
+
+def _to_one_scale(figure: Figure, views: np.ndarray) -> None:
+    """Let views that share their x axis have room for as much as each shows, so that all have one scale."""
+    high = [float(np.ptp(ax.get_ylim())) for ax in views]
+    views[0].get_gridspec().set_height_ratios(high)
+    width = figure.get_figwidth()
+    tall = len(views) * _TITLE + width * sum(high) / float(np.ptp(views[0].get_xlim()))
+    figure.set_figheight(min(tall, _TALL * width))
 
 
 def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
@@ -63,10 +75,8 @@ def _plan(ax: Axes, robot: Robot, *, from_the_side: bool) -> None:
                 ax.add_patch(Ellipse((shape.at[0] + x, 0.0), 2 * shape.half[0], 2 * half, facecolor=_BODY, **_EDGE))
         if body.hinges and body.name in segments:
             _joint(ax, at[0], 0.0)
-    deepest = min(ax.dataLim.y0, -0.1 * robot.length)
     front, back = ends(place)
-    _measure(ax, back, front, deepest - 0.05 * robot.length)
-    ax.autoscale_view()
+    _measure(ax, back, front, ax.dataLim.y0 - 0.05 * robot.length)
 
 
 def _chain(ax: Axes, place: Layout, limb: LimbPlace, rest: np.ndarray, *, hanging: bool) -> None:
@@ -187,6 +197,8 @@ def _joint(ax: Axes, x: float, y: float) -> None:
 def _measure(ax: Axes, start: float, end: float, y: float) -> None:
     arrow = {"arrowstyle": "<->", "color": "#555555", "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", (start, y), (end, y), arrowprops=arrow, annotation_clip=False)
+    ax.update_datalim([(start, y), (end, y)])
+    ax.autoscale_view()
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
     ax.text((start + end) / 2, y, _mm(end - start), ha="center", va="center", fontsize=11, bbox=box)
 

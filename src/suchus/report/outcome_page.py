@@ -99,7 +99,7 @@ def answer(decides: str) -> str:
 def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
     """Return name, value and interval of the measures that carry an answer, in words.
 
-    A measure that a run has not, as one of another gait, or that is no finite number is left out.
+    A measure that a run has not, as one of another gait, or that is no finite number is left out; ``MOST`` are taken.
 
     Args:
         answers: names of these measures; where there are none, the first are taken.
@@ -108,7 +108,8 @@ def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tup
     finite = [name for name, measure in measures.items() if isfinite(measure.value)]
     ends = ("_low", "_high")
     rows = []
-    for name in [one for one in answers if one in finite] or [one for one in finite if not one.endswith(ends)][:MOST]:
+    named = [one for one in answers if one in finite] or [one for one in finite if not one.endswith(ends)]
+    for name in named[:MOST]:
         low, high = (measures.get(name + end) for end in ends)
         unit = measures[name].unit
         spread = ""

@@ -37,16 +37,16 @@ class EvidenceCount:
     """Of the claims of other publications the number of each word that occurs, in the order of ``WORDS`` [-]."""
 
     def __str__(self) -> str:
-        """Return the count as one or two sentences, for the README and the report alike."""
+        """Return the count as one or two sentences, for the README and the report alike; of no claim none."""
         of, agree, evidence = self.standing, self.agree, self.standing["evidence"]
         words = f": {', '.join(f'{count} {word}' for word, count in self.words.items())}" if self.words else ""
         frail = (
             f"; {self.fragile} of these {'is' if self.fragile == 1 else 'are'} fragile, since more than one in ten "
             "plausible designs say otherwise"
         )
-        text = (
-            f"Of {self.claims} claims of the article {evidence} could come out either way{words}{frail * bool(words)}."
-        )
+        many = f"{self.claims} claim{'s' * (self.claims != 1)}"
+        text = f"Of {many} of the article {evidence} could come out either way{words}{frail * bool(words)}."
+        text *= self.claims > 0
         wrong = of["by construction"] - agree["by construction"]
         others = {
             "by construction": f"read back or identities of formulas ({wrong} not so as printed)",
@@ -60,7 +60,9 @@ class EvidenceCount:
         if not self.elsewhere:
             return text
         came = ", ".join(f"{count} {word}" for word, count in self.elsewhere.items())
-        return f"{text} Of {sum(self.elsewhere.values())} statements of other publications on salamanders: {came}."
+        number = sum(self.elsewhere.values())
+        many = f"{number} statement{'s' * (number != 1)}"
+        return f"{text} Of {many} of other publications on salamanders: {came}.".strip()
 
 
 def counted(

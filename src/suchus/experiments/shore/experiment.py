@@ -23,7 +23,8 @@ from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats, hovers
 from suchus.land.lake import up
 from suchus.metrics.energy import METRES
-from suchus.motion import Gait, GaitInMetres, draft_gait
+from suchus.model.hydrostatics import hydrostatics
+from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
 from suchus.robots import ROBOTS
 from suchus.water import swim_of
 
@@ -181,11 +182,14 @@ class Shore(Experiment):
         ):
             kept[name] = ("case", np.array(values), {"units": unit})
         shown = self._shown(kept)
+        back = cycle_targets(self.robot, still(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
+        floating = hydrostatics(self.robot, back, heels=3)
         metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
         whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=water_line(runs[shown]),
             air_released=self.air_released, depth=self.depth, approach=self.approach,
+            metacentric_height=floating.metacentric_height,
         )  # fmt: skip
         return Simulated(record=whole, replays=self._replays(whole))
 
@@ -275,7 +279,7 @@ class Shore(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
         kind = record.kind.values
-        times, fell = times_ashore(record), fallen(record)
+        times, fell, over = times_ashore(record), fallen(record), capsized(record)
         main, into = kind == "ashore", kind == "into_water"
         ashore = times[main][np.isfinite(times[main])]
         slope, grip = record.slope.values, record.grip.values
@@ -284,6 +288,8 @@ class Shore(Experiment):
             {
                 "ashore_share": Measure(_share(times, main), "-"),
                 "falls": Measure(float(fell[main].sum()), "-"),
+                "capsized": Measure(float(over[main].sum()), "-"),
+                "metacentric_height": Measure(record.attrs["metacentric_height"], "m"),
                 "switches": Measure(float(record.switches.values[main].max()), "-"),
                 "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
                 "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
@@ -381,6 +387,14 @@ def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
     return np.asarray(~(record.tilt < FALLEN).all("moment").values)
 
 
+def capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+    """Return which cases had tilted too far for the first time while they swam and the ground carried nothing [-]."""
+    over = ~(record.tilt < FALLEN)
+    free = (record.walks == 0.0) & (record.ground < AFLOAT)
+    first = over.argmax("moment")
+    return np.asarray((over.any("moment") & free.isel(moment=first)).values)
+
+
 def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
     """Return the time at which each case was first ashore, NaN for one that never was or fell [s]."""
     reached = record.ahead.values >= record.attrs["beyond"]
@@ -392,6 +406,9 @@ def ending(record: xr.Dataset) -> str:
     """Return how the case that is drawn ended, in words."""
     case = record.isel(case=[record.attrs["shown"]])
     walked, found = case.walks.values[0] > 0, []
+    if capsized(case)[0]:
+        first = int((~(case.tilt < FALLEN)).values[0].argmax())
+        return f"after {float(case.moment[first]):.2g} s it capsizes"
     if walked.any():
         found.append(f"after {float(case.moment[walked.argmax()]):.0f} s it walks")
     else:

@@ -14,9 +14,11 @@ from suchus.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 from suchus.record import ground_of
 from suchus.rotation import multiply, rotate
 
-_POSTURES = 4
+_POSTURES, _APART = 4, 0.5  # of the robot, at most, and the least distance between them over its length [-]
 _POINTS = ("position", "centre_of_mass", "snout", "tail_tip", "foot_position", "foot_force")
-_VIEW = (-2.6, 1.7)
+_BEHIND, _AHEAD = 0.8, 0.7  # what is shown beyond the ends of the path, over the robot's length [-]
+_HIGH, _ABOVE = 0.24, 0.58  # height of the view over its width, and the part of it above the water [-]
+_MEAN = 0.03  # of the run, over which the load on the feet is averaged [-]
 
 
 def levelled(record: xr.Dataset) -> xr.Dataset:
@@ -47,21 +49,27 @@ def draw_ashore(robot: Robot, record: xr.Dataset) -> Figure:
     """
     whole = record.isel(run=0)
     one, path = levelled(whole), record.isel(case=record.attrs["shown"])
-    ahead, steep = path.ahead.values, float(path.slope)
+    ahead, steep, beyond = path.ahead.values, float(path.slope), float(record.attrs["beyond"])
+    view = (
+        float(np.nanmin(ahead)) - _BEHIND * robot.length,
+        max(min(float(np.nanmax(ahead)), beyond) + _AHEAD * robot.length, 0.2 * robot.length),
+    )
+    high = _HIGH * (view[1] - view[0])
     with styled():
         figure, axes = panels(2, 1, width=13.0, height=6.4, height_ratios=(1.5, 1.0), sharex=True)
         ax = axes[0, 0]
-        _shore(ax, steep)
-        for time in posture_times(one, path):
+        _shore(ax, steep, view)
+        for time in posture_times(one, path, robot.length, beyond):
             draw_posture(ax, robot, one, time, view="side", support=False, ground=False)
             here = float(one.centre_of_mass.sel(xyz="x").sel(time=time, method="nearest"))
-            ax.annotate(f"{time:.0f} s", (here, 0.0), (here, 0.42), ha="center", color="#333333")
+            ax.annotate(f"{time:.0f} s", (here, 0.0), (here, 0.7 * _ABOVE * high), ha="center", color="#333333")
         ax.set_ylabel("height above the water [m]")
-        ax.set_ylim(-0.42, 0.6)
+        ax.set_ylim((_ABOVE - 1.0) * high, _ABOVE * high)
         ax = axes[1, 0]
         across = ahead * np.cos(steep)
         ax.plot(across, path.feet, color=COLOURS["limbs_only"], linewidth=0.8, alpha=0.35)
-        wide = max(round(1.5 / float(path.moment[1] - path.moment[0])), 1)
+        wide = max(round(_MEAN * path.sizes["moment"]), 1)
+        over = wide * float(path.moment[1] - path.moment[0])
         ax.plot(
             across,
             _smooth(path.feet.values, wide),
@@ -79,20 +87,22 @@ def draw_ashore(robot: Robot, record: xr.Dataset) -> Figure:
         for i in changes:
             ax.axvline(across[i], color=COLOURS["neutral"], linewidth=0.9)
         if changes.size:
-            ax.annotate("feels ground, walks", (across[changes[0]], 1.05), ha="right", color=COLOURS["neutral"])
+            at = across[changes[0]]
+            beside = "right" if at > np.mean(view) else "left"
+            ax.annotate(" feels ground, walks ", (at, 1.05), ha=beside, color=COLOURS["neutral"])
         ax.axvline(0.0, color=COLOURS["water"], linewidth=0.9)
         ax.set(
             xlabel="horizontal distance of the centre of mass beyond the water line [m]",
             ylabel="share [-]",
             ylim=(-0.05, 1.2),
         )
-        ax.set_xlim(*_VIEW)
+        ax.set_xlim(*view)
         ax.legend(loc="center left")
     return captioned(
         figure,
         f"A robot between the water and a shore of {np.degrees(steep):.0f} degrees, seen along the shore"
         f"{_obliquely(record.attrs['approach'])}; below, the share of its weight that the feet carry "
-        "(thin; bold: mean over 1.5 s) and the share of its volume under water.",
+        f"(thin; bold: mean over {over:.2g} s) and the share of its volume under water.",
     )
 
 
@@ -103,7 +113,7 @@ def _obliquely(course: float) -> str:
     )
 
 
-def posture_times(level: xr.Dataset, path: xr.Dataset) -> list[float]:
+def posture_times(level: xr.Dataset, path: xr.Dataset, length: float, beyond: float) -> list[float]:
     """Return times at which the robot is drawn, at about equal steps of the distance, its head ahead of its feet [s].
 
     A limb that reaches forward, or a bend of the trunk towards the viewer, hides the head; so of the times near each
@@ -112,23 +122,27 @@ def posture_times(level: xr.Dataset, path: xr.Dataset) -> list[float]:
     Args:
         level: of ``levelled``.
         path: of the same run, with ``ahead`` over ``moment``.
+        length: of the robot, of which fewer are drawn where they would lie on each other [m].
+        beyond: distance beyond the water line that counts as ashore; a little more is drawn [m].
     """
     ahead, moment = path.ahead.values, path.moment.values
     feet = level.foot_position.sel(xyz="x").max("leg")
     clear = (level.snout.sel(xyz="x") - feet).sel(time=moment, method="nearest").values
-    steps = np.linspace(float(ahead[0]) + 0.02, min(float(np.nanmax(ahead)), _VIEW[1] - 0.55), _POSTURES)
-    near = 0.15 * (steps[1] - steps[0])
+    start, end = float(ahead[0]) + 0.02 * length, min(float(np.nanmax(ahead)), beyond + 0.15 * length)
+    count = int(np.clip(1 + (end - start) // (_APART * length), 1, _POSTURES))
+    steps = np.linspace(start, max(end, start), count)
+    near = 0.15 * (steps[1] - steps[0]) if count > 1 else 0.0
     spans = [(int(np.argmax(ahead >= x - near)), int(np.argmax(ahead >= min(x + near, steps[-1])))) for x in steps]
     return [float(moment[first + np.argmax(clear[first : last + 1])]) for first, last in spans]
 
 
-def _shore(ax: Axes, steep: float) -> None:
-    """Draw water and ground of a slope whose water line is at the origin."""
-    x = np.array(_VIEW)
+def _shore(ax: Axes, steep: float, view: tuple[float, float]) -> None:
+    """Draw water and ground of a slope whose water line is at the origin, from one distance of it to another [m]."""
+    x = np.array(view)
     ground = x * np.tan(steep)
     ax.fill_between(x, ground, -3.0, color="#E8DFCB", zorder=0.2)
     ax.plot(x, ground, color=COLOURS["ground"], linewidth=1.4, zorder=0.5)
-    wet = np.array([x[0], 0.0])
+    wet = np.array([x[0], min(x[1], 0.0)])
     ax.fill_between(wet, wet * np.tan(steep), 0.0, color=COLOURS["water"], alpha=0.25, zorder=6, linewidth=0)
     ax.plot(wet, [0.0, 0.0], color=COLOURS["water"], linewidth=1.4, zorder=6.1)
 
@@ -149,22 +163,25 @@ def draw_decides(record: xr.Dataset) -> Figure:
     main = kind == "ashore"
     steep = main & np.isclose(slopes, slopes[main].max())
     most = float(record.moment[-1])
+    maps = [(main, slopes, "slope [deg]", f"{record.attrs['air_released']:.0%} of the air let out")]
+    if (kind == "air").any():  # a robot without air has none to let out
+        air = 100 * record.air_released.values
+        title = f"on a slope of {slopes[main].max():.0f} degrees"
+        maps.append((steep | (kind == "air"), air, "air let out while landing [%]", title))
+    else:
+        maps[0] = (*maps[0][:3], "")
     with styled():
-        figure, axes = panels(1, 2, width=12.0, height=4.4)
-        for ax, mine, rows, label in (
-            (axes[0, 0], main, slopes, "slope [deg]"),
-            (axes[0, 1], steep | (kind == "air"), 100 * record.air_released.values, "air let out while landing [%]"),
-        ):
+        figure, axes = panels(1, len(maps), width=6.0 * len(maps), height=4.4)
+        for ax, (mine, rows, label, title) in zip(axes[0], maps, strict=True):
             image = _map(ax, time[mine], record.grip.values[mine], rows[mine], most)
-            ax.set(xlabel="friction scale [-]", ylabel=label)
-        axes[0, 1].set_title(f"on a slope of {slopes[main].max():.0f} degrees")
-        axes[0, 0].set_title(f"{record.attrs['air_released']:.0%} of the air let out")
-        figure.colorbar(image, ax=axes[0, 1], label="time until ashore [s]")
+            ax.set(xlabel="friction scale [-]", ylabel=label, title=title)
+        if np.isfinite(time[main | (kind == "air")]).any():
+            figure.colorbar(image, ax=axes[0, -1], label="time until ashore [s]")
+    right = " Right: over the air that is let out and friction scale, on the steepest slope." * (len(maps) > 1)
     return captioned(
         figure,
-        "Mean time until the centre of mass is ashore. Left: over slope and friction scale. Right: over the "
-        "air that is let out and friction scale, on the steepest slope. Each field gives how many of its runs came "
-        "ashore.",
+        f"Mean time until the centre of mass is ashore{'. Left:' * (len(maps) > 1)} over slope and friction "
+        f"scale.{right} Each field gives how many of its runs came ashore.",
     )
 
 

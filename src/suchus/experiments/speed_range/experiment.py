@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from suchus import rotation
-from suchus.design import GRAVITY, Robot, Rod, Segment, Servo, layout
+from suchus.design import GRAVITY, Robot, Rod, Segment, layout
 from suchus.design.body import servos_of
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
@@ -49,7 +49,8 @@ _WALKING = ANIMAL["high_walk_speed"]
 class SpeedRange(Experiment):
     """Every gait at several cycle times, on the robot as it is and with the other model of its legs' servos.
 
-    The other model of a servo whose torque falls with speed gives its full torque at any speed, and the reverse.
+    Where the torque of any servo of its legs falls with speed, all of them give their full torque at any speed in the
+    other model; where that of none does, all fall.
 
     Measured over whole cycles from the second on; the speed is that of the centre of mass along the initial heading,
     the Froude number speed squared over gravity times hip height, without a number for a table of angles, which says no
@@ -139,7 +140,7 @@ class SpeedRange(Experiment):
         """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
         longest, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
         looked, shown = [], []
-        for i, robot in enumerate((self.robot, with_leg_servos(self.robot, _other))):
+        for i, robot in enumerate((self.robot, _with_other(self.robot))):
             runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for s in slower]
             walked = simulate(
                 runs,
@@ -219,7 +220,7 @@ class SpeedRange(Experiment):
             measures,
             fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
             cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
-            falls=_falls(self.robot),
+            falls=_falling(self.robot)[0] > 0,
             changed=max(
                 abs(measures[f"speed_{name}_other_servos"] / measures[f"speed_{name}"] - 1.0) for name in names
             ),
@@ -232,7 +233,7 @@ class SpeedRange(Experiment):
             "speed_range": draw_speed_range(
                 outcome.record,
                 gait_lines(outcome.record.gait.values),
-                (_LINE, _FULL) if _falls(self.robot) else (_FULL, _LINE),
+                _models(self.robot),
             )
         }
 
@@ -250,15 +251,24 @@ _UNITS = {
 }
 
 
-def _other(servo: Servo) -> Servo:
-    """Return a servo with a torque-speed line if it has none, else with its full torque at any speed."""
-    return with_speed_line(servo) if servo.winding is None else with_full_torque(servo)
+def _with_other(robot: Robot) -> Robot:
+    """Return a robot with the other model of its legs' servos."""
+    return with_leg_servos(robot, with_full_torque if _falling(robot)[0] else with_speed_line)
 
 
-def _falls(robot: Robot) -> bool:
-    """Return whether the torque of all servos of its limbs falls with their speed."""
+def _models(robot: Robot) -> tuple[str, str]:
+    """Return in words what servos the legs have, and what servos in the other model."""
+    falling, count = _falling(robot)
+    if not falling:
+        return _FULL, _LINE
+    return _LINE if falling == count else f"servos of which {falling} of {count} lose torque with speed", _FULL
+
+
+def _falling(robot: Robot) -> tuple[int, int]:
+    """Return of how many servos of its limbs the torque falls with speed, and how many they have [-]."""
     place, servos = layout(robot), servos_of(robot)
-    return all(servos[name].winding is not None for limb in place.limbs for name in place.servos[limb.servos])
+    limbs = [servos[name] for limb in place.limbs for name in place.servos[limb.servos]]
+    return sum(servo.winding is not None for servo in limbs), len(limbs)
 
 
 def _lying(robot: Robot, part: xr.Dataset) -> float:

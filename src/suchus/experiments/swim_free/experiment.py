@@ -69,6 +69,8 @@ class SwimFree(Experiment):
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
     answers = (
+        "speed_space",
+        "speed_slice",
         "speed_whole",
         "speed_trunk_only",
         "speed_tail_only",
