@@ -1,12 +1,19 @@
 """``suchus size`` and ``suchus parts`` from the command line."""
 
 import csv
+from dataclasses import replace
+from math import inf, nan
 
 import pytest
 
 from suchus.blueprint import motors, read
 from suchus.cli import main
 from suchus.design import Robot, layout
+from suchus.gaits import GAITS
+from suchus.hardware import cases
+from suchus.hardware.loads import ServoLoad
+from suchus.hardware.sizing import Sizing
+from suchus.report.size_page import answer
 from suchus.robots import ROBOTS
 
 
@@ -33,6 +40,26 @@ def test_what_makes_no_sense_is_refused_in_a_sentence_and_nothing_is_written(wor
     assert main(words.split()) == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "export").exists()
+
+
+@pytest.mark.parametrize(
+    ("warm", "said"),
+    [
+        ({}, None),
+        ({"spine_yaw_1": (1380.0, 78.4)}, "spine_yaw_1 gets too warm: in spine_only it passes the 70 °C that are "
+         "allowed after 23 min and would reach 78 °C"),
+        ({"spine_yaw_1": (1380.0, 78.4), "LF_yaw": (60.0, inf)}, "2 servos get too warm, LF_yaw first: in spine_only "
+         "it passes the 70 °C that are allowed after 1 min and would warm without end"),
+    ],
+)  # fmt: skip
+def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, said):
+    robot = ROBOTS["caiman"]
+    calm = ServoLoad(torque=1.0, limit=2.0, at_limit=0.0, first=nan, off=0.0, needed=1.0, steady=60.0, warm_after=inf)
+    loads = {name: replace(calm, warm_after=after, steady=steady) for name, (after, steady) in warm.items()}
+    own = {"spine_only": dict.fromkeys(layout(robot).servos, calm) | loads}
+    sizing = Sizing(robot=robot, cases=cases(robot, (GAITS["spine_only"],)), own=own, families=())
+    told = answer(sizing)[1:]
+    assert told == ([] if said is None else [f"As it is designed, {said} if the movement went on for ever."])
 
 
 @pytest.mark.slow("a family of servos is walked with")

@@ -129,7 +129,7 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     best = sizing.best
     if best is None:
         reasons = "; ".join(f"{family.name}: {family.lacking}" for family in sizing.families)
-        return [f"No family of servos does for {sizing.robot.name}. {reasons}."]
+        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_own_too_warm(sizing)]
     counts = " and ".join(f"{count} {name}" for name, count in counted(best).items())
     low, high = best.price
     name, case, most = best.binding()[0]
@@ -151,7 +151,30 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
     remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
     if remembered:
         said.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
-    return said
+    return said + _own_too_warm(sizing)
+
+
+def _own_too_warm(sizing: Sizing) -> list[str]:
+    """Return in a sentence which servo of the design would get too warm the soonest; nothing if none would."""
+    warm = [
+        (load.warm_after, name, case, load)
+        for case, loads in sizing.own.items()
+        for name, load in loads.items()
+        if isfinite(load.warm_after)
+    ]
+    if not warm:
+        return []
+    after, name, case, load = min(warm, key=lambda one: one[:3])
+    winding = sizing.robot.servo(name).winding
+    assert winding is not None
+    assert winding.heat is not None
+    count = len({name for _, name, _, _ in warm})
+    who = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
+    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would warm without end"
+    return [
+        f"As it is designed, {who}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"{after / 60:.2g} min and {most} if the movement went on for ever."
+    ]
 
 
 def _slower(sizing: Sizing, family: ServoFamily) -> str:
