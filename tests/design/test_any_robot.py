@@ -178,7 +178,9 @@ def test_every_hinge_and_servo_has_one_place(name):
 
 
 def test_a_field_of_another_kind_is_named_once():
-    with pytest.raises(InvalidDesign, match=r"^tail\.drive is object; 'cable' or 'servos' is needed\.$"):
+    with pytest.raises(
+        InvalidDesign, match=r"^tail\.drive is object; 'cable' or 'linear_actuator' or 'servos' is needed\.$"
+    ):
         replace(CAIMAN.tables.tail, drive=object)
 
 

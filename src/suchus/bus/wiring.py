@@ -152,6 +152,7 @@ class Wiring:
             InvalidDesign: it is for another robot, or a servo is missing, stands there twice, or is none of its.
         """
         check_names("hardware", [one.name for one in self.servo], robot)
+        _refuse_linear(robot)
         if self.fingerprint != fingerprint(robot):
             raise InvalidDesign(
                 f"the hardware is wired for robot {self.robot!r} with other servo ranges than {robot.name!r} has: name "
@@ -192,11 +193,12 @@ def straight(robot: Robot, bus: Sequence[BusPlace], model: str, *, boards: bool 
         boards: whether it has a board for each kind of sensor, on the first bus.
 
     Raises:
-        UnsuitedRobot: a servo turns all round, which these do not follow.
+        UnsuitedRobot: a servo turns all round, which these do not follow, or a linear actuator moves a cable.
         InvalidDesign: more servos than one bus can number.
     """
     place = layout(robot)
     _refuse_cranks(robot)
+    _refuse_linear(robot)
     share = -(-len(place.servos) // len(bus))
     if share > 199:
         raise InvalidDesign(
@@ -231,6 +233,16 @@ def _refuse_cranks(robot: Robot) -> None:
         raise UnsuitedRobot(
             f"robot {robot.name!r} turns {', '.join(cranks)} all round; servos that hold an angle within one turn "
             "cannot drive it, and no others are spoken with."
+        )
+
+
+def _refuse_linear(robot: Robot) -> None:
+    moved = [cable.name for cable in robot.cables if cable.linear is not None]
+    if moved:
+        raise UnsuitedRobot(
+            f"robot {robot.name!r} moves {', '.join(moved)} by a linear actuator, and the servos that are spoken to on "
+            "a bus turn: drive it by pulses (suchus export-commands), or let a servo pull the cords by a pulley "
+            "(tail.drive = 'cable')."
         )
 
 

@@ -17,6 +17,7 @@ from suchus.gaits import own_gait
 from suchus.hardware import commands, straight
 from suchus.hardware.outlines import libraries
 from suchus.hardware.parts import PLASTIC, WALL, sheet
+from suchus.hardware.ros import unfit
 from suchus.motion import Gait
 from suchus.record import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.report.building_sheet import PAGE, floats_said, mass_said, write_parts
@@ -74,7 +75,8 @@ def list_parts(words: Sequence[str]) -> int:
         bars.task(f"building sheet of {robot.name}")
         write_parts(found, draft, gait=gait, samples=samples, outlines=not options.no_outlines)
         (draft / MARK).write_text(json.dumps(origin, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    for sentence in (*mass_said(found), floats_said(found)):
-        print(sentence)
+    for sentence in (*mass_said(found), floats_said(found), unfit(robot)):
+        if sentence:
+            print(sentence)
     print(f"the page with all of it: {folder / PAGE}")
     return 0

@@ -4,7 +4,7 @@ from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
 from suchus.design.ground import Contact
-from suchus.design.hinge import Cable, Crank, Hinge, Servo, Spring, Turn
+from suchus.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring, Turn
 from suchus.design.hull import Chamber, Foam, Hull
 from suchus.design.layout import (
     LEGS,
@@ -66,6 +66,7 @@ __all__ = [
     "LegName",
     "Limb",
     "LimbPlace",
+    "LinearActuator",
     "Link",
     "Motor",
     "Pelvis",

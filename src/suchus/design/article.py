@@ -1,12 +1,12 @@
 """The robot that the article's tables make: segment by segment, joint by joint."""
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 
 from suchus.design.body import Robot
-from suchus.design.hinge import Cable, Hinge, Servo, Spring
+from suchus.design.hinge import Cable, Hinge, LinearActuator, Servo, Spring
 from suchus.design.limb import Foot, Girdle, Limb, Link
 from suchus.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.design.segment import Rod, Segment, Shell
@@ -84,13 +84,19 @@ def tables_of(robot: Robot) -> Tables | None:
             spine=_read(Spine, spine, link_mass=spine.link_masses[0]),
             thorax=_read(Thorax, thorax),
             head=_read(Head, head),
-            tail=_read(Tail, tail, plate=tail.plate, drive="cable"),
+            tail=_read(Tail, tail, plate=tail.plate, **_moved(robot)),
             contact=robot.contact,
             hull=robot.hull,
         )
         return tables if crocodile(tables) == robot else None
     except InvalidDesign:
         return None
+
+
+def _moved(robot: Robot) -> dict[str, object]:
+    """Return what of the tables says how the tail's cords are moved."""
+    linear = robot.cables[0].linear
+    return {"drive": "cable"} if linear is None else {"drive": "linear_actuator", "actuator": linear}
 
 
 def _read(kind: type[T], measures: NamedTuple, **more: object) -> T:
@@ -183,8 +189,8 @@ def _tail(tail: Tail) -> list[Segment]:
 def _driven(tail: Tail) -> list[Hinge]:
     limit = _SPARE * tail.bend_limit / tail.joints
     drive: Servo | Spring = tail.cable_servo
-    if tail.drive == "cable":
-        armature = tail.cable_servo.armature / tail.joints
+    if tail.drive != "servos":
+        armature = _cable(tail).turning.armature / tail.joints
         drive = Spring(stiffness=tail.joint_stiffness, damping=tail.joint_damping, armature=armature)
     return [Hinge(name=name, turn="yaw", range=(-limit, limit), drive=drive) for name in cable_names(tail)]
 
@@ -202,7 +208,7 @@ def _passive(tail: Tail, number: int) -> tuple[Hinge, Hinge]:
 
 
 def _cable(tail: Tail) -> Cable:
-    return Cable(
+    cable = Cable(
         name="tail_cable",
         hinges=cable_names(tail),
         cord_spacing=tail.cord_spacing,
@@ -211,6 +217,10 @@ def _cable(tail: Tail) -> Cable:
         servo=tail.cable_servo,
         gap=tail.gap,
     )
+    if tail.drive != "linear_actuator":
+        return cable
+    ideal = LinearActuator.of(tail.cable_servo, tail.pulley, cable.cord_at(tail.bend_limit))
+    return replace(cable, servo=tail.actuator or ideal, pulley=0.0)
 
 
 def _girdle(name: str, segment: str, at: float, leg: Leg) -> Girdle:

@@ -157,7 +157,7 @@ class Robot(_Hashed):
 
 
 def servos_of(robot: Robot) -> dict[str, Servo]:
-    """Return every servo by name, those of limbs first."""
+    """Return every servo by name, those of limbs first; of a linear actuator the servo that would do the same."""
     found = {}
     for girdle in robot.girdles:
         for side in "LR":
@@ -165,7 +165,7 @@ def servos_of(robot: Robot) -> dict[str, Servo]:
                 if hinge.servo is not None:
                     found[f"{side}{girdle.name}_{hinge.name}"] = hinge.servo
     found |= {hinge.name: hinge.servo for hinge in robot.axis_hinges if hinge.servo is not None}
-    return found | {cable.name: cable.servo for cable in robot.cables}
+    return found | {cable.name: cable.turning for cable in robot.cables}
 
 
 def bends_trunk(hinge: str) -> bool:

@@ -1,7 +1,8 @@
-"""Hinges and what moves them: a servo, a crank, a spring, or a cable over several."""
+"""Hinges and what moves them: a servo, a crank, a spring, or a cable over several that a servo or a screw pulls."""
 
 from dataclasses import dataclass, replace
-from typing import Literal, Optional
+from math import sin
+from typing import Literal, Optional, Self
 
 import numpy as np
 from jaxtyping import Float
@@ -182,24 +183,122 @@ class Hinge:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LinearActuator:
+    """A motor with a screw that moves the two cords of a cable along a line, as far as it is told.
+
+    The article calls it the drive of the tail without a number of it, so that all of them are to be given. What a
+    servo's fields are to its shaft these are to the cords: metres for radians, newtons for newton metres.
+
+    Paper: Sections II.B and III.D.
+    """
+
+    travel: float
+    """How far it moves the cords from the middle to either side [m]: half of the stroke that its maker gives."""
+    force: float
+    """Greatest force of its motor on the cords, dry friction not taken off [N]: with a winding, that at standstill.
+    The load that a maker says it lifts is less by ``friction``."""
+    speed: float
+    """Speed without load, and slew limit of the commanded place [m/s]."""
+    kp: float
+    """Proportional gain [N/m]."""
+    ki: float
+    """Integral gain [N/(m s)]; zero switches integral action off."""
+    kd: float
+    """Derivative gain [N s/m]."""
+    integral_limit: float
+    """Greatest force that integral action may build up [N]."""
+    mass: float
+    """Inertia of rotor, gear and screw as the cords feel it [kg]."""
+    friction: float
+    """Dry friction of gear and screw at the cords [N]: the force that drives it back when it is off."""
+    damping: float
+    """Viscous friction of gear and screw [N s/m]."""
+    winding: Winding | None = None
+    """Its DC motor, by which force falls with speed, supply and heat; None: full force at any speed, for ever."""
+
+    def __post_init__(self) -> None:
+        with Checks("linear actuator", self) as check:
+            check.number("travel", 1e-6, 10.0, "m")
+            check.number("force", 1e-6, 1e6, "N")
+            check.number("speed", 1e-5, 1e3, "m/s")
+            check.number("kp", 1e-6, 1e9, "N/m")
+            check.number("ki", 0.0, 1e9, "N/(m s)")
+            check.number("kd", 0.0, 1e8, "N s/m")
+            check.number("integral_limit", 0.0, 1e6, "N")
+            check.number("mass", 1e-9, 1e5, "kg")
+            check.number("friction", 0.0, 1e6, "N")
+            check.number("damping", 0.0, 1e7, "N s/m")
+            if self.winding is not None:
+                idle = self.friction + self.damping * self.speed
+                check.that(
+                    idle < _MOST_IDLE * self.force,
+                    f"friction and damping take {idle:.3g} N at {self.speed:g} m/s, of a force of {self.force:g} N: it "
+                    "cannot reach that speed; give less of them, or less speed",
+                )
+
+    @classmethod
+    def of(cls, servo: Servo, radius: float, travel: float) -> Self:
+        """Return the actuator that gives the cords what a servo gives them by a pulley.
+
+        Args:
+            servo: the servo.
+            radius: of its pulley [m].
+            travel: of the actuator to either side [m].
+        """
+        return cls(
+            travel=travel,
+            force=servo.torque / radius,
+            speed=servo.speed * radius,
+            kp=servo.kp / radius**2,
+            ki=servo.ki / radius**2,
+            kd=servo.kd / radius**2,
+            integral_limit=servo.integral_limit / radius,
+            mass=servo.armature / radius**2,
+            friction=servo.friction / radius,
+            damping=servo.damping / radius**2,
+            winding=servo.winding,
+        )
+
+    def on(self, radius: float) -> Servo:
+        """Return the servo that gives the cords the same by a pulley of a radius [m]."""
+        return Servo(
+            kp=self.kp * radius**2,
+            ki=self.ki * radius**2,
+            kd=self.kd * radius**2,
+            integral_limit=self.integral_limit * radius,
+            torque=self.force * radius,
+            speed=self.speed / radius,
+            armature=self.mass * radius**2,
+            friction=self.friction * radius,
+            damping=self.damping * radius**2,
+            winding=self.winding,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Cable:
-    """Two cords over one pulley that bend hinges which follow each other, all by the same angle where nothing resists.
+    """Two cords that bend hinges which follow each other, all by the same angle where nothing resists.
+
+    A servo pulls them over one pulley, or a linear actuator moves them directly. All that is said of servos in radians
+    and newton metres, as commands and records, says of a linear actuator what a servo on a pulley of the radius
+    ``pulley`` would turn and give; its travel is the angle times that radius.
 
     Paper: Eqs (16) to (18).
     """
 
     name: str
-    """Name of the servo and the cable."""
+    """Name of its servo or actuator, and of the cable."""
     hinges: tuple[str, ...]
-    """The hinges that it bends, from its servo to its end."""
+    """The hinges that it bends, from its drive to its end."""
     cord_spacing: float
     """Distance between the two cords, the article's d [m]."""
-    pulley: float
-    """Radius of the servo's pulley, the article's r [m]."""
     bend_limit: float
     """Greatest sum of the hinges' angles to either side [rad]."""
-    servo: Servo
-    """The servo that turns the pulley; torque and angle are those of its own shaft."""
+    servo: Servo | LinearActuator
+    """The servo that turns the pulley, with torque and angle of its own shaft; or a linear actuator."""
+    pulley: float = 0.0
+    """Radius of the servo's pulley, the article's r [m]. A linear actuator has none: 0 counts its travel as on one of
+    half the cord spacing, so that its angle is nearly the bend."""
     gap: float = 0.0
     """Gap between the plates at each hinge, the article's h [m]; 0: that which closes at the limit of the bend."""
 
@@ -207,11 +306,39 @@ class Cable:
         with Checks(f"cable {self.name}", self) as check:
             check.that(bool(self.hinges), f"cable {self.name} bends no hinge; name one at least")
             check.number("cord_spacing", 1e-5, 10.0, "m")
-            check.number("pulley", 1e-5, 10.0, "m")
             check.number("bend_limit", 0.01, 6.2832, "rad")
             check.number("gap", 0.0, 10.0, "m")
+            if isinstance(self.servo, LinearActuator) and self.hinges:
+                if self.pulley == 0.0:
+                    object.__setattr__(self, "pulley", self.cord_spacing / 2)
+                asked = self.cord_at(self.bend_limit)
+                check.that(
+                    asked <= self.servo.travel * (1 + 1e-9),
+                    f"cable {self.name} bends up to {self.bend_limit:.4g} rad, for which its linear actuator must move "
+                    f"{asked:.4g} m to either side, and its travel is {self.servo.travel:.4g} m: let it bend less, "
+                    "give more travel, or cords that are closer together",
+                )
+            check.number("pulley", 1e-5, 10.0, "m")
 
     @property
     def joints(self) -> int:
         """Number of hinges, the article's N [-]."""
         return len(self.hinges)
+
+    @property
+    def turning(self) -> Servo:
+        """The servo on its pulley; of a linear actuator the one that would do the same."""
+        return self.servo.on(self.pulley) if isinstance(self.servo, LinearActuator) else self.servo
+
+    @property
+    def linear(self) -> LinearActuator | None:
+        """The linear actuator that moves the cords; None where a servo does by a pulley."""
+        return self.servo if isinstance(self.servo, LinearActuator) else None
+
+    def cord_at(self, bend: float) -> float:
+        """Return by how much a cord is drawn in at a sum of the hinges' angles, the article's X [m].
+
+        Args:
+            bend: sum of the angles [rad].
+        """
+        return self.joints * self.cord_spacing * sin(bend / (2 * self.joints))

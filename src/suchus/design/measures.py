@@ -292,7 +292,7 @@ def tail_of(robot: "Robot") -> TailMeasures | None:
         return None
     names = tuple(hinge.name for hinge in driven)
     cable = next((cable for cable in robot.cables if cable.hinges == names), None)
-    servo = cable.servo if cable is not None else driven[0].servo
+    servo = cable.turning if cable is not None else driven[0].servo
     springs = [hinge.drive for pair in passive for hinge in pair]
     in_order = [[h.turn for h in s.hinges] for s in behind[:-1]] == count * [["yaw"]] + len(passive) * [
         ["yaw", "pitch"]

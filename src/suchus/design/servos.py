@@ -6,9 +6,10 @@ from typing import Any
 
 from suchus.design.article import remade
 from suchus.design.body import Robot
-from suchus.design.hinge import Crank, Hinge, Servo, Spring
+from suchus.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring
 from suchus.design.limb import Girdle
 from suchus.design.motor import LINE
+from suchus.design.tables import Tail
 
 _LIMBS = ("girdles", "front_leg", "hind_leg")
 """Fields of a robot or of the article's tables that hold limbs."""
@@ -43,7 +44,7 @@ def with_speed_lines(robot: Robot) -> Robot:
 
 
 def with_servos(robot: Robot, change: Callable[[Servo], Servo]) -> Robot:
-    """Return a robot with each of its servos changed."""
+    """Return a robot with each of its servos changed; a linear actuator as the servo that would do the same."""
     return remade(robot, lambda design: _changed(design, change))
 
 
@@ -52,7 +53,8 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
 
     Args:
         robot: the robot; it stays as it is. The limbs of a girdle mirror each other, so that either name changes both.
-        servos: by the names of ``design.servo_names``; of two for one place the stronger counts.
+        servos: by the names of ``design.servo_names``; of two for one place the stronger counts. A linear actuator
+            becomes one that does what the servo would on the cable's ``pulley``.
     """
 
     def other(hinge: Hinge, names: Collection[str]) -> Hinge:
@@ -73,7 +75,7 @@ def with_named_servos(robot: Robot, servos: Mapping[str, Servo]) -> Robot:
         return replace(girdle, limb=replace(girdle.limb, links=links))
 
     axis = tuple(replace(one, hinges=tuple(other(hinge, [hinge.name]) for hinge in one.hinges)) for one in robot.axis)
-    cables = tuple(replace(one, servo=servos.get(one.name, one.servo)) for one in robot.cables)
+    cables = tuple(_pulled(one, servos[one.name]) if one.name in servos else one for one in robot.cables)
     return replace(robot, axis=axis, girdles=tuple(limb(one) for one in robot.girdles), cables=cables)
 
 
@@ -95,15 +97,31 @@ def with_spring(robot: Robot, hinges: Collection[str], stiffness: float) -> Robo
     return replace(robot, axis=axis)
 
 
-def _changed(part: Any, change: Callable[[Servo], Servo]) -> Any:
+def _pulled(cable: Cable, servo: Servo) -> Cable:
+    """Return a cable whose drive does what a servo does on its pulley."""
+    linear = cable.linear
+    other = servo if linear is None else LinearActuator.of(servo, cable.pulley, linear.travel)
+    return replace(cable, servo=other)
+
+
+def _changed(part: Any, change: Callable[[Servo], Servo], radius: float = 1.0) -> Any:
+    """Return a part with its servos changed; a linear actuator as a servo on a pulley of a radius [m]."""
     if isinstance(part, Servo):
         return change(part)
+    if isinstance(part, LinearActuator):
+        servo = part.on(radius)
+        other = change(servo)
+        return part if other == servo else LinearActuator.of(other, radius, part.travel)
+    if isinstance(part, Tail):
+        radius = part.cord_spacing / 2
+    elif isinstance(part, Cable):
+        radius = part.pulley
     if isinstance(part, tuple):
-        ones = [_changed(one, change) for one in part]
+        ones = [_changed(one, change, radius) for one in part]
         return tuple(ones) if any(new is not old for new, old in zip(ones, part, strict=True)) else part
     if is_dataclass(part) and not isinstance(part, type):
         found = {f.name: getattr(part, f.name) for f in fields(part) if f.init}
-        changed = {name: _changed(value, change) for name, value in found.items()}
+        changed = {name: _changed(value, change, radius) for name, value in found.items()}
         changed = {name: value for name, value in changed.items() if value is not found[name]}
         return replace(part, **changed) if changed else part
     return part

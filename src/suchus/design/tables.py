@@ -10,8 +10,9 @@ import numpy as np
 
 from suchus.design.checks import Checks
 from suchus.design.ground import Contact
-from suchus.design.hinge import Servo
+from suchus.design.hinge import LinearActuator, Servo
 from suchus.design.hull import Hull
+from suchus.kinds import show
 
 LEG_SHARES = (0.60, 0.35, 0.05)
 """How a leg's mass is spread over femur, tibia and foot [-]."""
@@ -117,8 +118,9 @@ class Spine:
         return tuple(f"spine_{'pitch' if i % 2 else 'yaw'}_{i // 2 + 1}" for i in range(self.joints))
 
 
-TailDrive = Literal["cable", "servos"]
-"""What bends the tail sideways: one cable over all of its driven joints, or a servo in each of them."""
+TailDrive = Literal["cable", "linear_actuator", "servos"]
+"""What bends the tail sideways: one cable over all of its driven joints, on the pulley of a servo (section III.C of the
+article) or moved by a linear actuator (II.B, III.D), or a servo in each of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,7 +145,7 @@ class Tail:
     cord_spacing: float
     """Distance between the two cords, the article's d [m]."""
     pulley: float
-    """Radius of the servo's pulley, the article's r [m]."""
+    """Radius of the servo's pulley, the article's r [m]; a linear actuator has none."""
     joint_stiffness: float
     """Lateral spring at each cable joint [N m/rad]."""
     joint_damping: float
@@ -173,7 +175,11 @@ class Tail:
     cable_servo: Servo
     """The servo that turns the pulley, or each driven joint; torque and angle are those of its own shaft."""
     drive: TailDrive = "cable"
-    """``cable`` as in the article, or ``servos``, one in each driven joint."""
+    """``cable`` on the pulley of a servo, ``linear_actuator`` for cords that it moves, or ``servos``, one in each
+    driven joint."""
+    actuator: LinearActuator | None = None
+    """The linear actuator; None for one that gives the cords what the servo would by its pulley, with the travel that
+    the greatest bend asks for."""
 
     def __post_init__(self) -> None:
         with Checks("tail", self) as check:
@@ -196,6 +202,11 @@ class Tail:
             check.number("bend_limit", 0.01, 3.1416, "rad")
             check.whole("joints", 1, 30)
             check.whole("fin_segments", 1, 30)
+            check.that(
+                self.actuator is None or self.drive == "linear_actuator",
+                f"actuator is given and drive is {show(self.drive)}, so that nothing would use it: set drive to "
+                "'linear_actuator', or take the actuator away",
+            )
 
     @property
     def pitch(self) -> float:

@@ -1,6 +1,7 @@
 """A gait as servo angles and pulses over time, and as the files that hold them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -20,13 +21,15 @@ class Commands(NamedTuple):
     time: Float[np.ndarray, " sample"]
     """From the beginning of the first cycle [s]."""
     angles: Float[np.ndarray, "sample servo"]
-    """Angles of the joints; of the pulley for the cable [rad]."""
+    """Angles of the joints; for a cable that of its pulley, or the travel of its actuator over ``pulleys`` [rad]."""
     speeds: Float[np.ndarray, "sample servo"]
     """Rate at which the angles change: central differences over the periodic gait [rad/s]."""
     pulses: Float[np.ndarray, "sample servo"]
     """Pulse widths to which the servo map converts the angles [us]."""
     servos: tuple[str, ...]
     """Names of the servos."""
+    pulleys: Mapping[str, float] = MappingProxyType({})
+    """Of each linear actuator, by name, the radius by which an angle is its travel [m]."""
 
 
 def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> Commands:
@@ -64,7 +67,8 @@ def commands(robot: Robot, gait: Gait, servo_map: ServoMap, cycles: int = 1) -> 
     speed = (after - before) / (2 * step)
     angles = one[along % samples] + turns * (along // samples)[:, None]
     pulses = _pulses(servo_map.ordered(robot), angles)
-    return Commands(along * step, angles, speed[along % samples], pulses, layout(robot).servos)
+    pulleys = {cable.name: cable.pulley for cable in robot.cables if cable.linear is not None}
+    return Commands(along * step, angles, speed[along % samples], pulses, layout(robot).servos, pulleys)
 
 
 def _cranks(robot: Robot) -> np.ndarray:
@@ -87,13 +91,19 @@ def _pulses(lines: Sequence[ServoLine], angles: np.ndarray) -> np.ndarray:
 
 
 def csv_text(samples: Commands) -> str:
-    """Return a table: time [s], then each servo's angle [rad], then each servo's pulse [us]."""
-    names = samples.servos
-    lines = [",".join(["time_s", *(f"{n}_rad" for n in names), *(f"{n}_us" for n in names)])]
-    for time, angles, pulses in zip(samples.time, samples.angles, samples.pulses, strict=True):
-        lines.append(
-            ",".join([f"{time:.6f}", *(f"{a + 0.0:.6f}" for a in angles), *(f"{p:.1f}" for p in pulses)]),
-        )
+    """Return a table: time [s], each servo's angle [rad], its pulse [us], then each linear actuator's travel [m]."""
+    names, moved = samples.servos, list(samples.pulleys)
+    travels = samples.angles[:, [names.index(n) for n in moved]] * [samples.pulleys[n] for n in moved]
+    lines = [
+        ",".join(["time_s", *(f"{n}_rad" for n in names), *(f"{n}_us" for n in names), *(f"{n}_m" for n in moved)])
+    ]
+    for time, angles, pulses, travel in zip(samples.time, samples.angles, samples.pulses, travels, strict=True):
+        cells = [
+            *(f"{a + 0.0:.6f}" for a in angles),
+            *(f"{p:.1f}" for p in pulses),
+            *(f"{x + 0.0:.6f}" for x in travel),
+        ]
+        lines.append(",".join([f"{time:.6f}", *cells]))
     return "\n".join(lines) + "\n"
 
 

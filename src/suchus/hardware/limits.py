@@ -1,6 +1,7 @@
 """Whether servos can do what a gait asks: pulses, speed, and torque from a simulated walk."""
 
 from collections.abc import Mapping
+from math import isnan
 
 import numpy as np
 
@@ -30,9 +31,11 @@ def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Comma
         steps = np.diff(samples.angles[:, i]) / np.diff(samples.time)
         worst = int(np.argmax(np.abs(steps)))
         if abs(steps[worst]) > limit:
+            radius = samples.pulleys.get(name)
+            verb, factor, unit = ("turns", 1.0, "rad/s") if radius is None else ("moves", 1000.0 * radius, "mm/s")
             raise OutsideLimits(
-                f"gait {gait.name!r} turns {name} of robot {robot.name!r} at {abs(steps[worst]):.3g} rad/s at "
-                f"{samples.time[worst]:.2f} s; up to {limit:g} rad/s is allowed: lengthen the period."
+                f"gait {gait.name!r} {verb} {name} of robot {robot.name!r} at {factor * abs(steps[worst]):.3g} {unit} "
+                f"at {samples.time[worst]:.2f} s; up to {factor * limit:g} {unit} is allowed: lengthen the period."
             )
         pulses = samples.pulses[:, i]
         worst = int(np.argmax(np.maximum(line.pulse_min - pulses, pulses - line.pulse_max)))
@@ -47,18 +50,33 @@ def check_commands(robot: Robot, gait: Gait, servo_map: ServoMap, samples: Comma
 
 def _other(load: ServoLoad) -> str:
     """Return the servo that would do, or that none does."""
+    if not isnan(load.radius):
+        return "a stronger linear actuator, of which suchus knows none by name,"
     return f"{load.other} ({load.other_torque:.3g} N m)" if load.other else "none of the servos that suchus knows"
 
 
 def overloaded(borne: Mapping[str, ServoLoad], at_limit: float = AT_LIMIT) -> list[str]:
-    """Return a sentence for each servo that stands at its torque limit for more than a share of the walk."""
+    """Return a sentence for each servo that stands at its limit for more than a share of the walk."""
     return [
-        f"{name} is at its torque limit of {load.limit:g} N m for {100 * load.at_limit:.0f} % of the walk, first at "
-        f"{load.first:.2f} s, and up to {np.degrees(load.off):.1f} degrees from its commanded angle; "
-        f"{_other(load)} would do."
+        f"{name} is at its {_limit(load)} for {100 * load.at_limit:.0f} % of the walk, first at {load.first:.2f} s, "
+        f"and up to {_off(load)}; {_other(load)} would do."
         for name, load in borne.items()
         if load.at_limit > at_limit
     ]
+
+
+def _limit(load: ServoLoad) -> str:
+    """Return the limit of what a servo gives, a linear actuator's in newtons."""
+    if isnan(load.radius):
+        return f"torque limit of {load.limit:g} N m"
+    return f"force limit of {load.limit / load.radius:g} N"
+
+
+def _off(load: ServoLoad) -> str:
+    """Return how far it is from where it is told to be, a linear actuator in millimetres."""
+    if isnan(load.radius):
+        return f"{np.degrees(load.off):.1f} degrees from its commanded angle"
+    return f"{1000 * load.off * load.radius:.1f} mm from its commanded place"
 
 
 def check_loads(

@@ -150,6 +150,9 @@ class ServoLoad:
     """Time until it reaches its temperature limit [s]; infinite if it never does, NaN where it does not warm up."""
     tension: float = nan
     """Greatest tension of the cable that it pulls [N]; NaN where it pulls none."""
+    radius: float = nan
+    """Of a linear actuator, the radius over which torque is its force and by which an angle is its travel [m]; NaN of
+    a servo that turns."""
     other: str = ""
     """Name of the servo that is sold and does, if that was looked for."""
     other_torque: float = nan
@@ -251,6 +254,7 @@ def borne(robot: Robot, walk: xr.Dataset, needed: xr.Dataset | None = None) -> M
             power=float(max((torque * speed).max(), 0.0)),
             line=float(np.quantile(used.sel(servo=name), 1.0 - AT_LIMIT)),
             tension=float(np.abs(torque).max() / pulled[0].pulley) if pulled else nan,
+            radius=pulled[0].pulley if pulled and pulled[0].linear is not None else nan,
         )
         found[name] = replace(found[name], **_electric(servo, torque, speed))
     return found

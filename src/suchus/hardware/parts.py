@@ -127,7 +127,10 @@ class Cord:
     travel: float
     """By how much a cord is drawn in at the greatest bend [m]."""
     table: tuple[tuple[float, float, float, float], ...]
-    """Bend [rad], angle of the pulley [rad], change of the cord on the side of the bend and of the other one [m]."""
+    """Bend [rad], angle of the pulley [rad] or place of the linear actuator [m], change of the cord on the side of the
+    bend and of the other one [m]."""
+    linear: bool = False
+    """Whether a linear actuator moves it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -215,10 +218,11 @@ def sheet(
     require("parts", "wall", wall, 1e-5, 0.1, "m")
     require("parts", "density", density, 1.0, 2e4, "kg/m3")
     sold = shipped() if motors is None else motors
+    moved = {cable.name for cable in robot.cables if cable.linear is not None}
     bought = {
         name: sold[servo.winding.motor]
         for name, servo in servos_of(robot).items()
-        if servo.winding is not None and servo.winding.motor in sold
+        if name not in moved and servo.winding is not None and servo.winding.motor in sold
     }
     seats = _seats(robot)
     parts = (*_shapes(robot), *_foam(robot), *_servos(robot, bought, seats))
@@ -327,9 +331,16 @@ def _servos(
     robot: Robot, bought: Mapping[str, Motor], seats: Mapping[str, tuple[str, tuple[float, float, float]]]
 ) -> list[BodyPart]:
     found = []
+    moved = {cable.name: cable.linear for cable in robot.cables if cable.linear is not None}
     for name, servo in ((name, robot.servo(name)) for name in layout(robot).servos):
         body, at = seats[name]
         motor = bought.get(name)
+        about = f"servo of {servo.torque:g} N m and {servo.speed:g} rad/s"
+        if name in moved:
+            one = moved[name]
+            about = (
+                f"linear actuator of {one.force:g} N, {1000 * one.speed:g} mm/s and {2000 * one.travel:.1f} mm stroke"
+            )
         found.append(
             BodyPart(
                 body=body,
@@ -338,7 +349,7 @@ def _servos(
                 size=(nan, nan, nan) if motor is None else motor.size,
                 mass=nan if motor is None else motor.mass,
                 centre=at,
-                about=f"servo of {servo.torque:g} N m and {servo.speed:g} rad/s" if motor is None else motor.name,
+                about=about if motor is None else motor.name,
             )
         )
     return found
@@ -429,18 +440,21 @@ def _plates(robot: Robot) -> tuple[TailPlate, ...]:
 
 
 def _cord(robot: Robot, cable: Cable) -> Cord:
-    tail = tail_of(robot)
+    tail, linear = tail_of(robot), cable.linear is not None
+    told = cable.pulley if linear else 1.0
     if tail is None or not tail.cabled or cable.hinges != tail.driven:
         half = cable.cord_spacing / 2
         bent = np.linspace(0.0, cable.bend_limit, _STEPS).tolist()
-        straight = tuple((b, b * half / cable.pulley, 0.0 - b * half, b * half) for b in bent)
-        return Cord(name=cable.name, section=nan, travel=cable.bend_limit * half, table=straight)
+        straight = tuple((b, told * b * half / cable.pulley, 0.0 - b * half, b * half) for b in bent)
+        return Cord(name=cable.name, section=nan, travel=cable.bend_limit * half, table=straight, linear=linear)
     most = min(cable.bend_limit, bend_limit(tail))
     bends = np.linspace(0.0, most, _STEPS)
     toward, away = (change + 0.0 for change in cable_changes(tail, bends))  # no -0
-    turns = servo_angle(tail, bends)
+    turns = told * servo_angle(tail, bends)
     table = tuple(zip(bends.tolist(), turns.tolist(), toward.tolist(), away.tolist(), strict=True))
-    return Cord(name=cable.name, section=tail.joints * tail.pitch, travel=float(-toward[-1]), table=table)
+    return Cord(
+        name=cable.name, section=tail.joints * tail.pitch, travel=float(-toward[-1]), table=table, linear=linear
+    )
 
 
 def _wires(

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 
 from suchus.design import Robot, layout
+from suchus.errors import UnsuitedRobot
 from suchus.model.export.urdf import urdf
 
 PLUGIN = "dynamixel_hardware_interface/DynamixelHardware"
@@ -20,6 +21,18 @@ NOTE = (
 )
 
 
+def unfit(robot: Robot) -> str:
+    """Return in a sentence why a robot has no such description; empty for one that has."""
+    moved = [cable.name for cable in robot.cables if cable.linear is not None]
+    if not moved:
+        return ""
+    return (
+        f"Robot {robot.name!r} moves {', '.join(moved)} by a linear actuator, which has no place among the servos of "
+        f"{PLUGIN}: take the plain URDF (suchus export), or let a servo pull the cords by a pulley (tail.drive = "
+        "'cable')."
+    )
+
+
 def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_000, port: str = "/dev/ttyUSB0") -> str:
     """Return a robot as URDF with a joint for each cable's pulley and a ``ros2_control`` block for its servos.
 
@@ -28,7 +41,12 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
         numbers: ids of the servos on their bus, in the order of the layout; 1 and so on if empty.
         baud: of the bus [1/s].
         port: of the bus.
+
+    Raises:
+        UnsuitedRobot: a linear actuator moves a cable.
     """
+    if said := unfit(robot):
+        raise UnsuitedRobot(said)
     place = layout(robot)
     root = ElementTree.fromstring(urdf(robot))
     for i in place.cables:
@@ -42,7 +60,7 @@ def described(robot: Robot, *, numbers: Sequence[int] = (), baud: int = 1_000_00
         ElementTree.SubElement(joint, "origin", xyz="0 0 0", rpy="0 0 0")
         ElementTree.SubElement(joint, "axis", xyz="0 0 1")
         reach = cable.bend_limit * cable.cord_spacing / 2 / cable.pulley
-        limits = {"lower": -reach, "upper": reach, "effort": cable.servo.torque, "velocity": cable.servo.speed}
+        limits = {"lower": -reach, "upper": reach, "effort": cable.turning.torque, "velocity": cable.turning.speed}
         ElementTree.SubElement(joint, "limit", {key: repr(float(value)) for key, value in limits.items()})
     root.append(_control(robot, numbers or range(1, len(place.servos) + 1), baud, port))
     ElementTree.indent(root)

@@ -20,7 +20,8 @@ class ServoLine:
     """One servo: its pulse is ``pulse_centre + pulse_per_radian (direction angle + offset)``."""
 
     name: str
-    """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley."""
+    """Name of the servo, as ``LF_yaw``; the angle of ``tail_cable`` is that of its pulley, or of a linear actuator its
+    travel over the cable's ``pulley``."""
     channel: int
     """Channel of the servo board, from 0 [-]."""
     direction: int
@@ -102,8 +103,13 @@ class ServoMap:
 def straight(robot: Robot) -> ServoMap:
     """Return a map to start from: servos that turn 270 degrees over 500 to 2500 us, mounted in the middle.
 
-    They hang on boards of 16 channels in the order of the robot's layout.
+    They hang on boards of 16 channels in the order of the robot's layout. A linear actuator goes through its stroke
+    over 1000 to 2000 us, as Actuonix says of its L16-R.
     """
+    half, reach = (dict.fromkeys(layout(robot).servos, value) for value in (1000.0, 0.75 * pi))
+    for cable in robot.cables:
+        if cable.linear is not None:
+            half[cable.name], reach[cable.name] = 500.0, cable.linear.travel / cable.pulley
     return ServoMap(
         name="straight",
         rate=50.0,
@@ -114,9 +120,9 @@ def straight(robot: Robot) -> ServoMap:
                 direction=1,
                 offset=0.0,
                 pulse_centre=1500.0,
-                pulse_per_radian=round(2000.0 / (1.5 * pi), 3),
-                pulse_min=500.0,
-                pulse_max=2500.0,
+                pulse_per_radian=round(half[name] / reach[name], 3),
+                pulse_min=1500.0 - half[name],
+                pulse_max=1500.0 + half[name],
                 board=place // CHANNELS,
             )
             for place, name in enumerate(layout(robot).servos)

@@ -148,14 +148,18 @@ def families_of(motors: Mapping[str, Motor]) -> dict[str, tuple[float, list[Moto
 
 
 def places(robot: Robot) -> list[tuple[str, ...]]:
-    """Return the servos that must be alike: left and right limbs of a girdle mirror each other."""
+    """Return the servos that must be alike: left and right limbs of a girdle mirror each other.
+
+    Linear actuators are left out: no servo that turns takes the place of one.
+    """
+    moved = {cable.name for cable in robot.cables if cable.linear is not None}
     mirrored = {
         f"{side}{girdle.name}_{hinge.name}": (f"L{girdle.name}_{hinge.name}", f"R{girdle.name}_{hinge.name}")
         for girdle in robot.girdles
         for hinge in girdle.limb.hinges
         for side in "LR"
     }
-    return list(dict.fromkeys(mirrored.get(name, (name,)) for name in layout(robot).servos))
+    return list(dict.fromkeys(mirrored.get(name, (name,)) for name in layout(robot).servos if name not in moved))
 
 
 def fitted(robot: Robot, chosen: Mapping[str, Motor], volts: float) -> Robot:
@@ -313,7 +317,10 @@ class _Search:
             chosen = {one: left[names][0] for names in self._places for one in names}
             body = fitted(self._robot, chosen, volts)
             records = records_of_each([(cold(body), case) for case in cases])
-            loads = {case.name: borne(body, record) for case, record in zip(cases, records, strict=True)}
+            loads = {
+                case.name: {name: load for name, load in borne(body, record).items() if name in chosen}
+                for case, record in zip(cases, records, strict=True)
+            }
             family = ServoFamily(name=name, volts=volts, chosen=chosen, factors=dict(factors), loads=loads)
             weak = self._weak(family)
             if not weak:
@@ -366,7 +373,8 @@ def with_better(
         loads: from ``loads_of_each``.
         motors: the servos that are sold; those that suchus knows if None.
     """
-    weak = [name for name, load in loads.items() if load.at_limit > AT_LIMIT]
+    able = {name for names in places(robot) for name in names}
+    weak = [name for name, load in loads.items() if load.at_limit > AT_LIMIT and name in able]
     if not weak:
         return loads
     sold = sorted((shipped() if motors is None else motors).values(), key=lambda motor: sum(motor.price))

@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from suchus.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Servo, Spring, layout
+from suchus.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Spring, layout
 from suchus.design.body import servos_of
 from suchus.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 from suchus.design.pieces import foam_centres, masses
@@ -341,7 +341,7 @@ def lay_cables(spec: Any, robot: Robot) -> None:
     That is the first order of the exact change in length, whose relative error is below 1.2 % up to 180 degrees.
     """
     for cable in robot.cables:
-        servo: Servo = cable.servo
+        servo = cable.turning
         tendon = spec.add_tendon(
             name=cable.name,
             frictionloss=servo.friction / cable.pulley,

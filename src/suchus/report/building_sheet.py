@@ -7,10 +7,11 @@ from math import degrees, isfinite
 from pathlib import Path
 
 from suchus import figures
+from suchus.design import Robot
 from suchus.hardware.commands import Commands, trajectory_text
 from suchus.hardware.outlines import plates_dxf, stl, top_dxf
 from suchus.hardware.parts import BodyPart, Sheet
-from suchus.hardware.ros import controllers, described, note
+from suchus.hardware.ros import controllers, described, note, unfit
 from suchus.motion import Gait
 from suchus.record import write
 from suchus.report.rendering import embedded, render
@@ -33,23 +34,28 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
     """
     for name, text in tables(sheet).items():
         write(folder / name, text)
-    for name in ("outlines", "ros2") if outlines else ("ros2",):
-        (folder / name).mkdir()
     if outlines:
+        (folder / "outlines").mkdir()
         for part in printed(sheet):
             write(folder / "outlines" / f"{part.name}.stl", stl(part))
         write(folder / "outlines" / "top.dxf", top_dxf(sheet))
         if sheet.plates:
             write(folder / "outlines" / "plates.dxf", plates_dxf(sheet.plates))
-    ros = folder / "ros2"
-    write(ros / f"{sheet.robot.name}.urdf", described(sheet.robot))
-    write(ros / "controllers.yaml", controllers(sheet.robot))
-    write(ros / "trajectory.yaml", trajectory_text(sheet.robot, samples, virtual=True))
-    if said := note(sheet.robot):
-        write(ros / "README.txt", said + "\n")
+    if not unfit(sheet.robot):
+        _write_ros(sheet.robot, samples, folder / "ros2")
     svg, png = figures.save(figures.dimension_drawing(sheet.robot), folder, "dimensions")
     picture = {"source": embedded(svg, png), "caption": f"{sheet.robot.name}, its lengths in millimetres."}
     write(folder / PAGE, render("building_sheet.html", folder, _content(sheet, gait, picture, outlines), deg=degrees))
+
+
+def _write_ros(robot: Robot, samples: Commands, folder: Path) -> None:
+    """Write a robot, its controllers and a trajectory for ROS 2."""
+    folder.mkdir()
+    write(folder / f"{robot.name}.urdf", described(robot))
+    write(folder / "controllers.yaml", controllers(robot))
+    write(folder / "trajectory.yaml", trajectory_text(robot, samples, virtual=True))
+    if said := note(robot):
+        write(folder / "README.txt", said + "\n")
 
 
 def printed(sheet: Sheet) -> list[BodyPart]:
@@ -122,7 +128,8 @@ def tables(sheet: Sheet) -> dict[str, str]:
         rows = [(p.name, p.radius, p.thickness, *p.holes[0], *p.holes[1]) for p in sheet.plates]
         found["plates.csv"] = _csv(columns, rows)
     for cord in sheet.cords:
-        about = ("bend_rad", "pulley_rad", "cord_towards_the_bend_m", "cord_away_from_it_m")
+        drive = "actuator_m" if cord.linear else "pulley_rad"
+        about = ("bend_rad", drive, "cord_towards_the_bend_m", "cord_away_from_it_m")
         found[f"{cord.name}.csv"] = _csv(about, cord.table)
     return found
 
@@ -177,7 +184,8 @@ def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) 
         "printed": printed(sheet),
         "masses": mass_said(sheet),
         "floats": floats_said(sheet),
-        "note": note(sheet.robot),
+        "note": "" if unfit(sheet.robot) else note(sheet.robot),
+        "unfit": unfit(sheet.robot),
         "wire": sum(wire.length for wire in sheet.wires),
         "files": sorted(tables(sheet)),
         "outlines": outlines,

@@ -141,6 +141,9 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
     ]
+    kept = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
+    if kept:
+        said.append(f"The linear actuator of {' and '.join(kept)} stays as it is: no family has one.")
     slower = sizing.slower
     if slower is not None:
         low, high = slower.price

@@ -78,10 +78,15 @@ class TailBending(Experiment):
         furthest = min(self.furthest, tail.bend_limit(plates))
         progress("bending the tail", 0.0)
         bend = np.linspace(0.0, furthest, self.steps)
-        parts = [_cords(plates, bend), _shapes(plates, furthest), _errors(plates, furthest)]
+        parts = [_cords(plates, bend, self.linear), _shapes(plates, furthest), _errors(plates, furthest)]
         record = xr.merge([*parts, self._crawls(staged(progress, "crawling", 0.1, 1.0))])
         facts = {"plate": plates.plate, "gap": plates.gap, "cord_spacing": plates.cord_spacing} | _facts(self.robot)
         return Simulated(record=record.assign_attrs(facts | {"plausible_error": self._plausible(furthest)}))
+
+    @property
+    def linear(self) -> bool:
+        """Whether a linear actuator moves the cords of the tail, and no servo by a pulley."""
+        return any(cable.linear is not None and cable.hinges == self.robot.tail.driven for cable in self.robot.cables)
 
     def _crawls(self, progress: Any) -> xr.Dataset:
         """Return the angles of the cable joints over time in both crawls, not a number if the legs cannot follow."""
@@ -167,8 +172,8 @@ class TailBending(Experiment):
         }
 
 
-def _cords(plates: TailMeasures, bend: np.ndarray) -> xr.Dataset:
-    """Return cords, servo and errors of the formulas over the bend; the straight tail has no relative error of (17)."""
+def _cords(plates: TailMeasures, bend: np.ndarray, linear: bool) -> xr.Dataset:
+    """Return cords, drive and errors of the formulas over the bend; the straight tail has no relative error of (17)."""
     toward, away = tail.cable_changes(plates, bend)
     kept_toward, kept_away = (plates.joints * c for c in printed.cable_changes_shortened(plates, bend))
     last = (tail.joint_positions(plates, bend) - printed.joint_positions(plates, bend))[:, -1]
@@ -189,7 +194,11 @@ def _cords(plates: TailMeasures, bend: np.ndarray) -> xr.Dataset:
                 part | {"long_name": "h/d tan(theta / 4N)"},
             ),
             "deficit": ("bend", bend - _reached(plates, kept_away), {"units": "rad", "long_name": "bend missing"}),
-            "servo": ("bend", tail.servo_angle(plates, bend), {"units": "rad", "long_name": "pulley angle"}),
+            "servo": (
+                ("bend", plates.pulley * tail.servo_angle(plates, bend), long | {"long_name": "actuator's travel"})
+                if linear
+                else ("bend", tail.servo_angle(plates, bend), {"units": "rad", "long_name": "pulley angle"})
+            ),
             "printed_miss": (
                 "bend",
                 np.linalg.norm(last, axis=-1),

@@ -82,9 +82,8 @@ def tail_cord_error(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "What (17) leaves out. Above: its relative error for both cords over the bend; the neglected term is exactly "
-        "h/d tan(theta / 4N) of the kept one. Below: the cord that hangs loose because both cords sit on one pulley, "
-        "and "
-        "how much bend is missing when the pulley turns by (18).",
+        "h/d tan(theta / 4N) of the kept one. Below: the cord that hangs loose because one drive moves both cords "
+        "alike, and how much bend is missing when the cord towards it is drawn in by N times (17), as (18) does.",
     )
 
 
@@ -104,18 +103,21 @@ def tail_cords(record: xr.Dataset) -> Figure:
         left.set_title("cords")
         left.legend(loc="upper left", fontsize=10)
         left.set_ylim(top=1.45 * _MM * float(record.shortened.max()))
-        right.plot(bend, np.degrees(record.servo), color=COLOURS["tail"])
-        right.set_ylabel("pulley angle [deg]")
-        right.set_title("servo, (18)")
+        linear = record.servo.attrs["units"] == "m"
+        told = _MM * record.servo if linear else np.degrees(record.servo)
+        right.plot(bend, told, color=COLOURS["tail"])
+        right.set_ylabel("travel to one side [mm]" if linear else "pulley angle [deg]")
+        right.set_title("linear actuator, X" if linear else "servo, (18)")
         for ax in (left, right):
             ax.set_xlabel("bend of the tail [deg]")
             ax.set_xlim(0, float(bend.max()))
             ax.set_xticks(np.arange(0, float(bend.max()) + 1, 45))
-        right.set_yticks(np.arange(0, float(np.degrees(record.servo.max())) + 15, 45))
+        if not linear:
+            right.set_yticks(np.arange(0, float(told.max()) + 15, 45))
     return captioned(
         figure,
-        "Cords and servo of the tail. Left: change in length of both cords over all joints, exact and shortened. "
-        "Right: how far the pulley turns.",
+        f"Cords and {'actuator' if linear else 'servo'} of the tail. Left: change in length of both cords over all "
+        f"joints, exact and shortened. Right: how far the {'linear actuator moves' if linear else 'pulley turns'}.",
     )
 
 

@@ -84,11 +84,22 @@ def _mjcf(robot: Robot, gait: Gait, timestep: float) -> dict[str, str]:
         (
             "The gait and its controller: MJCF holds a body, not what it does. Servo angles over time come from "
             "`suchus export-commands`.",
-            "The two cords run over one pulley; the tendon is the first order of their change in length (within 1.2 % "
+            f"{_cords(robot)}the tendon is the first order of their change in length (within 1.2 % "
             "up to a bend of 180 degrees), as in suchus itself.",
         ),
     )
     return {f"{robot.name}.xml": model, "scene.xml": scene, "README.md": text}
+
+
+def _cords(robot: Robot) -> str:
+    """Return in words what moves the cords of a cable, and in what its actuator is told."""
+    linear = next((cable for cable in robot.cables if cable.linear is not None), None)
+    if linear is None:
+        return "The two cords run over one pulley; "
+    return (
+        f"One linear actuator moves the two cords: the control of {linear.name} is its travel over {linear.pulley:g} "
+        "m, the force its torque over the same; "
+    )
 
 
 def _urdf(robot: Robot) -> dict[str, str]:

@@ -8,12 +8,17 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.design import Robot, Spring, layout
+from suchus.design import Cable, Robot, Spring, layout
 from suchus.model.build import IMU, compile_model, sites
 from suchus.model.export.mjcf import numbers
 
 _CABLES, _SPRINGS = "The cable.", "Springs"
 _BESIDE = "{name} {stiffness:g} N m/rad"
+
+
+def pulls(cable: Cable) -> str:
+    """Return in words what pulls a cable."""
+    return "one servo turns a pulley" if cable.linear is None else "one linear actuator moves two cords"
 
 
 def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]:
@@ -36,6 +41,7 @@ def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]
         "cables": cables[0].joints if cables else 0,
         "first": cables[0].hinges[0] if cables else "",
         "last": cables[0].hinges[-1] if cables else "",
+        "pulls": pulls(cables[0]) if cables else "",
         "springs": ", ".join(springs),
         "foot": contact.foot_friction,
         "skin": contact.skin_friction,
@@ -52,7 +58,7 @@ def filled(texts: Sequence[str], robot: Robot, **own: object) -> tuple[str, ...]
 BALL = "meshes/ball.obj"
 """A ball of radius 1, which ellipsoids stretch; URDF has none of its own."""
 UNSAID = (
-    "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
+    "The cable. In the model {pulls} and a tendon bends all {cables} tail joints ({first} to {last}) "
     "at once; here each is a joint of its own, its effort limit the torque that the cable can give it. "
     "Turn them all by the same angle: the bend of the tail over {cables}.",
     "Springs: {springs}. Where no cable bends them their effort limit is 0, since nothing drives them. Add the springs "
@@ -177,7 +183,7 @@ def _turn(joint: ElementTree.Element, model: Any, hinge: int, robot: Robot) -> N
         effort, speed = servo.torque, servo.speed
     elif pulled:
         cable = pulled[0]
-        effort, speed = cable.servo.torque * cable.cord_spacing / 2 / cable.pulley, cable.servo.speed
+        effort, speed = cable.turning.torque * cable.cord_spacing / 2 / cable.pulley, cable.turning.speed
     else:
         effort, speed = 0.0, _FREE_SPEED
     low, high = model.jnt_range[hinge]

@@ -16,7 +16,7 @@ from suchus.motion import Gait
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
 """Of the link between two joints in one point [kg], [kg m2]: in USD a mass of zero means that it is not known."""
 UNSAID = (
-    "The cable. In the model one servo turns a pulley and a tendon bends all {cables} tail joints ({first} to {last}) "
+    "The cable. In the model {pulls} and a tendon bends all {cables} tail joints ({first} to {last}) "
     "at once; here each is a joint of its own. Set the targets of their drives to the bend of the tail over {cables}, "
     "and their stiffness to what your controller needs.",
     "Springs are drives with a target of zero: {springs}. The schema has no springs of their own, and does not say "
