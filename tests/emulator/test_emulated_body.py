@@ -9,7 +9,9 @@ from suchus.bus import BusPlace, straight
 from suchus.control import OpenLoop
 from suchus.design import layout
 from suchus.emulator import EmulatedBody, Trouble, body
-from suchus.experiments.rehearsal.experiment import ENOUGH, LOSES, TURNS, Rehearsal, flagged, rehearse
+from suchus.experiments.rehearsal.experiment import (
+    ENOUGH, LOSES, TURNS, Rehearsal, flagged, rehearse, sent_directly,
+)  # fmt: skip
 from suchus.gaits import GAITS
 from suchus.land import Lake, crawl
 from suchus.motion import START, intended
@@ -80,9 +82,15 @@ def test_over_ideal_wires_it_walks_as_simulated(protocol):
     duration = START + 2 * GAIT.period
     truth = crawl(ROBOT, GAIT, duration=duration)
     walk = rehearse(ROBOT, GAIT, OpenLoop(), duration, protocol=protocol)
-    assert float(np.abs(walk.truth.position - truth.position).max()) < 1e-3
+    assert float(_wire_off(walk)) == 0.0  # what is left to the simulation is the step of the goals, not the wire
     assert float(np.abs(walk.log.servo_target - truth.servo_target).max()) <= np.pi / 4096 + 1e-12
     assert float(np.degrees(_off(walk.log, truth)).max()) < 0.2
+
+
+def test_a_wire_that_is_late_is_not_taken_for_the_step_of_the_goals():
+    ideal, late = (rehearse(ROBOT, GAIT, OpenLoop(), 1.1, trouble=Trouble(latency=wait)) for wait in (0.0, 0.01))
+    assert float(_wire_off(ideal)) == 0.0
+    assert float(_wire_off(late)) > 1e-5
 
 
 def test_flags_have_both_sides():
@@ -120,6 +128,10 @@ def test_a_swapped_pair_of_servos_shows_in_their_angles():
     }
     assert off[None].max() < 0.2
     assert off[swapped].sel(servo="LF_pitch") > 2.0
+
+
+def _wire_off(walk):
+    return np.abs(walk.truth.position - sent_directly(ROBOT, GAIT, walk.log.servo_target.values).position).max()
 
 
 def _off(log, truth):
