@@ -10,7 +10,13 @@ from suchus.control import OpenLoop
 from suchus.design import layout
 from suchus.emulator import EmulatedBody, Trouble, body
 from suchus.experiments.rehearsal.experiment import (
-    ENOUGH, LOSES, TURNS, Rehearsal, flagged, rehearse, sent_directly,
+    ENOUGH,
+    LOSES,
+    TURNS,
+    Rehearsal,
+    flagged,
+    rehearse,
+    sent_directly,
 )  # fmt: skip
 from suchus.gaits import GAITS
 from suchus.land import Lake, crawl

@@ -24,14 +24,20 @@ def test_the_servo_that_is_needed_is_the_first_from_which_all_faster_ones_pay():
     assert _first(SPEEDS, np.array([True, True, False])) == inf
 
 
-def record(bound, flight, walk=0.4):
-    """One torque, three servo speeds, a bound, a worse bound, a trot and a walk."""
+def record(bound, flight, walk=0.4, spread=0.0):
+    """One torque, three servo speeds, a bound, a worse bound, a trot and a walk; bounds of three robots differ."""
+    built = spread * np.outer([1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0])
     one = np.ones(3)
     speed = np.stack([np.array(bound), 0.1 * one, walk * one, 0.3 * one], axis=-1)[None]
     flies = np.stack([np.array(flight), 0.5 * one, 0.0 * one, 0.0 * one], axis=-1)[None]
     dims = ("torque", "servo_speed", "gait")
     return xr.Dataset(
-        {"speed": (dims, speed), "flight": (dims, flies), "joint_speed": (dims, np.full((1, 3, 4), 20.0))},
+        {
+            "speed": (dims, speed),
+            "built_speed": ((*dims, "repeat"), speed[..., None] * (1.0 + built)),
+            "flight": (dims, flies),
+            "joint_speed": (dims, np.full((1, 3, 4), 20.0)),
+        },
         coords={
             "torque": [2.5],
             "servo_speed": SPEEDS,
@@ -48,7 +54,9 @@ def measured(*args, **fields):
 
 def test_measures_of_a_record_with_a_known_answer():
     m = measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4))
-    assert m["bound_over_walk"] == pytest.approx(0.5)
+    assert m["bound_over_walk"] == m["bound_over_walk_low"] == m["bound_over_walk_high"] == pytest.approx(0.5)
+    apart = measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4), spread=0.1)
+    assert [apart[f"bound_over_walk{end}"] for end in ("_low", "", "_high")] == pytest.approx([0.45, 0.5, 0.55])
     assert (m["speed_bound_best"], m["servo_speed_best"], m["flight_bound_best"]) == (0.9, 28.0, 0.4)
     assert m["servo_speed_needed"] == 14.0
     assert m["gallops_share"] == pytest.approx(2 / 3)
@@ -60,6 +68,8 @@ def test_the_explanation_follows_the_measures():
     told = experiment.explain(measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4)))
     assert "does not outrun the fastest trot or walk (0.40 m/s)" in told
     assert "it gallops with servos of 14 rad/s and all faster ones" in told
+    told = experiment.explain(measured((0.41, 0.5, 0.9), (0.2, 0.2, 0.4), spread=0.1))
+    assert "may outrun or not, within what robots as built differ, the fastest trot or walk (0.40 m/s)" in told
     told = experiment.explain(measured((0.6, 0.6, 0.6), (0.09, 0.09, 0.09)))
     assert "and outruns the fastest trot or walk" in told
     assert "no servo speed of the map" in told
@@ -73,6 +83,7 @@ def test_a_better_servo_does_what_a_lesser_one_does():
     assert bound.speed.values.tolist() == [[0.6, 0.6, 0.9]] * 2
     assert bound.flight.values.tolist() == [[0.4, 0.4, 0.2]] * 2  # of the gait that is taken
     assert walk.speed.values.tolist() == [[0.4, 0.4, 0.4]] * 2
+    assert bound.built_speed.values[1, 0].tolist() == [0.6, 0.6, 0.6]
 
 
 def test_nothing_touches_in_flight():

@@ -190,7 +190,6 @@ class BipedalReach(Experiment):
                 "distance_high_crawl": Measure(float(record.crawl_way[highest]), "m"),
                 "hip_height": Measure(facts["hip_height"], "m"),
                 "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
-                "hips_at_printed_height": Measure(_hips_at(record, CLAIMS["height_crawl"].value or 0.0), "m"),
                 "cantilever_torque": Measure(facts["cantilever"], "N m"),
                 "pitch_torque": Measure(facts["pitch_torque"], "N m"),
                 "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
@@ -365,7 +364,7 @@ class BipedalReach(Experiment):
 
 
 def _heights(record: xr.Dataset) -> Measures:
-    """Return the heights that robots as built reach crawling and standing, their ratio, and how long they stand."""
+    """Return what robots as built reach crawling and standing, their ratio, and for how long they stand."""
     start, rise_at, up, leave, _, _ = record.attrs["stages"]
     reached = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
     crawl = reached.sel(time=slice(start, rise_at)).max("time")
@@ -373,6 +372,7 @@ def _heights(record: xr.Dataset) -> Measures:
     stood = held(reached, record.attrs["least"])
     return (
         estimated("reach_crawl", crawl, "m")
+        | estimated("hips_at_printed_height", _hips_at(record, CLAIMS["height_crawl"].value or 0.0, crawl.values), "m")
         | estimated("reach_standing", stand, "m")
         | estimated("reach_ratio", stand / crawl, "-")
         | estimated("held", stood, "s")
@@ -432,10 +432,21 @@ def _decided_by_torque(record: xr.Dataset) -> float:
     return float((stands == (record.torque > record.map_cantilever)).mean())
 
 
-def _hips_at(record: xr.Dataset, height: float) -> float:
-    """Return the height of the hips at which a crawl reaches a height [m], by a line through those tried."""
-    line = np.polyfit(record.crawl_reach.values, record.hip_height.values, 1)
-    return float(np.polyval(line, height))
+def _hips_at(record: xr.Dataset, height: float, built: np.ndarray) -> np.ndarray:
+    """Return the height of the hips at which each robot as built would reach a height when it crawls [m].
+
+    By a line through the crawls of the design at other heights of the hips, moved to what the robot as built reaches
+    with hips at their own height.
+
+    Args:
+        record: of the experiment.
+        height: that is to be reached [m].
+        built: what robots as built reach in the crawl, any shape [m].
+    """
+    hips, reached = record.hip_height.values, record.crawl_reach.values
+    higher = built - np.polyval(np.polyfit(hips, reached, 1), record.attrs["hip_height"])
+    at: np.ndarray = np.polyval(np.polyfit(reached, hips, 1), height - higher)
+    return at
 
 
 experiment = BipedalReach()

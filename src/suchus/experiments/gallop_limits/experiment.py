@@ -14,7 +14,18 @@ from suchus.design.body import servos_of
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
 from suchus.design.servos import with_full_torque, with_named_servos, with_speed_line
-from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
 from suchus.experiments._replayed import replayed
 from suchus.experiments.gallop_limits.gaits import BOUNDS, TROTS, Searched
 from suchus.figures import captioned
@@ -117,6 +128,13 @@ class GallopLimits(Experiment):
                     {"units": unit, "long_name": what},
                 )
                 for name, (array, unit, what) in values.items()
+            }
+            | {
+                "built_speed": (
+                    ("torque", "servo_speed", "gait", "repeat"),
+                    values["speed"][0].values.reshape(shape),
+                    {"units": "m/s", "long_name": "speed forward of each robot that is built"},
+                )
             },
             coords={
                 "torque": ("torque", list(self.torques), {"units": "N m", "long_name": "torque limit"}),
@@ -187,13 +205,12 @@ class GallopLimits(Experiment):
         gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
         pays = gallops.sel(torque=own["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
-        return Measures(
+        return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
             {
                 "speed_bound": Measure(float(own_bound.speed), "m/s"),
                 "flight_bound": Measure(float(own_bound.flight), "-"),
                 "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
                 "speed_walk": Measure(float(own_walk.speed), "m/s"),
-                "bound_over_walk": Measure(float(own_bound.speed / own_walk.speed), "-"),
                 "speed_bound_best": Measure(float(best.speed), "m/s"),
                 "flight_bound_best": Measure(float(best.flight), "-"),
                 "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
@@ -225,6 +242,8 @@ FLIES = 0.1
 def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
 
+    ``built_speed`` holds the speeds of the robots that are built of the design, whose median the speed is.
+
     A servo that could do more may be limited to what a weaker or slower one does, so a gait that was found for such a
     one counts with all better ones too: else a bound would be compared with walks that nobody searched for its servo.
 
@@ -240,11 +259,10 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
         for i in range(strong)
         for j in range(fast)
     ]
-    dims = ("torque", "servo_speed")
     return best.assign(
         {
-            name: (dims, best[name].values.ravel()[taken].reshape(strong, fast))
-            for name in ("speed", "flight", "joint_speed")
+            name: (best[name].dims, best[name].values.reshape(strong * fast, -1)[taken].reshape(best[name].shape))
+            for name in ("speed", "built_speed", "flight", "joint_speed")
         }
     )
 

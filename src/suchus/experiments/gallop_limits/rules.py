@@ -1,7 +1,7 @@
 """When the claim on galloping counts as what (section II.A)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule
+from suchus.verdict.rule import Clause, Rule, between
 
 RULES = (
     Rule(
@@ -13,6 +13,8 @@ RULES = (
             Clause("bound_over_walk", ">", 1.0, "the fastest gait outruns the others"),
             Clause("flight_bound", ">=", 0.1, "a gallop has phases of flight; less is a walk that stumbles"),
         ),
+        spread=("bound_over_walk",),
+        of="robots built of the design, with the errors of their servos, masses and friction",
         why="Said of crocodiles. With servos like the robot's own a bound goes {speed_bound:.2f} m/s, "
         "{flight_bound:.0%} of the time in flight, and the fastest walk {speed_walk:.2f} m/s; with the best servos "
         "tried the bound goes {speed_bound_best:.2f} m/s.",
@@ -21,7 +23,7 @@ RULES = (
 )
 
 _FAST = {
-    "bound_over_walk": 1.01,
+    **between("bound_over_walk", 1.01, 1.2),
     "flight_bound": 0.101,
     "speed_bound": 0.5,
     "speed_walk": 0.4,
@@ -31,7 +33,8 @@ _FAST = {
 EXAMPLES: Examples = {
     "gallop_fastest": [
         (_FAST, "same sense"),
-        (_FAST | {"bound_over_walk": 0.99}, "not testable"),
+        (_FAST | between("bound_over_walk", 0.99, 1.2), "undecided"),
+        (_FAST | between("bound_over_walk", 0.8, 0.99), "not testable"),
         (_FAST | {"flight_bound": 0.099}, "not testable"),
     ],
 }

@@ -118,8 +118,8 @@ class Rehearsal(Experiment):
     Over ideal wires the walk is compared sample by sample, and the angles servo by servo: the displacement alone shows
     nothing, since servos that are commanded alike can be swapped without a trace. It is compared twice: with the
     simulation, whose goals are any angle, and with the simulation that is sent the goals that a servo's steps leave.
-    A walk answers the smallest change of its goals, since feet touch down a step of the physics sooner or later. Latency holds for goals and readings
-    each; goals are late by whole steps of the physics, readings by whole ticks.
+    A walk answers the smallest change of its goals, since feet touch down a step of the physics sooner or later.
+    Latency holds for goals and readings each; goals are late by whole steps of the physics, readings by whole ticks.
     """
 
     title = "Does it walk the same over the bus, and how much of a real wire does it bear?"
