@@ -1,12 +1,14 @@
+from functools import partial
+
 import numpy as np
 import pytest
-from toys import fell, stone
+from toys import broken, fell, stone
 
 from suchus.errors import InvalidDesign, NotConverged, UnknownName
 from suchus.league import ContestantFamily, Interval, Predictor, SingleContestant, every, find, known
 from suchus.league.judging import WIDEST, judged
-from suchus.league.sealing import Measured
-from suchus.league.spread import drawn, of_answers, of_draws
+from suchus.league.sealing import Measured, _answers, predicted
+from suchus.league.spread import drawn, of_answers, of_draws, widest
 
 
 def test_the_interval_covers_its_share_of_a_uniform_unknown():
@@ -45,6 +47,31 @@ def test_a_costly_rung_takes_the_interval_of_another_around_all_of_its_answers()
     assert of_answers("speed", [{"speed": 4.0}, {"speed": 6.0}], like) == Interval(4.0, 2.0, 9.0)
     assert of_answers("speed", [{"speed": -4.0}], like) == Interval(-4.0, -6.0, -2.0)
     assert of_answers("speed", [{"speed": 4.0}, {"speed": 6.0}], None) == Interval(4.0, 4.0, 6.0)
+
+
+def test_a_single_answer_is_no_certainty():
+    with pytest.raises(NotConverged, match="one answer has no interval"):
+        of_answers("speed", [{"speed": 4.0}], None)
+    narrow, wide = Interval(10.0, 9.0, 11.0), Interval((0.0, 2.0), (-0.1, 1.0), (0.1, 3.0))
+    assert widest([narrow, wide]) == widest([wide, narrow]) == wide
+    assert widest([]) is None
+
+
+def test_a_costly_rung_takes_the_widest_interval_where_the_one_that_it_takes_after_has_no_word():
+    def guess(choices, progress):
+        return [{"times": (3.0, 3.0)}]
+
+    wild = stone(
+        rungs={
+            "fall": Predictor(words="", work=fell, draws=40),
+            "film": Predictor(words="", work=partial(broken, NotConverged("no film.")), draws=4),
+            "guess": Predictor(words="", work=guess, draws=0, like="film"),
+        }
+    )
+    found, refused = predicted(wild, {name: _answers((wild, name), lambda *_: None) for name in wild.rungs})
+    fall, guessed = (found["times"][name] for name in ("fall", "guess"))
+    assert guessed.low == pytest.approx([3.0 * low / value for low, value in zip(fall.low, fall.value, strict=True)])
+    assert refused == {"film": "no film."}
 
 
 def test_a_rung_without_an_interval_and_a_number_without_a_source_are_refused():

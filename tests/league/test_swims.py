@@ -8,12 +8,12 @@ from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, salamande
 from suchus.control import Swimming
 from suchus.design.drawing import Drawing
 from suchus.design.pieces import masses, volumes
-from suchus.design.scale import servo_for
+from suchus.design.scale import control_period, servo_for
 from suchus.design.water import Water
-from suchus.errors import InvalidDesign
+from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.land import Run, simulate
-from suchus.league import find
-from suchus.league.swims import ModelSwimmer, _coasting, _from_rest, _held, _lake, theory
+from suchus.league import find, swims
+from suchus.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.motion.swim import still, swimming_gait
 from suchus.water import Outline, reactive, resistive, undulation
 from suchus.water.slender import Effort
@@ -48,6 +48,23 @@ def test_a_drawing_gets_its_length_mass_and_volume_at_any_size(length, mass, den
 def test_a_drawing_that_cannot_be_is_refused(change):
     with pytest.raises(InvalidDesign):
         replace(ROW, **change)
+
+
+@pytest.mark.parametrize(("ticks", "refused"), [(LEAST_TICKS, False), (LEAST_TICKS - 1, True)])
+def test_sections_have_no_word_of_a_beat_that_servos_cannot_be_commanded(ticks, refused, monkeypatch):
+    robot = ROW.robot()
+
+    def build(numbers, frequency):
+        return ModelSwimmer(robot=robot, gait=still(robot, frequency=1.0 / (ticks * control_period(robot))))
+
+    monkeypatch.setattr(swims, "sections", lambda swimmers, **_: ["swum"] * len(swimmers))
+    monkeypatch.setattr(swims, "_sound", lambda *_: {"speed": 1.0})
+    asked = SwimTask(build=build, read=lambda *_: {})
+    if refused:
+        with pytest.raises(OutsideLimits, match=r"15 times a cycle at .* Hz; 16 are needed"):
+            swims._by_sections(asked, [{}], lambda *_: None)
+    else:
+        assert swims._by_sections(asked, [{}], lambda *_: None) == [{"speed": 1.0}]
 
 
 def test_from_rest_follows_the_exact_solution_of_square_drag():

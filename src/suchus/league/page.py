@@ -8,6 +8,7 @@ from textwrap import fill
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
 
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -183,12 +184,11 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         "is read, where there is one; nothing is fitted to a contestant's own result, and a sealed prediction is never "
         "replaced.",
         "",
-        f"An interval covers {COVERED:.0%} of the answers to choices of all numbers that are not known, each "
-        f"drawn from a "
-        "plausible range with a source or a reason. A costly model is asked once or twice; its interval is that of its "
-        "answers, widened as the sections' is. *Within*: measurement and interval meet; *wide*: so, but the "
-        "interval is "
-        f"wider than a factor of {WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
+        f"An interval covers {COVERED:.0%} of the answers to choices of all numbers that are not known, each drawn "
+        "from a plausible range with a source or a reason. A costly model is asked once or twice; its interval is that "
+        "of its answers, widened as the sections' is, or as the widest of the others where sections have no word. "
+        "*Within*: measurement and interval meet; *wide*: so, but the interval is wider than a factor of "
+        f"{WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
         "",
         f"Of {len(every)} predictions that could be judged here {counts['missed']} missed, "
         f"{counts['within, wide']} were "
@@ -231,11 +231,11 @@ def filled(line: str) -> str:
 
 
 _TRIALS = (
-    "Two things were changed after trials in which the public measurements of the catshark had been opened: the "
-    "range of its "
-    "friction, to what was seen on swimming dogfish, and how the flow in space is brought to real water. What "
-    "was measured "
-    "of AmphiBot, and of the catshark at other speeds, is not in this repository and was not seen."
+    "Three things were changed after trials in which public measurements had been opened: the range of the catshark's "
+    "friction, to what was seen on swimming dogfish; how the flow in space is brought to real water; and, after a "
+    "trial of Tunabot, that sections have no word of a beat for which servos are commanded too rarely, and that no "
+    "single answer of a flow stands without an interval. What was measured of AmphiBot, and of the catshark at other "
+    "speeds, is not in this repository and was not seen."
 )
 _OWN = (
     "## A measurement and a contestant of your own",
@@ -282,7 +282,7 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
     """Draw every prediction over what was measured, its interval as a bar, one row for each quantity and contestant."""
     rows = [(one, quantity) for one in standings for quantity in one.prediction if quantity in one.measured]
     rungs = list(dict.fromkeys(rung for one, quantity in rows for rung in one.prediction[quantity]))
-    palette = [COLOURS[name] for name in list(COLOURS)[: max(len(rungs), 1)]]
+    palette = colormaps["tab20"]([*range(0, 20, 2), *range(1, 20, 2)])  # strong colours, then their pale ones
     with styled():
         figure, axes = panels(1, 1, width=8.0, height=1.6 + 0.42 * max(len(rows), 1))
         ax = axes[0, 0]
@@ -301,7 +301,7 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
                     rung if y == next(i for i, row in enumerate(rows) if rung in row[0].prediction[row[1]]) else None
                 )
                 ax.plot([value], [height], "o", color=palette[k], markersize=4.0, label=label)
-        ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}" for one, quantity in rows])
+        ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
         ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(len(rows) - 0.5, -0.5))
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))

@@ -18,7 +18,7 @@ import xarray as xr
 from suchus.errors import InvalidDesign, NotConverged, SuchusError, UnreadableFile
 from suchus.jobs import conduct_sweep
 from suchus.league.contestant import Contestant, Found, Interval, Quantity, Value
-from suchus.league.spread import drawn, of_answers, of_draws
+from suchus.league.spread import drawn, of_answers, of_draws, widest
 from suchus.progress import Progress, silent
 from suchus.record import package_digest, read_json, there, versions, write
 from suchus.record.provenance import plain
@@ -159,7 +159,7 @@ def predicted(contestant: Contestant, answers: Mapping[str, xr.Dataset]) -> tupl
                 interval = (
                     of_draws(quantity, rows)
                     if rung.draws
-                    else of_answers(quantity, rows, found[quantity].get(rung.like))
+                    else of_answers(quantity, rows, found[quantity].get(rung.like) or widest(found[quantity].values()))
                 )
             except NotConverged as error:
                 refused[name] = str(error)

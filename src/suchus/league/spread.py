@@ -1,6 +1,6 @@
 """From what is not known to the interval of a prediction: numbers drawn from their ranges, and how answers spread."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from jaxtyping import Float
@@ -69,11 +69,16 @@ def of_answers(name: str, answers: Sequence[Found], like: Interval | None) -> In
     Args:
         name: of the quantity.
         answers: each plausible.
-        like: the interval of the rung that it takes after, None where that has none.
+        like: the interval of the rung that it takes after, or of another one; None where no other has any.
+
+    Raises:
+        NotConverged: a single answer, and no other rung to take an interval from.
     """
     if name not in answers[0]:
         return None
     rows = _rows(name, [answer for answer in answers if name in answer])
+    if like is None and len(rows) < 2:
+        raise NotConverged(f"one answer has no interval, and no other model gave a {name} whose it could take.")
     least, most = rows.min(axis=0), rows.max(axis=0)
     if like is not None:
         middle = np.atleast_1d(np.asarray(like.value, float))
@@ -82,6 +87,16 @@ def of_answers(name: str, answers: Sequence[Found], like: Interval | None) -> In
         ends = np.stack([least * down, least * up, most * down, most * up])
         least, most = np.minimum(least, ends.min(axis=0)), np.maximum(most, ends.max(axis=0))
     return _interval(rows[0], least, most)
+
+
+def widest(intervals: Iterable[Interval]) -> Interval | None:
+    """Return the interval that is widest for the size of its value; None where there is none."""
+
+    def width(one: Interval) -> float:
+        low, value, high = (np.atleast_1d(np.asarray(end, float)) for end in (one.low, one.value, one.high))
+        return float(np.max((high - low) / np.where(value == 0.0, 1.0, np.abs(value))))
+
+    return max(intervals, key=width, default=None)
 
 
 def _rows(name: str, answers: Sequence[Found]) -> Float[np.ndarray, "answer part"]:

@@ -14,6 +14,7 @@ import numpy as np
 from suchus import rotation
 from suchus.control import Swimming
 from suchus.design import WATER_DENSITY, Robot, layout
+from suchus.design.scale import control_period
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.flow.setup import LAYER_CELLS
@@ -32,6 +33,9 @@ THEORY_DRAWS, SECTION_DRAWS = 32, 24
 """Choices of the numbers in a theory and in sections [-]."""
 FASTEST = 20.0
 """Fastest beat that is tried [Hz]."""
+LEAST_TICKS = 16
+"""Commands a cycle that servos need in sections [-]: fewer are stairs whose steps, not the swim, take the power. The
+root mean square between a sine and 16 stairs a cycle is a ninth of its amplitude."""
 LAST = 3
 """Cycles at the end of a swim over which speed and power are means [-]."""
 SLICE_CELLS, SPACE_CELLS = 80, (56, 72)
@@ -266,6 +270,12 @@ def _coast(outline: Outline, bent: Motion, model: Model, swimmer: ModelSwimmer, 
 def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     if asked.held is None:
         swimmers = [asked.build(numbers, None) for numbers in choices]
+        if not _commanded(swimmers[0]):
+            raise OutsideLimits(
+                f"its servos are commanded every {1e3 * control_period(swimmers[0].robot):g} ms, "
+                f"{_ticks(swimmers[0]):.3g} times a cycle at {swimmers[0].gait.frequency:g} Hz; "
+                f"{LEAST_TICKS} are needed."
+            )
         swums = sections(swimmers, cycles=asked.cycles, coasts=asked.coasts, progress=progress)
         return [_sound(asked, *one) for one in zip(choices, swimmers, swums, strict=True)]
     wanted = [asked.held(numbers) for numbers in choices]
@@ -285,9 +295,18 @@ def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress
         ]
     found = []
     for numbers, swimmer, swum, speed in zip(choices, swimmers, swums, wanted, strict=True):
-        near = swum.speed > 0.0 and 0.7 < swum.speed / speed < 1.4
+        near = swum.speed > 0.0 and 0.7 < swum.speed / speed < 1.4 and _commanded(swimmer)
         found.append(asked.read(numbers, swimmer, _at_speed(swum, speed)) if near else {})
     return found
+
+
+def _ticks(swimmer: ModelSwimmer) -> float:
+    """Return how often servos are commanded in a cycle of the swim [-]."""
+    return swimmer.gait.period / control_period(swimmer.robot)
+
+
+def _commanded(swimmer: ModelSwimmer) -> bool:
+    return _ticks(swimmer) >= LEAST_TICKS
 
 
 def _sound(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
