@@ -41,3 +41,17 @@ def test_the_picture_of_the_skin_says_it():
     sim.advance()
     for name in (None, "round"):
         assert " ".join(skin(sim, name).get_supxlabel().split()) == flow.ALONG_THE_SKIN
+
+
+def test_over_a_skin_in_space_each_picture_has_the_points_that_face_who_looks():
+    grid = flow.Grid.covering(*[(-1.0, 1.0)] * 3, cell=1 / 12)
+    body = flow.Body(shape=flow.Sphere(diameter=1.0))
+    setup = flow.Setup(grid=grid, viscosity=0.05, stream=(1.0, 0.0, 0.0), bodies=(body,), coarse=True)
+    sim = flow.Simulation(setup)
+    sim.advance()
+    figure, read = skin(sim), sim.surface()
+    assert " ".join(figure.get_supxlabel().split()) == flow.ALONG_THE_SKIN
+    side, top = (figure.axes[i].collections[0] for i in (0, 1))
+    for drawn, facing in ((side, read.markers.normals[1] < 0), (top, read.markers.normals[2] > 0)):
+        assert len(drawn.get_offsets()) == facing.sum()
+        assert sorted(drawn.get_array()) == sorted(read.pressure[facing])

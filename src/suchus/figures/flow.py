@@ -10,7 +10,8 @@ from matplotlib.patches import Polygon
 from suchus.figures.data import carry
 from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth
 from suchus.figures.style import COLOURS, WIDTH, panels, styled
-from suchus.flow import ALONG_THE_SKIN, Record, Simulation
+from suchus.flow import ALONG_THE_SKIN, Markers, Record, Simulation, SkinMarkers, Surface
+from suchus.flow.pose import speeds
 
 _PIXELS = 900
 """About how many pixels the longer side of a field has [-]."""
@@ -78,18 +79,50 @@ def forces(record: Record, body: str | int = 0) -> Figure:
 
 
 def skin(sim: Simulation, body: str | None = None) -> Figure:
-    """Return pressure and friction along a body's outline now, and what is known of their error."""
+    """Return pressure and friction along a body's outline or over its skin now, and what is known of their error."""
     surface = sim.surface(body)
+    with styled():
+        draw = _over_the_skin if isinstance(surface.markers, SkinMarkers) else _along_the_outline
+        figure: Figure = draw(surface)
+        figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
+        figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 120)), fontsize="x-small", x=0.02, ha="left")
+    return figure
+
+
+def _along_the_outline(surface: Surface[Markers]) -> Figure:
     m = surface.markers
     place = np.cumsum(m.length) - m.length / 2
     friction = surface.shear[1] * m.normal_x - surface.shear[0] * m.normal_y
-    with styled():
-        figure, grid = panels(1, 2, width=WIDTH, height=3.8)
-        for axes, values, label in zip(
-            grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
-        ):
-            axes.plot(place, values, color=COLOURS["coordinated"], linewidth=1.4)
-            axes.set(xlabel="along the outline, counter-clockwise [m]", ylabel=label)
-        figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
-        figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 130)), fontsize="x-small", x=0.02, ha="left")
+    figure, grid = panels(1, 2, width=WIDTH, height=3.8)
+    for axes, values, label in zip(
+        grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
+    ):
+        axes.plot(place, values, color=COLOURS["coordinated"], linewidth=1.4)
+        axes.set(xlabel="along the outline, counter-clockwise [m]", ylabel=label)
+    return figure
+
+
+def _over_the_skin(surface: Surface[SkinMarkers]) -> Figure:
+    """Draw both as one looks along y, and from above, each point where it faces who looks."""
+    m, friction = surface.markers, speeds(surface.shear)
+    most = max(float(np.abs(surface.pressure).max()), 1e-12)
+    views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
+    wide, *across = np.ptp(m.points, axis=1)
+    figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(across) / wide, 6.0))
+    for row, (values, label, cmap, low, high) in zip(
+        grid,
+        (
+            (surface.pressure, "pressure [Pa]", PRESSURE, -most, most),
+            (friction, "friction [Pa]", "viridis", 0.0, max(float(friction.max()), 1e-12)),
+        ),
+        strict=True,
+    ):
+        for axes, (view, up, depth, way) in zip(row, views, strict=True):
+            seen = (way * m.normals[depth] > 0) & (m.share > 0)
+            order = np.argsort(way * m.points[depth, seen])
+            x, y, shown = m.points[0, seen][order], m.points[up, seen][order], values[seen][order]
+            points = axes.scatter(x, y, c=shown, cmap=cmap, vmin=low, vmax=high, s=14.0, linewidths=0.0)
+            axes.locator_params(axis="y", nbins=3)
+            axes.set(xlabel="x [m]", ylabel=f"{'xyz'[up]} [m]", title=view, aspect="equal")
+        figure.colorbar(points, ax=list(row), label=label, shrink=0.85)
     return figure

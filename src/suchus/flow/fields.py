@@ -30,13 +30,12 @@ class Fields:
         """The time series so far."""
         return self._log.record
 
-    def probe(self, points: np.ndarray | tuple[float, float]) -> Sample:
-        """Return velocity and pressure at points of the world, shape (point, 2) or one (x, y) [m].
+    def probe(self, points: np.ndarray | tuple[float, ...]) -> Sample:
+        """Return velocity and pressure at points of the world, shape (point, axis) or one (x, y) or (x, y, z) [m].
 
         Raises:
-            InvalidDesign: a point that is not in the domain, or a grid in space.
+            InvalidDesign: a point that is not in the domain.
         """
-        self._plane_only("a probe", "velocity and pressure at the cell centres")
         return read(self.water, np.asarray(points, float), self.frame, self.setup.density)
 
     @property

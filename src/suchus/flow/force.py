@@ -1,14 +1,17 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision)
-"""Forces on bodies: pressure and shear along the outline, and the momentum through a box around them."""
+"""Forces on bodies: pressure and shear over the skin, and the momentum through a box around them."""
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, part
 from suchus.flow.grid import Grid
+from suchus.flow.pose import TURNS
 from suchus.flow.shape import Markers
+from suchus.flow.solid import SkinMarkers
 from suchus.flow.water import Fluid
 
 GAP = 1.0
@@ -17,71 +20,83 @@ GAP = 1.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """What the water does to a body, per metre of depth."""
+    """What the water does to a body; in the plane per metre of depth."""
 
-    pressure: tuple[float, float]
-    """Force by pressure (x, y) [N/m]."""
-    shear: tuple[float, float]
-    """Force by friction (x, y) [N/m]."""
-    torque: float
-    """Torque about the body's reference point, counter-clockwise [N]."""
+    pressure: tuple[float, ...]
+    """Force by pressure, along each axis [N/m, N]."""
+    shear: tuple[float, ...]
+    """Force by friction, along each axis [N/m, N]."""
+    moment: tuple[float, ...]
+    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
     power: float
-    """Power that the body's surface gives to the water [W/m]."""
+    """Power that the body's surface gives to the water [W/m, W]."""
 
     @property
-    def force(self) -> tuple[float, float]:
-        """Pressure and friction together (x, y) [N/m]."""
-        return self.pressure[0] + self.shear[0], self.pressure[1] + self.shear[1]
+    def force(self) -> tuple[float, ...]:
+        """Pressure and friction together, along each axis [N/m, N]."""
+        return tuple(push + rub for push, rub in zip(self.pressure, self.shear, strict=True))
+
+    @property
+    def torque(self) -> float:
+        """Torque about z [N, N m]."""
+        return self.moment[-1]
+
+
+Skin = TypeVar("Skin", Markers, SkinMarkers)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Surface:
-    """Pressure and friction along a body's outline: where the load sits.
+class Surface(Generic[Skin]):
+    """Pressure and friction along a body's outline or over its skin: where the load sits.
 
     ``resolution.ALONG_THE_SKIN`` says how far off they are. For the sum take ``Record.force``.
     """
 
-    markers: Markers
+    markers: Skin
     """Points on the skin, where the values are given [m]."""
     pressure: np.ndarray
     """Pressure, zero on the average along the sides of the domain, shape (marker,) [Pa]."""
     shear: np.ndarray
-    """Friction per area (x, y), shape (2, marker) [Pa]."""
+    """Friction per area, shape (axis, marker) [Pa]."""
 
     @property
     def traction(self) -> np.ndarray:
-        """Force per area (x, y), shape (2, marker) [Pa]."""
-        return self.shear - self.pressure * np.stack([self.markers.normal_x, self.markers.normal_y])
+        """Force per area, shape (axis, marker) [Pa]."""
+        return self.shear - self.pressure * self.markers.normals
 
     def load(self, about: tuple[float, ...]) -> Load:
-        """Return the integral over the outline, torque about a point [m]."""
+        """Return the integral over the outline or the skin, torque about a point [m]."""
         m = self.markers
-        push_x, push_y = -self.pressure * m.normal_x * m.length, -self.pressure * m.normal_y * m.length
-        rub_x, rub_y = self.shear * m.length
-        fx, fy = push_x + rub_x, push_y + rub_y
+        push, rub = -self.pressure * m.normals * m.share, self.shear * m.share
+        force, away = push + rub, m.points - np.array(about)[:, None]
         return Load(
-            pressure=(float(push_x.sum()), float(push_y.sum())),
-            shear=(float(rub_x.sum()), float(rub_y.sum())),
-            torque=float(((m.x - about[0]) * fy - (m.y - about[1]) * fx).sum()),
-            power=float(-(fx * m.velocity_x + fy * m.velocity_y).sum()),
+            pressure=tuple(push.sum(axis=1).tolist()),
+            shear=tuple(rub.sum(axis=1).tolist()),
+            moment=tuple(float((away[a] * force[b] - away[b] * force[a]).sum()) for a, b in TURNS[len(force)]),
+            power=float(-(force * m.velocities).sum()),
         )
 
 
-def padded(markers: Markers, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Return the markers' positions in padded indices of the cell centres."""
-    return (
-        (markers.x - grid.origin[0]) / grid.cell + PAD - 0.5, (markers.y - grid.origin[1]) / grid.cell + PAD - 0.5
-    )  # fmt: skip
+def padded(points: np.ndarray, grid: Grid) -> np.ndarray:
+    """Return points, shape (axis, point) [m], in padded indices of the cell centres."""
+    return (points - np.array(grid.origin)[:, None]) / grid.cell + (PAD - 0.5)
 
 
-def sample(water: Fluid, markers: Markers, density: float) -> Surface:
+def steps_of(a: np.ndarray) -> np.ndarray:
+    """Return how far apart in memory the neighbours along x, y (and z) of a field lie [-]."""
+    return np.array([stride // a.itemsize for stride in reversed(a.strides)])
+
+
+def sample(water: Fluid, markers: Skin, density: float) -> Surface[Skin]:
     """Return pressure and friction at the markers; densities in [kg/m^3]."""
-    h = water.grid.cell
-    x, y = padded(markers, water.grid)
-    pressure, shear = np.empty(x.size), np.empty((2, x.size))
-    nx, ny = markers.normal_x, markers.normal_y
-    wall_pressure(water.p, x, y, nx, ny, GAP, pressure)
-    wall_shear(water.u, water.v, x, y, nx, ny, markers.velocity_x, markers.velocity_y, markers.spin * h, GAP, shear)
+    places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
+    pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
+    steps = steps_of(water.p)
+    wall_pressure(water.p.reshape(-1), steps, places, normals, GAP, pressure)
+    wall_shear(
+        water.velocity.reshape(water.axes, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
+        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(TURNS[water.axes]), GAP, shear,
+    )  # fmt: skip
     level = float(edge_mean(water.p))
     return Surface(
         markers=markers, pressure=density * (pressure - level), shear=density * float(water.nu) * shear
@@ -95,115 +110,162 @@ def edge_mean(p: np.ndarray) -> float:
     return float(sum(e.sum(dtype=np.float64) for e in edges) / sum(e.size for e in edges))
 
 
-@compiled
-def momentum(u, v, j0, j1, i0, i1):
-    """Return the momentum (x, y) of the faces of a box of cells, half of those on its sides [m/s cells]."""
-    mx, my = 0.0, 0.0
-    for j in range(j0, j1):
-        for i in range(i0, i1 + 1):
-            mx += (0.5 if i in (i0, i1) else 1.0) * u[j, i]
-    for j in range(j0, j1 + 1):
-        for i in range(i0, i1):
-            my += (0.5 if j in (j0, j1) else 1.0) * v[j, i]
-    return mx, my
+def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
+    """Return the momentum of the faces of a box of cells, half of those on its sides, shape (axis,) [m/s cells].
+
+    Args:
+        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        box: padded cell indices, first and end along each axis, the last axis first.
+    """
+    axes = len(velocity)
+    total = np.zeros(axes)
+    for c, component in enumerate(velocity):
+        n = axes - 1 - c
+        faces = component[tuple(slice(box[2 * m], box[2 * m + 1] + (m == n)) for m in range(axes))]
+        ends = np.take(faces, (0, -1), axis=n)
+        total[c] = faces.sum(dtype=np.float64) - 0.5 * ends.sum(dtype=np.float64)
+    return total
 
 
-@compiled
-def through(u, v, p, nu, j0, j1, i0, i1):
-    """Return what enters a box through its sides: momentum, pressure and friction (x, y) [(m/s)^2 cells]."""
-    fx, fy = 0.0, 0.0
-    for side in range(2):
-        i, out = (i0, -1.0) if side == 0 else (i1, 1.0)
-        for j in range(j0, j1):
-            un = u[j, i]
-            dudx = 0.5 * (u[j, i + 1] - u[j, i - 1])
-            fx += out * (2.0 * nu * dudx - un * un - 0.5 * (p[j, i - 1] + p[j, i]))
-            vm = 0.25 * (v[j, i - 1] + v[j, i] + v[j + 1, i - 1] + v[j + 1, i])
-            shear = 0.5 * (v[j, i] + v[j + 1, i] - v[j, i - 1] - v[j + 1, i - 1]) + 0.5 * (u[j + 1, i] - u[j - 1, i])
-            fy += out * (nu * shear - un * vm)
-        j, out = (j0, -1.0) if side == 0 else (j1, 1.0)
-        for i in range(i0, i1):
-            vn = v[j, i]
-            dvdy = 0.5 * (v[j + 1, i] - v[j - 1, i])
-            fy += out * (2.0 * nu * dvdy - vn * vn - 0.5 * (p[j - 1, i] + p[j, i]))
-            um = 0.25 * (u[j - 1, i] + u[j, i] + u[j - 1, i + 1] + u[j, i + 1])
-            shear = 0.5 * (u[j, i] + u[j, i + 1] - u[j - 1, i] - u[j - 1, i + 1]) + 0.5 * (v[j, i + 1] - v[j, i - 1])
-            fx += out * (nu * shear - vn * um)
-    return fx, fy
+def through(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
+    """Return what enters a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
+
+    Args:
+        velocity: on the faces before the cells, shape (axis, ...) [m/s].
+        p: pressure over density [m^2/s^2].
+        nu: viscosity [m/s cells].
+        box: as for ``momentum``.
+    """
+    axes = len(velocity)
+    total = np.zeros(axes)
+    for d in range(axes):
+        for end, out in ((box[2 * (axes - 1 - d)], -1.0), (box[2 * (axes - 1 - d) + 1], 1.0)):
+
+            def at_side(
+                a: np.ndarray, shift: tuple[tuple[int, int], ...] = (), d: int = d, end: int = end
+            ) -> np.ndarray:
+                """Return the values at the cells behind this side, some cells further along some axes."""
+                moved, places = dict(shift), []
+                for n in range(axes):
+                    more = moved.get(axes - 1 - n, 0)
+                    whole = slice(box[2 * n] + more, box[2 * n + 1] + more)
+                    places.append(end + more if n == axes - 1 - d else whole)
+                return np.asarray(a[tuple(places)], np.float64)
+
+            across, normal = at_side(velocity[d]), velocity[d]
+            stretch = at_side(normal, ((d, 1),)) - at_side(normal, ((d, -1),))
+            push = 0.5 * (at_side(p, ((d, -1),)) + at_side(p))
+            total[d] += out * (nu * stretch - across**2 - push).sum()
+            for c in set(range(axes)) - {d}:
+                along = velocity[c]
+                before = at_side(along, ((d, -1),)) + at_side(along, ((d, -1), (c, 1)))
+                behind = at_side(along) + at_side(along, ((c, 1),))
+                shear = 0.5 * (behind - before + at_side(normal, ((c, 1),)) - at_side(normal, ((c, -1),)))
+                total[c] += out * (nu * shear - across * 0.25 * (before + behind)).sum()
+    return total
 
 
 @dataclass(slots=True)
 class ControlVolume:
     """A box of cells whose momentum is followed from step to step."""
 
-    box: tuple[int, int, int, int]
-    """Padded cell indices j0, j1, i0, i1."""
+    box: tuple[int, ...]
+    """Padded cell indices, first and end along each axis, the last axis first."""
     before: np.ndarray | None = None
-    """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, 2)."""
+    """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, axis)."""
 
-    def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, float]:
-        """Return the mean force on the bodies in the box over the step that just ended [N/m].
+    def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
+        """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
         Not a number in the first step.
         """
         h = water.grid.cell
-        mu0_u = water.mu0[0]
-        inner_u, inner_v = water.carried
-        nu = float(water.nu)
         now = np.array(
             [
-                momentum(water.u, water.v, *self.box), momentum(inner_u, inner_v, *self.box),
-                through(water.u, water.v, water.p, nu, *self.box),
+                momentum(water.velocity, self.box), momentum(water.carried, self.box),
+                through(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
         old, self.before = self.before, now
         if old is None:
-            return float("nan"), float("nan")
-        cells = (self.box[1] - self.box[0]) * (self.box[3] - self.box[2])
-        inside = (1 - mu0_u).sum(dtype=np.float64)
-        rate = (now[0] - now[1] - old[0] + old[1]) * h * h / dt
-        body = (cells - inside) * h * h * np.array(push)
-        total = density * (h * 0.5 * (now[2] + old[2]) - rate + body)
-        return float(total[0]), float(total[1])
+            return (float("nan"),) * water.axes
+        cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))
+        inside = (1 - water.mu0[0]).sum(dtype=np.float64)
+        rate = (now[0] - now[1] - old[0] + old[1]) / dt
+        body = (cells - inside) * np.array(push)
+        total = density * h ** (water.axes - 1) * (0.5 * (now[2] + old[2]) + h * (body - rate))
+        return tuple(total.tolist())
 
 
 @part
-def at(a, x, y):
-    """Return the bilinear interpolation of ``a`` at padded indices (x, y), which may lie between nodes."""
-    i, j = int(x), int(y)
-    f, g = x - i, y - j
-    return (1 - g) * ((1 - f) * a[j, i] + f * a[j, i + 1]) + g * ((1 - f) * a[j + 1, i] + f * a[j + 1, i + 1])
+def at(a, steps, spot):
+    """Return the interpolation of a flat field at a place in padded indices, linear along each axis."""
+    total = 0.0
+    for corner in range(1 << spot.size):
+        weight, k = 1.0, 0
+        for d in range(spot.size):
+            i = int(spot[d])
+            past = spot[d] - i
+            high = (corner >> d) & 1
+            weight *= past if high else 1.0 - past
+            k += (i + high) * steps[d]
+        total += weight * a[k]
+    return total
 
 
 @compiled
-def wall_pressure(p, x, y, nx, ny, gap, out):
+def interpolate(a, steps, places, out):
+    """Write the interpolation of a flat field at places, shape (axis, point), in padded indices."""
+    spot = np.empty(places.shape[0])
+    for m in range(places.shape[1]):
+        for d in range(spot.size):
+            spot[d] = places[d, m]
+        out[m] = at(a, steps, spot)
+
+
+@compiled
+def wall_pressure(p, steps, places, normals, gap, out):
     """Write the pressure at the markers from a parabola through three points off the wall.
 
     The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
     Read on the wall itself, the pressures of both sides of a thin tail mix and the force is ten times as noisy.
     """
-    for m in range(x.size):
-        a = at(p, x[m] + gap * nx[m], y[m] + gap * ny[m])
-        b = at(p, x[m] + 2 * gap * nx[m], y[m] + 2 * gap * ny[m])
-        c = at(p, x[m] + 3 * gap * nx[m], y[m] + 3 * gap * ny[m])
-        out[m] = 3 * (a - b) + c
+    spot = np.empty(places.shape[0])
+    for m in range(places.shape[1]):
+        out[m] = 0.0
+        for k in range(1, 4):
+            for d in range(spot.size):
+                spot[d] = places[d, m] + k * gap * normals[d, m]
+            out[m] += (3.0, -3.0, 1.0)[k - 1] * at(p, steps, spot)
 
 
 @compiled
-def wall_shear(u, v, x, y, nx, ny, bu, bv, spin, gap, out):
-    """Write the rate of shear (x, y) at the markers from a cubic through the wall and three points off it.
+def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, out):
+    """Write the rate of shear at the markers, shape (axis, marker), from a cubic through the wall and three points.
 
-    ``u`` and ``v`` are the velocities, ``bu`` and ``bv`` the wall's [m/s], ``spin`` its turning rate in m/s per cell;
-    the points lie 1, 2 and 3 times ``gap`` cells off the wall. The result is in m/s per cell.
+    ``walls`` are the wall's velocities [m/s], ``spins`` its turning rates in m/s per cell, about the axes that
+    ``turns`` names by the two across them; the points lie 1, 2 and 3 times ``gap`` cells off the wall. The result is in
+    m/s per cell.
     """
-    for m in range(x.size):
-        sx, sy = 0.0, 0.0
+    axes = places.shape[0]
+    spot, carried = np.empty(axes), np.empty(axes)
+    for m in range(places.shape[1]):
+        for c in range(axes):
+            out[c, m] = 0.0
         for k in range(1, 4):
             weight = (3.0, -1.5, 1.0 / 3.0)[k - 1] / gap
-            dx, dy = k * gap * nx[m], k * gap * ny[m]
-            px, py = x[m] + dx, y[m] + dy
-            sx += weight * (at(u, px + 0.5, py) - (bu[m] - spin[m] * dy))
-            sy += weight * (at(v, px, py + 0.5) - (bv[m] + spin[m] * dx))
-        across = sx * nx[m] + sy * ny[m]
-        out[0, m] = sx - across * nx[m]
-        out[1, m] = sy - across * ny[m]
+            for d in range(axes):
+                carried[d] = walls[d, m]
+            for n in range(turns.shape[0]):
+                first, second = turns[n, 0], turns[n, 1]
+                carried[first] -= spins[n, m] * k * gap * normals[second, m]
+                carried[second] += spins[n, m] * k * gap * normals[first, m]
+            for c in range(axes):
+                for d in range(axes):
+                    spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
+                out[c, m] += weight * (at(velocity[c], steps, spot) - carried[c])
+        across = 0.0
+        for d in range(axes):
+            across += out[d, m] * normals[d, m]
+        for d in range(axes):
+            out[d, m] -= across * normals[d, m]

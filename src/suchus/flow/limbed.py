@@ -201,13 +201,16 @@ class Limbed(Trunk):
         spine, frame = self.placed(time, pose)
         skin = self._skin(spine, spacing)
         points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
+        normals, spins = [skin.normals], [skin.spins]
         part = [skin.part] if skin.part is not None else []
         for limb in self.limbs:
             first, last, rate, turn = limb.placed(spine)
-            local, area = _surface(limb, spacing)
+            local, facing, area = _surface(limb, spacing)
             axis = last - first
             cos, sin = axis / np.linalg.norm(axis) if axis.any() else (1.0, 0.0)
             px, py = first[0] + cos * local[0] - sin * local[1], first[1] + sin * local[0] + cos * local[1]
+            normals.append(np.stack([cos * facing[0] - sin * facing[1], sin * facing[0] + cos * facing[1], facing[2]]))
+            spins.append(np.stack([0 * px, 0 * px, np.full(px.shape, turn)]))
             area = np.where(self._holds(px, py, local[2], spine), 0.0, area)
             points.append(np.stack([px, py, local[2]]))
             share.append(area)
@@ -218,8 +221,11 @@ class Limbed(Trunk):
                 if k != i + 1:
                     inside = limb.distance(one[0], one[1], one[2], spine) < -1e-9 * limb.radius
                     area[inside] = 0.0
-        parts = np.concatenate(part) if part else None
-        whole = SkinMarkers(np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(rates, axis=1), parts)
+        whole = SkinMarkers(
+            points=np.concatenate(points, axis=1), share=np.concatenate(share),
+            velocities=np.concatenate(rates, axis=1), normals=np.concatenate(normals, axis=1),
+            spins=np.concatenate(spins, axis=1), part=np.concatenate(part) if part else None,
+        )  # fmt: skip
         return in_world(whole, frame)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -265,8 +271,8 @@ def _straight(spine: MidlineState) -> MidlineState:
 
 
 @lru_cache(maxsize=64)
-def _surface(limb: Capsule, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return points over a capsule from its first end, along its axis, across and up, and the area of each."""
+def _surface(limb: Capsule, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return points over a capsule from its first end, along its axis, across and up, normals, and areas."""
     r, length = limb.radius, float(np.hypot(*np.subtract(limb.end, limb.start)))
     count = max(_AROUND, int(np.ceil(2 * np.pi * r / spacing)))
     turn = 2 * np.pi * (np.arange(count) + 0.5) / count
@@ -280,8 +286,10 @@ def _surface(limb: Capsule, spacing: float) -> tuple[np.ndarray, np.ndarray]:
         out.append(r * np.sqrt(1 - height**2))
         area.append(np.full(caps, 2 * np.pi * r * r / caps / count))
     a, o, share = (np.concatenate(part)[:, None] for part in (along, out, area))
-    points = np.stack([np.broadcast_to(a, (a.size, count)), o * np.cos(turn), o * np.sin(turn)])
-    found = points.reshape(3, -1), np.broadcast_to(share, (a.size, count)).ravel().copy()
+    points = np.stack([np.broadcast_to(a, (a.size, count)), o * np.cos(turn), o * np.sin(turn)]).reshape(3, -1)
+    nearest = np.zeros(points.shape)
+    nearest[0] = np.clip(points[0], 0.0, length)
+    found = points, (points - nearest) / r, np.broadcast_to(share, (a.size, count)).ravel().copy()
     for array in found:
         array.flags.writeable = False
     return found

@@ -56,8 +56,8 @@ class Log:
     """What the region of each part of each body held at the end of the last step; see ``momentum.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
-    control_rows: list[tuple[float, float]] = field(default_factory=list)
-    """Force from the first box, step by step [N/m]."""
+    control_rows: list[tuple[float, ...]] = field(default_factory=list)
+    """Force from the first box, step by step [N/m, N]."""
 
     def __post_init__(self) -> None:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))

@@ -7,8 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.compiled import PAD
-from suchus.flow.force import edge_mean
+from suchus.flow.force import edge_mean, interpolate, padded, steps_of
 from suchus.flow.grid import Grid
 from suchus.flow.water import Fluid
 
@@ -18,15 +17,15 @@ class Sample:
     """The water at some points, in the world's frame."""
 
     points: np.ndarray
-    """Positions of the points, shape (point, 2) [m]."""
+    """Positions of the points, shape (point, axis) [m]."""
     velocity: np.ndarray
-    """Velocity (x, y), shape (point, 2) [m/s]."""
+    """Velocity along each axis, shape (point, axis) [m/s]."""
     pressure: np.ndarray
     """Pressure, zero on the average along the sides of the domain, shape (point,) [Pa]."""
 
 
-def line(start: tuple[float, float], end: tuple[float, float], count: int) -> np.ndarray:
-    """Return ``count`` points evenly spaced from ``start`` to ``end``, both included, shape (count, 2) [m].
+def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.ndarray:
+    """Return ``count`` points evenly spaced from ``start`` to ``end``, both included, shape (count, axis) [m].
 
     Raises:
         InvalidDesign: fewer than two points.
@@ -43,42 +42,41 @@ def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) ->
 
     Args:
         water: the fields.
-        points: where, shape (point, 2), or one point (2,) [m].
-        frame: position and velocity of the grid, shape (2, 2) [m, m/s].
+        points: where, shape (point, axis), or one point (axis,) [m].
+        frame: position and velocity of the grid, shape (2, axis) [m, m/s].
         density: of the water [kg/m^3].
 
     Raises:
         InvalidDesign: a point that is not in the domain.
     """
-    where = np.atleast_2d(np.asarray(points, float))
-    if where.ndim != 2 or where.shape[1] != 2:
-        raise InvalidDesign(f"the points have the shape {np.shape(points)}; give one row (x, y) for each point.")
+    where, axes = np.atleast_2d(np.asarray(points, float)), water.axes
+    if where.ndim != 2 or where.shape[1] != axes:
+        raise InvalidDesign(
+            f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:axes])}) for each point."
+        )
     grid, local = water.grid, where - frame[0]
     _check(grid, where, local, frame[0])
-    x, y = ((local - np.array(grid.origin)) / grid.cell + PAD).T
+    places, steps = padded(local.T, grid), steps_of(water.p)
+    pressure, velocity = np.empty(len(where)), np.empty((axes, len(where)))
+    interpolate(water.p.reshape(-1), steps, places, pressure)
+    for d, part in enumerate(water.velocity):
+        on_faces = places.copy()
+        on_faces[d] += 0.5
+        interpolate(part.reshape(-1), steps, on_faces, velocity[d])
     level = float(edge_mean(water.p))
-    velocity = np.stack([_at(water.u, x, y - 0.5), _at(water.v, x - 0.5, y)], axis=1) + frame[1]
-    return Sample(points=where, velocity=velocity, pressure=density * (_at(water.p, x - 0.5, y - 0.5) - level))
+    return Sample(points=where, velocity=velocity.T + frame[1], pressure=density * (pressure - level))
 
 
 def _check(grid: Grid, where: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
     low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
     outside = np.flatnonzero(~((local >= low) & (local <= high)).all(axis=1))
     if outside.size:
-        (x, y), (x0, y0), (x1, y1) = where[outside[0]], low + frame, high + frame
-        raise InvalidDesign(
-            f"the point ({x:.4g}, {y:.4g}) m is outside the domain x = {x0:.4g} to {x1:.4g} m, y = {y0:.4g} to "
-            f"{y1:.4g} m; give points in it."
+        point = ", ".join(f"{part:.4g}" for part in where[outside[0]])
+        ends = ", ".join(
+            f"{axis} = {first:.4g} to {last:.4g} m"
+            for axis, first, last in zip("xyz", low + frame, high + frame, strict=False)
         )
-
-
-def _at(a: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the bilinear interpolation of ``a`` at padded indices."""
-    i, j = x.astype(int), y.astype(int)
-    f, g = x - i, y - j
-    low, high = ((1 - f) * a[k, i] + f * a[k, i + 1] for k in (j, j + 1))
-    values: np.ndarray = (1 - g) * low + g * high
-    return values
+        raise InvalidDesign(f"the point ({point}) m is outside the domain {ends}; give points in it.")
 
 
 class _Probed(Protocol):
@@ -89,7 +87,7 @@ class _Probed(Protocol):
 
 
 Place = np.ndarray | Callable[[float], np.ndarray]
-"""Points of shape (point, 2) [m], or those for every time [s]."""
+"""Points of shape (point, axis) [m], or those for every time [s]."""
 
 
 @dataclass(slots=True)
@@ -123,7 +121,7 @@ class Rake:
 
     @property
     def velocity(self) -> np.ndarray:
-        """Velocity (x, y) in the world's frame, shape (time, point, 2) [m/s]."""
+        """Velocity in the world's frame, shape (time, point, axis) [m/s]."""
         return np.array([sample.velocity for sample in self._samples])
 
     @property

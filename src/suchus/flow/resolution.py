@@ -25,6 +25,10 @@ SKIN_FRICTION = 0.08, 0.16
 """How much the drag by friction alone is low on a cylinder that is started at once, Re 550, on 96 and 48 cells a
 diameter, where the layer is 4 and 2 cells thin [-]; ``make validate`` checks it."""
 
+SKIN_SPHERE = 0.10, 0.20
+"""How much the drag by pressure and friction over the skin is low on a sphere at Re 50, 0.6 diameters after its start,
+on 16 and 8 cells a diameter [-]."""
+
 SKIN_PEAK = 0.2
 """How much the peak wall vorticity of a cylinder at Re 185 is low on 24 cells a diameter [-]; docs/flow_limits.md."""
 
@@ -32,7 +36,9 @@ ALONG_THE_SKIN = (
     f"Read from points one to three cells off the wall: pressure and friction are {100 * SKIN_SUM[0]:.0f} to "
     f"{SKIN_SUM[1]:.0%} low in sum where pressure is most of it, friction alone {100 * SKIN_FRICTION[0]:.0f} to "
     f"{SKIN_FRICTION[1]:.0%} where its layer is 4 to 2 cells thin, and more where they peak (the peak wall vorticity "
-    f"of a cylinder at Re 185 by {SKIN_PEAK:.0%} at 24 cells a diameter). Forces from the momentum exchanged are not."
+    f"of a cylinder at Re 185 by {SKIN_PEAK:.0%} at 24 cells a diameter). On a sphere at Re 50 that has just started "
+    f"both together are {100 * SKIN_SPHERE[0]:.0f} to {SKIN_SPHERE[1]:.0%} low with 16 to 8 cells a diameter. Forces "
+    "from the momentum exchanged are not."
 )
 """What is known of the error of ``Surface`` and ``Record.surface_force``, to stand beside each plot of them."""
 

@@ -79,6 +79,16 @@ class Markers:
         return np.stack([self.x, self.y])
 
     @property
+    def normals(self) -> np.ndarray:
+        """Outward normal, shape (2, marker) [-]."""
+        return np.stack([self.normal_x, self.normal_y])
+
+    @property
+    def spins(self) -> np.ndarray:
+        """Rate at which the surface there turns about z, shape (1, marker) [rad/s]."""
+        return self.spin[None]
+
+    @property
     def share(self) -> np.ndarray:
         """Length of outline that the marker stands for [m]."""
         return self.length

@@ -5,7 +5,7 @@ from copy import copy
 from dataclasses import replace
 from math import isfinite, prod
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -498,41 +498,48 @@ class Simulation(Fields):
         """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``.
 
         Raises:
-            InvalidDesign: in space.
+            InvalidDesign: a mirror cuts a body, so that no box goes around it.
         """
-        self._plane_only("a control volume", "Record.force")
         if not self._placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
-        j0, j1, i0, i1 = self.water.window
-        k = round(margin / self.setup.grid.cell)
-        nx, ny = self.setup.grid.cells[:2]
-        box = (max(j0 - k, PAD + 2), min(j1 + k, PAD + ny - 2), max(i0 - k, PAD + 2), min(i1 + k, PAD + nx - 2))
+        for body, cut in zip(self._bodies, self.water.cut, strict=True):
+            if any(cut):
+                raise InvalidDesign(
+                    f"a mirror cuts {body.name}, and a control volume goes all around bodies; take Record.force."
+                )
+        k, window = round(margin / self.setup.grid.cell), self.water.window
+        box = tuple(
+            end
+            for first, last, cells in zip(window[::2], window[1::2], reversed(self.setup.grid.cells), strict=True)
+            for end in (max(first - k, PAD + 2), min(last + k, PAD + cells - 2))
+        )
         self._log.controls = [ControlVolume(box)]
 
     @property
     def control_forces(self) -> np.ndarray:
-        """Force on all bodies from the momentum through the box, one row per step since ``control`` [N/m]."""
-        return np.array(self._log.control_rows).reshape(-1, 2)
+        """Force on all bodies from the momentum through the box, one row per step since ``control`` [N/m, N]."""
+        return np.array(self._log.control_rows).reshape(-1, self.setup.grid.axes)
 
     # --- what there is to see ----------------------------------------------------------------------------------
 
-    def surface(self, name: str | None = None) -> Surface:
-        """Return pressure and friction along a body's outline, positions in the frame of the grid.
+    def surface(self, name: str | None = None) -> Surface[Any]:
+        """Return pressure and friction along a body's outline or over its skin, positions in the frame of the grid.
+
+        Of a body that mirrors cut it is the part inside the domain.
 
         Raises:
             UnknownName: there is no such body, or none at all.
-            InvalidDesign: in space.
         """
-        self._plane_only("the pressure and friction along an outline", "Record.force")
         names = [b.name for b in self._bodies]
         if not names or name not in (None, *names):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
-        body = self._bodies[0 if name is None else names.index(name)]
-        pose = self._in_frame(self.pose(body.name))
-        outline = body.shape.markers(self.time, pose, self.setup.grid.cell)
-        assert isinstance(outline, Markers)
-        return sample(self.water, outline, self.setup.density)
+        body, grid = self._bodies[0 if name is None else names.index(name)], self.setup.grid
+        skin = body.shape.markers(self.time, self._in_frame(self.pose(body.name)), grid.cell)
+        if isinstance(skin, SkinMarkers):
+            low = np.array(grid.origin)[:, None]
+            skin = skin.of(((skin.points >= low) & (skin.points <= low + np.array(grid.size)[:, None])).all(axis=0))
+        return sample(self.water, skin, self.setup.density)
 
 
 class _Taken(NamedTuple):

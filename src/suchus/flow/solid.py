@@ -12,7 +12,7 @@ import numpy as np
 
 from suchus.flow.ellipsoid import paint_ellipsoid
 from suchus.flow.mass import SpaceMass, tensor
-from suchus.flow.pose import Pose
+from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 
 _FEWEST = 16
@@ -54,8 +54,20 @@ class SkinMarkers:
     """Area that each point stands for, shape (point,) [m^2]."""
     velocities: np.ndarray
     """Velocity of the surface, shape (3, point) [m/s]."""
+    normals: np.ndarray
+    """Outward normal, shape (3, point) [-]."""
+    spins: np.ndarray
+    """Angular velocity of the surface there, shape (3, point) [rad/s]."""
     part: np.ndarray | None = None
     """Which of the body's parts a point belongs to, counted from 0, shape (point,); None for a body of one part [-]."""
+
+    def of(self, chosen: np.ndarray) -> "SkinMarkers":
+        """Return some of the points, by a mask of shape (point,)."""
+        return SkinMarkers(
+            points=self.points[:, chosen], share=self.share[chosen], velocities=self.velocities[:, chosen],
+            normals=self.normals[:, chosen], spins=self.spins[:, chosen],
+            part=None if self.part is None else self.part[chosen],
+        )  # fmt: skip
 
 
 class SpaceShape(ABC):
@@ -159,7 +171,9 @@ class Ellipsoid(SpaceShape):
         a = self.half[:, None]
         share = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
         points = np.stack(place.place(a * unit))
-        return SkinMarkers(points, share, np.stack(place.rates(points)))
+        normals = np.stack(turned(place.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
+        spins = np.broadcast_to(place.spins[:, None], points.shape)
+        return SkinMarkers(points, share, np.stack(place.rates(points)), normals, spins)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""

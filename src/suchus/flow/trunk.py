@@ -128,11 +128,18 @@ class Trunk(SpaceShape):
             np.zeros(aside.shape),
         ])  # fmt: skip
         first, second = corner[:, 1:, 1:] - corner[:, :-1, :-1], corner[:, 1:, :-1] - corner[:, :-1, 1:]
-        share = 0.5 * np.sqrt((np.cross(first, second, axis=0) ** 2).sum(axis=0))
+        square = np.cross(first, second, axis=0)
+        size = np.sqrt((square**2).sum(axis=0))
         arc = np.broadcast_to(spine.arc[station, None], aside.shape)
         at = _middles(arc[None])[0]
         part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
-        return SkinMarkers(_middles(corner).reshape(3, -1), share.ravel(), _middles(rate).reshape(3, -1), part)
+        spins = np.zeros(square.shape)
+        spins[2] = _middles(np.broadcast_to(turn, aside.shape)[None])[0]
+        return SkinMarkers(
+            points=_middles(corner).reshape(3, -1), share=0.5 * size.ravel(),
+            velocities=_middles(rate).reshape(3, -1),
+            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part,
+        )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
@@ -193,7 +200,11 @@ def in_world(skin: SkinMarkers, frame: Pose) -> SkinMarkers:
     """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
     points = np.array(frame.place(skin.points))
     velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
-    return SkinMarkers(points, skin.share, velocities, skin.part)
+    return SkinMarkers(
+        points=points, share=skin.share, velocities=velocities,
+        normals=np.array(turned(frame.matrix, skin.normals)),
+        spins=np.array(turned(frame.matrix, skin.spins)) + frame.spins[:, None], part=skin.part,
+    )  # fmt: skip
 
 
 def _middles(corners: np.ndarray) -> np.ndarray:
