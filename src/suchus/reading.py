@@ -1,5 +1,6 @@
 """Files from outside: read whole and up to a size, or refused in one sentence."""
 
+import io
 import json
 import stat
 import tomllib
@@ -9,7 +10,13 @@ from typing import Any
 from suchus.errors import UnreadableFile
 
 LARGEST = 64 * 2**20
-"""Size of a text file that is read [byte]."""
+"""Size of a file that is read [byte]."""
+MESHES = (".stl", ".obj", ".ply", ".off", ".glb")
+"""Formats of meshes that trimesh reads without further packages, each in one file."""
+
+
+class NoMeshes(UnreadableFile):
+    """Trimesh, which reads meshes, is not installed."""
 
 
 def there(path: Path) -> bool:
@@ -48,6 +55,53 @@ def unreadable(path: Path, error: OSError | ValueError) -> UnreadableFile:
     return UnreadableFile(f"{str(path)!r} is no name that a file can have.")
 
 
+def read_bytes(path: Path, most: int = LARGEST) -> bytes:
+    """Return what is in a file of at most so many bytes.
+
+    Raises:
+        UnreadableFile: it is no ordinary file, cannot be read, or is larger.
+    """
+    check_file(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(most + 1)
+    except (OSError, ValueError) as error:
+        raise unreadable(path, error) from error
+    if len(data) > most:
+        raise UnreadableFile(f"{path} is larger than {most / 2**20:g} MiB, more than such a file can need.")
+    return data
+
+
+def read_mesh(path: Path, data: bytes | None = None) -> Any:
+    """Return the mesh of a file as trimesh has it, equal corners made one; nothing that it names is opened.
+
+    Args:
+        path: the file, whose ending says its format.
+        data: what it holds, if that is read already.
+
+    Raises:
+        NoMeshes: trimesh is not installed.
+        UnreadableFile: it is of none of the ``MESHES``, cannot be read, or holds no faces.
+    """
+    if path.suffix.lower() not in MESHES:
+        raise UnreadableFile(
+            f"{path.name} is no mesh of a format that is read ({', '.join(MESHES)}); convert it, as with Blender."
+        )
+    data = read_bytes(path) if data is None else data
+    try:
+        import trimesh  # noqa: PLC0415  an optional extra
+    except ImportError as error:
+        raise NoMeshes("meshes need trimesh; install it with: pip install 'suchus[meshes]'.") from error
+    try:
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=path.suffix.lower().removeprefix("."))
+        count = len(mesh.faces)
+    except Exception as error:  # whatever trimesh and its readers raise for a file that is no mesh
+        raise UnreadableFile(f"{path.name} is no mesh: {' '.join(str(error).split())[:120]}.") from error
+    if not count:
+        raise UnreadableFile(f"{path.name} is a mesh without faces.")
+    return mesh
+
+
 def read_text(path: Path, most: int = LARGEST) -> str:
     """Return the text of a file.
 
@@ -58,14 +112,7 @@ def read_text(path: Path, most: int = LARGEST) -> str:
     Raises:
         UnreadableFile: it is no ordinary file, cannot be read, is larger, or is no text in UTF-8.
     """
-    check_file(path)
-    try:
-        with path.open("rb") as file:
-            data = file.read(most + 1)
-    except (OSError, ValueError) as error:
-        raise unreadable(path, error) from error
-    if len(data) > most:
-        raise UnreadableFile(f"{path} is larger than {most / 2**20:g} MiB, more than such a file can need.")
+    data = read_bytes(path, most)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

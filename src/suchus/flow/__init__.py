@@ -10,6 +10,7 @@ from suchus.flow.grid import Grid
 from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.log import FlowLoads
 from suchus.flow.mass import Mass, SpaceMass
+from suchus.flow.mesh import TriangleMesh, from_mesh
 from suchus.flow.midline import Midline, MidlineState, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
 from suchus.flow.output import FieldSeries, save_vti, snapshot
@@ -77,6 +78,7 @@ __all__ = [
     "Sphere",
     "Stream",
     "Surface",
+    "TriangleMesh",
     "Trunk",
     "Twists",
     "Wall",
@@ -86,6 +88,7 @@ __all__ = [
     "eel_in_space",
     "foil",
     "frequency",
+    "from_mesh",
     "from_outline",
     "from_sdf",
     "isosurface",

@@ -127,6 +127,11 @@ class SpaceShape(ABC):
         return False
 
 
+def is_blunt(axes: np.ndarray) -> bool:
+    """Return whether a body of these axes is about as long along each."""
+    return float(axes.max()) <= _BLUNT * float(axes.min())
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipsoid(SpaceShape):
     """An ellipsoid with its axes along the body's axes."""
@@ -201,7 +206,7 @@ class Ellipsoid(SpaceShape):
     @property
     def blunt(self) -> bool:
         """Whether no axis is more than ``_BLUNT`` times another."""
-        return float(self.half.max()) <= _BLUNT * float(self.half.min())
+        return is_blunt(self.half)
 
     def volume(self, time: float) -> float:
         """Return the volume."""

@@ -3,21 +3,14 @@
 MuJoCo gets each as STL. A body of which nothing but a mesh says its shape, and whose mesh is not read, is refused.
 """
 
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
 from suchus.errors import UnreadableFile
-from suchus.reading import check_file
+from suchus.reading import NoMeshes, check_file, read_mesh
 
 _MOST = 64 * 2**20  # bytes of all meshes
 _SCHEME = "package://"
-SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb")
-"""Formats that trimesh reads without further packages, each in one file."""
-
-
-class NoMeshes(UnreadableFile):
-    """Trimesh, which reads meshes, is not installed."""
 
 
 class Meshes:
@@ -92,10 +85,6 @@ class Meshes:
         return [one for root in self._packages for one in ((root, path), *([(root, rest)] * (root.name == package)))]
 
     def _bytes(self, where: Path) -> bytes:
-        if where.suffix.lower() not in SUFFIXES:
-            raise UnreadableFile(
-                f"{where.name} is no mesh of a format that is read ({', '.join(SUFFIXES)}); convert it, as with Blender"
-            )
         check_file(where)
         self._size += where.stat().st_size
         if self._size > _MOST:
@@ -117,16 +106,8 @@ def inside(home: Path, name: str) -> Path | None:
 
 def _stl(where: Path, data: bytes) -> tuple[bytes, bool]:
     """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened."""
+    mesh = read_mesh(where, data)
     try:
-        import trimesh  # noqa: PLC0415  an optional extra
-    except ImportError as error:
-        raise NoMeshes("meshes need trimesh; install it with: pip install 'suchus[meshes]'.") from error
-    try:
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=where.suffix.lower().removeprefix("."))
-        stl = mesh.export(file_type="stl")
-        closed = bool(mesh.is_watertight)
-    except Exception as error:  # whatever trimesh and its readers raise for a file that is no mesh
+        return mesh.export(file_type="stl"), bool(mesh.is_watertight)
+    except Exception as error:  # whatever trimesh raises for a mesh that is none
         raise UnreadableFile(f"{where.name} is no mesh: {' '.join(str(error).split())[:120]}") from error
-    if not len(mesh.faces):
-        raise UnreadableFile(f"{where.name} is a mesh without faces")
-    return stl, closed

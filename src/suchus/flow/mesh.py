@@ -1,0 +1,347 @@
+# mypy: disable-error-code="no-untyped-def"
+# ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
+# (the kernels get their types from numba)
+"""Rigid bodies in space inside a closed mesh of triangles, as an STL or OBJ file has it.
+
+The sign of a distance is that of the pseudo-normal of the nearest face, edge or corner (Baerentzen and Aanaes 2005),
+which is right everywhere around a closed mesh.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numba import prange
+from scipy.spatial import KDTree
+
+from suchus.errors import InvalidDesign
+from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.mass import SpaceMass, tensor
+from suchus.flow.pose import Pose
+from suchus.flow.shape import positive
+from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape, is_blunt
+from suchus.reading import read_mesh
+
+_ALIKE = 1e-6
+"""Distance of corners from their mirror images, over the mesh's size, up to which it is symmetric [-]."""
+_PROBES = 8
+"""Points along the radius of the largest ball that may lie in the mesh, when its thickness is sought [-]."""
+_AMPLE = 1.05
+"""Margin of that radius [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TriangleMesh(SpaceShape):
+    """A rigid body inside a closed mesh of triangles.
+
+    Triangles of about a cell are enough; the time that it takes to place the body grows with their number.
+
+    Raises:
+        InvalidDesign: on creation, for a mesh that is open, wound unevenly or looks inwards.
+    """
+
+    vertices: np.ndarray
+    """Corners in the body's own frame, shape (vertex, 3) [m]."""
+    faces: np.ndarray
+    """Which three make each triangle, counter-clockwise seen from outside, shape (face, 3) [-]."""
+    _normals: np.ndarray = field(init=False, repr=False)
+    _thick: float = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        vertices, faces = np.array(self.vertices, float), np.array(self.faces)
+        if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not np.isfinite(vertices).all():
+            raise InvalidDesign(f"the vertices have shape {vertices.shape}; give rows of three finite numbers.")
+        if faces.ndim != 2 or faces.shape[1:] != (3,) or faces.dtype.kind not in "iu" or len(faces) < 4:
+            raise InvalidDesign(f"the faces have shape {faces.shape}; give at least four rows of three whole numbers.")
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            raise InvalidDesign(f"a face names vertex {int(faces.max())}, and there are {len(vertices)} from 0 on.")
+        _refuse_open(vertices, faces)
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+        if self.volume(0.0) <= 0:
+            raise InvalidDesign(
+                f"the faces of the mesh look inwards: its volume is {self.volume(0.0):.3g} m3. Turn them round, as "
+                "mesh.invert() of trimesh does."
+            )
+        object.__setattr__(self, "_normals", _pseudo_normals(vertices, faces))
+        object.__setattr__(self, "_thick", self._widest())
+
+    @property
+    def even(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
+        """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
+        tree, most = KDTree(self.vertices), _ALIKE * float(np.ptp(self.vertices, axis=0).max())
+        mirrored = [self.vertices * np.where(np.arange(3) == d, -1, 1) for d in range(3)]
+        x, y, z = (float(np.max(tree.query(one)[0])) <= most for one in mirrored)
+        return x, y, z
+
+    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+        """Return the field on the points of a window, as far as ``reach``."""
+        place = pose.along(3)
+        px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
+        out = np.zeros((4, z.size, y.size, x.size))
+        h = float(x[1] - x[0]) if x.size > 1 else float(reach)
+        normals = np.ascontiguousarray(self._normals @ place.matrix.T)
+        paint_mesh(out, px, py, pz, np.ascontiguousarray(self._placed(place)[self.faces]), normals, float(reach), h)
+        u, v, w = (
+            np.ascontiguousarray(np.broadcast_to(rate, out[0].shape))
+            for rate in place.rates((px, py[:, None], pz[:, None, None]))
+        )
+        return SpaceField(out[0], (out[1], out[2], out[3]), (u, v, w), np.full(out[0].shape, np.inf))
+
+    def _placed(self, place: Pose) -> np.ndarray:
+        """Return the corners in the world, shape (vertex, 3) [m]."""
+        return np.stack(place.place(self.vertices.T), axis=1)
+
+    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+        """Return the middles of the triangles, of large ones those of equal parts."""
+        place = pose.along(3)
+        corners = self._placed(place)[self.faces]
+        edges = np.roll(corners, -1, axis=1) - corners
+        parts = np.maximum(1, np.ceil(np.sqrt((edges**2).sum(axis=2)).max(axis=1) / spacing)).astype(int)
+        across = np.cross(edges[:, 0], edges[:, 1])
+        area = 0.5 * np.sqrt((across**2).sum(axis=1))
+        points, share, normals = [], [], []
+        for count in np.unique(parts):
+            some, weights = parts == count, _middles(int(count))
+            points.append(np.einsum("mk,fkd->dfm", weights, corners[some]).reshape(3, -1))
+            share.append(np.repeat(area[some] / count**2, count**2))
+            normals.append(np.repeat(across[some] / np.maximum(2 * area[some, None], 1e-300), count**2, axis=0).T)
+        at = np.concatenate(points, axis=1)
+        return SkinMarkers(
+            points=at, share=np.concatenate(share), velocities=np.stack(place.rates(at)),
+            normals=np.concatenate(normals, axis=1), spins=np.broadcast_to(place.spins[:, None], at.shape),
+        )  # fmt: skip
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
+        """Return the box around the corners."""
+        at = self._placed(pose.along(3))
+        return tuple(np.stack([at.min(axis=0), at.max(axis=0)], axis=1).ravel().tolist())
+
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the diameter of the largest ball inside, to a twentieth of it."""
+        return np.zeros(1), np.full(1, self._thick)
+
+    def _widest(self) -> float:
+        """Return the diameter of the largest ball inside [m], at most 6 volumes over the area of a convex body."""
+        edges = self.vertices[self.faces[:, 1:]] - self.vertices[self.faces[:, :1]]
+        area = 0.5 * float(np.sqrt((np.cross(edges[:, 0], edges[:, 1]) ** 2).sum(axis=1)).sum())
+        reach = _AMPLE * 3 * self.volume(0.0) / area
+        step, low, high = reach / _PROBES, self.vertices.min(axis=0), self.vertices.max(axis=0)
+        for _ in range(2):
+            x, y, z = (np.arange(a - step, b + 2 * step, step) for a, b in zip(low, high, strict=True))
+            depth = -self.measure(x, y, z, 0.0, Pose(), reach).distance
+            k, j, i = np.unravel_index(int(depth.argmax()), depth.shape)
+            best = np.array([x[i], y[j], z[k]])
+            low, high, step = best - step, best + step, step / 4
+        return 2 * float(depth.max())
+
+    @property
+    def blunt(self) -> bool:
+        """Whether it is about as long along each axis."""
+        return is_blunt(np.ptp(self.vertices, axis=0))
+
+    def volume(self, time: float) -> float:
+        """Return the volume."""
+        return float(self._tetrahedra()[1].sum()) / 6
+
+    def _tetrahedra(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the corners of the tetrahedra between the origin and each face, and six times their volumes."""
+        corners = self.vertices[self.faces]
+        return corners, np.einsum("fd,fd->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+
+    def mass(self, time: float) -> SpaceMass:
+        """Return volume, centre and moments, exact for the mesh."""
+        corners, six = self._tetrahedra()
+        volume, total, none = float(six.sum()) / 6, corners.sum(axis=1), (0.0, 0.0, 0.0)
+        centre = (six @ total) / 24 / volume
+        second = (np.einsum("f,fi,fj->ij", six, total, total) + np.einsum("f,fki,fkj->ij", six, corners, corners)) / 120
+        cx, cy, cz = centre.tolist()
+        moments = tensor(second - volume * np.outer(centre, centre))
+        return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=none, moments=moments, swirl=none)
+
+
+def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
+    """Return the body inside a mesh.
+
+    Args:
+        path: an STL, OBJ, PLY, OFF or GLB file; read by trimesh (extra ``meshes``).
+        scale: metres in a unit of the file: 0.001 for one in millimetres [m].
+
+    Raises:
+        InvalidDesign: the mesh is open, wound unevenly or looks inwards.
+        UnreadableFile: the file is no mesh, or trimesh is not installed.
+    """
+    positive("scale", scale)
+    found = read_mesh(Path(path))
+    faces = np.array(found.faces)
+    whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return TriangleMesh(vertices=scale * np.array(found.vertices), faces=faces[whole])
+
+
+def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
+    """Refuse a surface that is not closed, or whose faces do not all look to one side of it.
+
+    Raises:
+        InvalidDesign: naming an edge, and the remedy.
+    """
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    ways, back = start * len(vertices) + end, end * len(vertices) + start
+    there, count = np.unique(ways, return_counts=True)
+    if (count > 1).any():
+        first, last = divmod(int(there[count > 1][0]), len(vertices))
+        raise InvalidDesign(
+            f"two faces of the mesh go the same way along the edge from {_at(vertices[first])} to "
+            f"{_at(vertices[last])} m: they look to different sides, or more than two meet there. Wind them evenly, as "
+            "trimesh.repair.fix_winding does, and keep one surface."
+        )
+    alone = np.flatnonzero(~np.isin(back, there))
+    if alone.size:
+        first, last = int(start[alone[0]]), int(end[alone[0]])
+        raise InvalidDesign(
+            f"the mesh is open: it has {alone.size} edges with one face, the first from {_at(vertices[first])} to "
+            f"{_at(vertices[last])} m. Close it, as trimesh.repair.fill_holes or Blender does."
+        )
+
+
+def _at(point: np.ndarray) -> str:
+    return f"({', '.join(f'{part:.4g}' for part in point)})"
+
+
+def _pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Return the pseudo-normals of each face, its three edges and its three corners, shape (face, 7, 3) [-].
+
+    An edge's is the sum of its faces' normals, a corner's that of all around it, weighted by their angles there.
+    """
+    corners = vertices[faces]
+    edges = np.roll(corners, -1, axis=1) - corners
+    length = np.maximum(np.sqrt((edges**2).sum(axis=2, keepdims=True)), 1e-300)
+    flat = np.cross(edges[:, 0], edges[:, 1])
+    flat = flat / np.maximum(np.sqrt((flat**2).sum(axis=1, keepdims=True)), 1e-300)
+    cosine = -((edges / length) * np.roll(edges / length, 1, axis=1)).sum(axis=2)
+    around = np.zeros(vertices.shape)
+    np.add.at(around, faces, np.arccos(np.clip(cosine, -1, 1))[:, :, None] * flat[:, None])
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    ways, back = start * len(vertices) + end, end * len(vertices) + start
+    order = np.argsort(ways)
+    other = order[np.searchsorted(ways, back, sorter=order)] // 3
+    found = np.empty((len(faces), 7, 3))
+    found[:, 0] = flat
+    found[:, 1:4] = flat[:, None] + flat[other].reshape(-1, 3, 3)
+    found[:, 4:] = around[faces]
+    return found / np.maximum(np.sqrt((found**2).sum(axis=2, keepdims=True)), 1e-300)
+
+
+def _middles(count: int) -> np.ndarray:
+    """Return the weights of a triangle's corners at the middles of ``count**2`` equal parts, shape (part, 3) [-]."""
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    up, down = i + j < count, i + j < count - 1
+    first = np.concatenate([i[up] + 1 / 3, i[down] + 2 / 3]) / count
+    second = np.concatenate([j[up] + 1 / 3, j[down] + 2 / 3]) / count
+    return np.stack([1 - first - second, first, second], axis=1)
+
+
+@part
+def _dot(ax, ay, az, bx, by, bz):
+    return ax * bx + ay * by + az * bz
+
+
+@part
+def _nearest(px, py, pz, t):
+    """Return the shares of the second and third corner at a triangle's point nearest to a point, and what that is on.
+
+    0 is the face, 1 to 3 the edges after its corners, 4 to 6 the corners; by the regions of Voronoi (Ericson 2005,
+    section 5.1.5).
+    """
+    ux, uy, uz = t[1, 0] - t[0, 0], t[1, 1] - t[0, 1], t[1, 2] - t[0, 2]
+    vx, vy, vz = t[2, 0] - t[0, 0], t[2, 1] - t[0, 1], t[2, 2] - t[0, 2]
+    x, y, z = px - t[0, 0], py - t[0, 1], pz - t[0, 2]
+    d1, d2 = _dot(ux, uy, uz, x, y, z), _dot(vx, vy, vz, x, y, z)
+    if d1 <= 0.0 and d2 <= 0.0:
+        return 0.0, 0.0, 4
+    x, y, z = px - t[1, 0], py - t[1, 1], pz - t[1, 2]
+    d3, d4 = _dot(ux, uy, uz, x, y, z), _dot(vx, vy, vz, x, y, z)
+    if d3 >= 0.0 and d4 <= d3:
+        return 1.0, 0.0, 5
+    c = d1 * d4 - d3 * d2
+    if c <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+        return d1 / (d1 - d3), 0.0, 1
+    x, y, z = px - t[2, 0], py - t[2, 1], pz - t[2, 2]
+    d5, d6 = _dot(ux, uy, uz, x, y, z), _dot(vx, vy, vz, x, y, z)
+    if d6 >= 0.0 and d5 <= d6:
+        return 0.0, 1.0, 6
+    b = d5 * d2 - d1 * d6
+    if b <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+        return 0.0, d2 / (d2 - d6), 3
+    a = d3 * d6 - d5 * d4
+    if a <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        return 1.0 - w, w, 2
+    whole = a + b + c
+    return b / whole, c / whole, 0
+
+
+@part
+def _span(low, high, reach, start, h, count):
+    """Return first and end of the points of a line that lie within a reach of a stretch."""
+    return max(int(np.ceil((low - reach - start) / h)), 0), min(int(np.floor((high + reach - start) / h)) + 1, count)
+
+
+@threaded
+def paint_mesh(out, x, y, z, corners, normals, reach, h):
+    """Write signed distance and normal (3) of a mesh to a window, shape (4, z, y, x).
+
+    Args:
+        out: where to, zeros; beyond ``reach`` the normal stays so, and the distance is plus or minus ``reach``.
+        x: coordinates of the points, ``h`` apart.
+        y: coordinates of the points, ``h`` apart.
+        z: coordinates of the points.
+        corners: of the triangles, shape (face, 3, 3).
+        normals: pseudo-normals of faces, edges and corners, shape (face, 7, 3).
+        reach: distance up to which both are exact.
+        h: distance of the points.
+    """
+    for n in prange(out.shape[1]):
+        q = signed(n)
+        for j in range(out.shape[2]):
+            for i in range(out.shape[3]):
+                out[0, q, j, i] = reach
+        for f in range(corners.shape[0]):
+            t = corners[f]
+            if z[q] < min(t[0, 2], t[1, 2], t[2, 2]) - reach or z[q] > max(t[0, 2], t[1, 2], t[2, 2]) + reach:
+                continue
+            j0, j1 = _span(min(t[0, 1], t[1, 1], t[2, 1]), max(t[0, 1], t[1, 1], t[2, 1]), reach, y[0], h, y.size)
+            i0, i1 = _span(min(t[0, 0], t[1, 0], t[2, 0]), max(t[0, 0], t[1, 0], t[2, 0]), reach, x[0], h, x.size)
+            for j in range(j0, j1):
+                for i in range(i0, i1):
+                    v, w, on = _nearest(x[i], y[j], z[q], t)
+                    u = 1.0 - v - w
+                    dx = x[i] - (u * t[0, 0] + v * t[1, 0] + w * t[2, 0])
+                    dy = y[j] - (u * t[0, 1] + v * t[1, 1] + w * t[2, 1])
+                    dz = z[q] - (u * t[0, 2] + v * t[1, 2] + w * t[2, 2])
+                    away = np.sqrt(dx * dx + dy * dy + dz * dz)
+                    if away >= abs(out[0, q, j, i]):
+                        continue
+                    side = dx * normals[f, on, 0] + dy * normals[f, on, 1] + dz * normals[f, on, 2]
+                    off = away if side >= 0.0 else -away
+                    out[0, q, j, i] = off
+                    if away > 1e-9 * h:
+                        out[1, q, j, i], out[2, q, j, i], out[3, q, j, i] = dx / off, dy / off, dz / off
+                    else:
+                        for d in range(3):
+                            out[1 + d, q, j, i] = normals[f, on, d]
+        for j in range(out.shape[2]):
+            _fill_row(out, q, j, reach)
+
+
+@part
+def _fill_row(out, q, j, reach):
+    """Give the points of a row that no triangle reached the sign of their neighbour that one did."""
+    inside, known = False, False
+    for i in range(out.shape[3]):
+        if abs(out[0, q, j, i]) < reach:
+            if not known and out[0, q, j, i] < 0.0:
+                for k in range(i):
+                    out[0, q, j, k] = -reach
+            inside, known = out[0, q, j, i] < 0.0, True
+        elif inside:
+            out[0, q, j, i] = -reach
