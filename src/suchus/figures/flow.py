@@ -14,6 +14,7 @@ from suchus.flow import ALONG_THE_SKIN, Markers, Record, Simulation, SkinMarkers
 from suchus.flow.pose import speeds
 
 _PIXELS = 900
+_COVERING = 1.5  # width of the dots of a skin, over the side of the patch that the largest stands for
 """About how many pixels the longer side of a field has [-]."""
 
 
@@ -85,7 +86,7 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
         draw = _over_the_skin if isinstance(surface.markers, SkinMarkers) else _along_the_outline
         figure: Figure = draw(surface)
         figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
-        figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 120)), fontsize="x-small", x=0.02, ha="left")
+        figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 110)), fontsize="x-small", x=0.02, ha="left")
     return figure
 
 
@@ -108,6 +109,7 @@ def _over_the_skin(surface: Surface[SkinMarkers]) -> Figure:
     most = max(float(np.abs(surface.pressure).max()), 1e-12)
     views = (("seen along y", 2, 1, -1.0), ("from above", 1, 2, 1.0))
     wide, *across = np.ptp(m.points, axis=1)
+    side = _COVERING * np.sqrt(m.share.max()) / wide * 0.4 * WIDTH * 72.0  # of a dot, in points of the page
     figure, grid = panels(2, 2, width=WIDTH, height=2.4 + min(2 * 0.4 * WIDTH * max(across) / wide, 6.0))
     for row, (values, label, cmap, low, high) in zip(
         grid,
@@ -121,7 +123,7 @@ def _over_the_skin(surface: Surface[SkinMarkers]) -> Figure:
             seen = (way * m.normals[depth] > 0) & (m.share > 0)
             order = np.argsort(way * m.points[depth, seen])
             x, y, shown = m.points[0, seen][order], m.points[up, seen][order], values[seen][order]
-            points = axes.scatter(x, y, c=shown, cmap=cmap, vmin=low, vmax=high, s=14.0, linewidths=0.0)
+            points = axes.scatter(x, y, c=shown, cmap=cmap, vmin=low, vmax=high, s=side**2, linewidths=0.0)
             axes.locator_params(axis="y", nbins=3)
             axes.set(xlabel="x [m]", ylabel=f"{'xyz'[up]} [m]", title=view, aspect="equal")
         figure.colorbar(points, ax=list(row), label=label, shrink=0.85)
