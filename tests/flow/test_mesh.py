@@ -141,6 +141,34 @@ def test_a_sphere_of_triangles_is_pushed_as_a_sphere():
     assert np.abs(forces[0][1:]).max() < 1e-3 * forces[0][0]
 
 
+def test_what_a_function_says_is_inside_becomes_a_body_in_space():
+    """An ellipsoid and a torus by functions whose gradient is not 1."""
+    shape = flow.from_sdf(lambda x, y, z: 3 * ((x / 0.5) ** 2 + (y / 0.2) ** 2 + (z / 0.3) ** 2 - 1), (-0.6, 0.6) * 3)
+    exact = flow.Ellipsoid(length=1.0, width=0.4, height=0.6)
+    assert shape.volume(0.0) == pytest.approx(exact.volume(0.0), rel=2e-3)
+    np.testing.assert_allclose(shape.mass(0.0).moments, exact.mass(0.0).moments, rtol=4e-3, atol=1e-6)
+    x, y, z = window(exact, POSE)
+    (found, true), reach = (one.measure(x, y, z, 0.0, POSE, 0.05).distance for one in (shape, exact)), 0.05
+    near = np.abs(true) < reach
+    np.testing.assert_allclose(found[near], true[near], atol=5e-4)
+    ring = flow.from_sdf(lambda x, y, z: (np.hypot(x, y) - 0.5) ** 2 + z**2 - 0.04, (-0.8, 0.8, -0.8, 0.8, -0.3, 0.3))
+    assert ring.volume(0.0) == pytest.approx(2 * np.pi**2 * 0.5 * 0.04, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("function", "box", "says"),
+    [
+        (lambda x, y, z: x**2 + 1, (-1, 1, -1, 1, -1, 1), "nowhere negative in x = -1 to 1 m, y = "),
+        (lambda x, y, z: x**2 + y**2 + z**2 - 1, (-1, 1, -1, 1, -1, 1), "reaches the sides of its box"),
+        (lambda x, y, z: x * np.nan, (-1, 1, -1, 1, -1, 1), "not a finite number"),
+        (lambda x, y: x, (-1, 1, -1), "the box has 3 numbers"),
+    ],
+)
+def test_a_function_without_a_body_in_its_box_is_refused(function, box, says):
+    with pytest.raises(InvalidDesign, match=says):
+        flow.from_sdf(function, box)
+
+
 def test_a_mesh_from_a_file_is_in_metres(tmp_path):
     BOX.copy().apply_scale(1000.0).export(tmp_path / "box.stl")
     BOX.export(tmp_path / "box.obj")

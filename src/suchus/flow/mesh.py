@@ -7,6 +7,7 @@ The sign of a distance is that of the pseudo-normal of the nearest face, edge or
 which is right everywhere around a closed mesh.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
 from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape, is_blunt
+from suchus.isosurface import isosurface
 from suchus.reading import read_mesh
 
 _ALIKE = 1e-6
@@ -28,6 +30,10 @@ _PROBES = 8
 """Points along the radius of the largest ball that may lie in the mesh, when its thickness is sought [-]."""
 _AMPLE = 1.05
 """Margin of that radius [-]."""
+_ALONG = 100
+"""Cells along the longest side of a box in which a surface is sought [-]."""
+_NEWTON = 3
+"""Steps by which its corners are put onto it [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -176,6 +182,41 @@ def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
     faces = np.array(found.faces)
     whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
     return TriangleMesh(vertices=scale * np.array(found.vertices), faces=faces[whole])
+
+
+def mesh_of_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> TriangleMesh:
+    """Return the body where ``function(x, y, z)`` is negative, as a mesh whose corners lie on its surface.
+
+    Between the corners, a hundredth of the box's longest side apart, the faces are flat.
+
+    Args:
+        function: negative inside the body and positive outside [m]; its gradient must not vanish on the surface.
+        box: around the body: x0, x1, y0, y1, z0, z1 [m].
+
+    Raises:
+        InvalidDesign: the function is nowhere negative in the box, or negative on its sides, or not finite.
+    """
+    low, high = np.array(box[::2], float), np.array(box[1::2], float)
+    cell = float((high - low).max()) / _ALONG
+    x, y, z = (np.arange(a, b + cell, cell) for a, b in zip(low, high, strict=True))
+    wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
+    values = np.asarray(function(wx, wy, wz), float)
+    where = ", ".join(f"{axis} = {a:.4g} to {b:.4g} m" for axis, a, b in zip("xyz", low, high, strict=True))
+    if values.shape != wx.shape or not np.isfinite(values).all():
+        raise InvalidDesign("the signed distance is not a finite number at every point of the box; mend the function.")
+    if values.min() >= 0:
+        raise InvalidDesign(
+            f"the signed distance is nowhere negative in {where}; it is negative inside the body. Give a box around it."
+        )
+    if min(float(np.take(values, (0, -1), axis=d).min()) for d in range(3)) <= 0:
+        raise InvalidDesign(f"the body reaches the sides of its box {where}; give a larger box.")
+    found = isosurface(-values, 0.0, (x[0], y[0], z[0]), cell)
+    points, step = found.points.T, 1e-4 * cell
+    for _ in range(_NEWTON):
+        slope = np.stack([function(*(points + d)) - function(*(points - d)) for d in step * np.eye(3)[:, :, None]])
+        slope /= 2 * step
+        points = points - function(*points) * slope / np.maximum((slope**2).sum(axis=0), 1e-12)
+    return TriangleMesh(vertices=points.T, faces=found.faces)
 
 
 def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:

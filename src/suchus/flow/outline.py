@@ -4,10 +4,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 
 from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.flow.mesh import TriangleMesh, mesh_of_sdf
 from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Solid, positive
@@ -211,20 +213,32 @@ class Implicit(Solid):
         return np.zeros(1), np.full(1, _widest(self))
 
 
+@overload
+def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, float, float, float]) -> Implicit: ...
+@overload
 def from_sdf(
-    function: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]
-) -> Implicit:
-    """Return the body where ``function(x, y)`` is negative, in one piece without holes.
+    function: Callable[..., np.ndarray], box: tuple[float, float, float, float, float, float]
+) -> TriangleMesh: ...
+def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Implicit | TriangleMesh:
+    """Return the body where ``function(x, y)`` is negative, in one piece without holes; in space ``function(x, y, z)``.
+
+    In space it becomes a mesh, see ``mesh.mesh_of_sdf``.
 
     Args:
         function: signed distance to the surface [m], for arrays of points [m]; its size counts within three cells of
             the surface only. If its gradient there is not 1, it is divided by its gradient.
-        box: a rectangle around the body: x0, x1, y0, y1 [m].
+        box: a rectangle or a box around the body: x0, x1, y0, y1, and z0, z1 in space [m].
 
     Raises:
-        InvalidDesign: the function is nowhere negative in the box, or negative on its rim.
+        InvalidDesign: the function is nowhere negative in the box, or negative on its rim, or the box has neither four
+            nor six numbers.
     """
-    return Implicit(sdf=function, box=box)
+    if len(box) == 6:
+        return mesh_of_sdf(function, box)
+    if len(box) != 4:
+        raise InvalidDesign(f"the box has {len(box)} numbers; give x0, x1, y0, y1, and z0, z1 in space.")
+    x0, x1, y0, y1 = box
+    return Implicit(sdf=function, box=(x0, x1, y0, y1))
 
 
 def union(one: Solid, other: Solid) -> Implicit:
