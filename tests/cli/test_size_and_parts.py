@@ -49,7 +49,7 @@ def test_what_makes_no_sense_is_refused_in_a_sentence_and_nothing_is_written(wor
         ({"spine_yaw_1": (1380.0, 78.4)}, "spine_yaw_1 gets too warm: in spine_only it passes the 70 °C that are "
          "allowed after 23 min and would reach 78 °C"),
         ({"spine_yaw_1": (1380.0, 78.4), "LF_yaw": (60.0, inf)}, "2 servos get too warm, LF_yaw first: in spine_only "
-         "it passes the 70 °C that are allowed after 1 min and would warm without end"),
+         "it passes the 70 °C that are allowed after 1 min and would never stop warming"),
     ],
 )  # fmt: skip
 def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, said):

@@ -173,7 +173,7 @@ def _own_too_warm(sizing: Sizing) -> list[str]:
     assert winding.heat is not None
     count = len({name for _, name, _, _ in warm})
     who = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
-    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would warm without end"
+    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
     return [
         f"As it is designed, {who}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
         f"{after / 60:.2g} min and {most} if the movement went on for ever."
