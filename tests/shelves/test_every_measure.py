@@ -55,6 +55,7 @@ _ALWAYS_ONE = "In its quick form the robot switches to the best posture on every
 _SHORT = "In its quick form the last cycle is the one before and the first after the disturbance too."
 EXCUSED: Mapping[str, Mapping[str, str]] = {
     "gait_diagram": {
+        "measure: float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] the other way round": _SIZE,
         "_harmonic: values - values.mean() the other way round": "Lag and gain are of quotients of two of these.",
         "_period: load[n:] - load[:-n] the other way round": _SIZE,
         "_period: min(int(1.5 * period / step), len(load) - 2) is max": "The best shift is shorter than both.",

@@ -11,9 +11,10 @@ from matplotlib.patches import Rectangle
 
 from suchus import rotation
 from suchus.design import Robot, layout
+from suchus.figures.gait_diagram import stretches
 from suchus.figures.posture import draw_posture, skeleton
 from suchus.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
-from suchus.metrics import tilt
+from suchus.metrics import loaded, tilt
 from suchus.paper import CLAIMS
 
 _FEEDBACK = {"on": COLOURS["ours"], "off": COLOURS["limbs_only"]}
@@ -325,7 +326,7 @@ def _mark_support(ax: Axes, now: xr.Dataset) -> None:
 
 
 def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
-    """Draw the angles of pelvis, trunk and tail over time, down positive, while it rises and while it lies down.
+    """Draw the angles of pelvis, trunk and tail over time, down positive, and which feet stand, up and down again.
 
     Args:
         robot: who stands up.
@@ -345,22 +346,37 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
         lines.append((f"trunk, {word} pitch joint", one.servo_angle[:, servo], style))
     lines.append(("tail, pitch joint", one.servo_angle[:, place.tail_pitch[0]], {"color": COLOURS["tail"]}))
     with styled():
-        figure, axes = panels(1, 2, width=10.0, height=4.4, sharey=True)
-        for ax, begin, end, zero, title, since in (
-            (axes[0, 0], at - 0.5, up + 2.0, at, "standing up", "time since the crawl stopped [s]"),
-            (axes[0, 1], leave - 2.0, down + 0.5, leave, "sitting down", "time since the stand ended [s]"),
+        figure, axes = panels(2, 2, width=10.0, height=5.4, sharex="col", sharey="row", height_ratios=[3.4, 1.0])
+        for ax, bars, begin, end, zero, title, since in (
+            (*axes[:, 0], at - 0.5, up + 2.0, at, "standing up", "time since the crawl stopped [s]"),
+            (*axes[:, 1], leave - 2.0, down + 0.5, leave, "sitting down", "time since the stand ended [s]"),
         ):
             for label, values, style in lines:
                 part = values.sel(time=slice(begin, end))
                 ax.plot(part.time - zero, np.degrees(part), label=label, **style)
             ax.set_title(title)
-            ax.set_xlabel(since)
             ax.set_xlim(begin - zero, end - zero)
+            _draw_stances(bars, one.sel(time=slice(begin, end)), zero)
+            bars.set_xlabel(since)
         axes[0, 0].set_ylabel("angle, front end or tip down [deg]")
         axes[0, 1].legend(loc="upper right", bbox_to_anchor=(1.0, min(0.93 + 0.07 * (len(lines) - 4), 1.0)))
     return captioned(
         figure,
         "Angles of pelvis, trunk and tail while standing up (left) and sitting down (right), up negative as in the "
         "article. The trunk bends up first, "
-        "then the pelvis pitches up while the trunk straightens; the tail's joint makes room for the pelvis.",
+        "then the pelvis pitches up while the trunk straightens; the tail's joint makes room for the pelvis. Bars: a "
+        "foot stands. The article took its angles and foot phases from a film of an animal; no such film is published "
+        "as numbers, so that none stands beside.",
     )
+
+
+def _draw_stances(ax: Axes, part: xr.Dataset, zero: float) -> None:
+    """Draw a bar wherever a foot stands, over the time since ``zero`` [s]."""
+    legs = [str(leg) for leg in part.leg.values]
+    for row, stands in enumerate(loaded(part).transpose("leg", "time").values):
+        spans = [(begin, end - begin) for begin, end in stretches(part.time.values - zero, stands)]
+        ax.broken_barh(spans, (row - 0.36, 0.72), facecolor=COLOURS["neutral"])
+    ax.set_yticks(range(len(legs)), legs)
+    ax.set_ylim(len(legs) - 0.5, -0.5)
+    ax.tick_params(axis="y", length=0)
+    ax.grid(False)

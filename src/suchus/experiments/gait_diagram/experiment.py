@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 
 from suchus import blueprint
 from suchus.design import Robot, layout
@@ -25,11 +26,17 @@ from suchus.metrics import (
     loaded,
     sensed_phase,
 )
-from suchus.motion import START, Gait, as_table
+from suchus.motion import START, Gait, as_table, intended
 from suchus.paper import CYCLES
 from suchus.robots import ROBOTS
 
 _PARTS = ("spine", "tail")
+_ANIMAL_GAIT = GAITS["animal_walk"]
+_ANIMAL_PHASES = {
+    name: phase - _ANIMAL_GAIT.limb_phases[0]
+    for name, phase in zip(("LF", "RF", "LH", "RH"), _ANIMAL_GAIT.limb_phases, strict=True)
+}
+"""Phase by which each foot of a walking salamander is ahead of its left front one [cycle]."""
 _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 
@@ -42,6 +49,9 @@ class GaitDiagram(Experiment):
     and down those of the pitch joints; their sense is the article's: right and down are positive. A body without a
     tail, or without a trunk that bends, has no track of that part. The commanded cycle is written as a table of servo
     angles, a gait file in which any angle can be changed, the vertical ones too.
+
+    Beside a body of two pairs of limbs stands an animal. No crocodilian's foot phases are published as numbers; those
+    of a filmed salamander are (the gait ``animal_walk``).
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"
@@ -77,7 +87,7 @@ class GaitDiagram(Experiment):
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
         record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
-        commanded = _commanded(self.robot, record)
+        commanded = _commanded(self.robot, record.servo_target.transpose("time", "servo").values)
         for part, bend in commanded.items():
             about = {"units": "rad", "long_name": f"commanded bend of the {part}, right positive"}
             record[f"commanded_{part}"] = ("time", bend, about)
@@ -114,6 +124,9 @@ class GaitDiagram(Experiment):
         if "sensed_tail" in walk:
             bend = walk.sensed_tail.values
             measures["tail_swing_least"] = Measure(float(min(bend.max(), -bend.min())), "rad")
+        if set(legs) == set(_ANIMAL_PHASES):
+            apart = [abs((float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] + 0.5) % 1.0 - 0.5) for leg in legs]
+            measures["animal_phase_apart"] = Measure(max(apart), "cycle")
         return measures | {
             "duty_factor_greatest": Measure(float(duty.max()), "-"),
             "duty_factor_commanded": Measure(float(record.duty_factor), "-"),
@@ -126,7 +139,7 @@ class GaitDiagram(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how what the feet and joints do differs from what is commanded."""
-        return self.told(measures, legs=layout(self.robot).limb_names)
+        return self.told(measures, legs=layout(self.robot).limb_names, animal_duty=_ANIMAL_GAIT.duty_factor)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw commanded and sensed."""
@@ -152,7 +165,8 @@ class GaitDiagram(Experiment):
             "as commanded. Filled: a foot stands, or spine and tail bend to the right; open: they bend to the left. "
             "Below, the lateral angles, then the vertical ones.",
         )
-        return {"gait_diagram": figure}
+        beside = {} if set(legs) != set(_ANIMAL_PHASES) else {"beside_an_animal": _beside(walk, legs)}
+        return {"gait_diagram": figure, **beside}
 
 
 def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
@@ -168,9 +182,51 @@ def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
     }
 
 
-def _commanded(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the commanded angles of those parts that a servo bends [rad]."""
-    place, commanded = layout(robot), record.servo_target.transpose("time", "servo").values
+def _beside(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
+    """Draw the last whole cycle of a walk beside that of the animal, both from where the first leg's phase is zero."""
+    own = walk.limb_phase.isel(leg=0).values
+    last = own[-1] - 1.0
+    cycle = walk.isel(time=np.flatnonzero(own >= last - 1e-9))
+    first = cycle.limb_phase.isel(leg=0).values
+    shift = np.argmin(np.mod(first, 1.0))
+    clock = np.linspace(0.0, 1.0, 101)
+    robot = ROBOTS["salamander"]
+    begin = START + (1.0 - _ANIMAL_GAIT.limb_phases[0]) * _ANIMAL_GAIT.period
+    bends = _commanded(robot, intended(robot, _ANIMAL_GAIT, begin + clock * _ANIMAL_GAIT.period).targets)
+    ahead = np.array([_ANIMAL_PHASES[leg] for leg in legs])[:, None]
+
+    def turned(values: np.ndarray) -> np.ndarray:
+        return np.roll(values[..., :-1], -shift, axis=-1)
+
+    sides = {part: turned(cycle[f"sensed_{part}"].values) for part in _PARTS if f"sensed_{part}" in cycle}
+    ours = GaitTrack(
+        time=np.mod(turned(first), 1.0),
+        legs=legs,
+        stance=turned(loaded(cycle).transpose("leg", "time").values),
+        spine=sides.get("spine"),
+        tail=sides.get("tail"),
+        label="robot",
+    )
+    animal = GaitTrack(
+        time=clock,
+        legs=legs,
+        stance=np.mod(clock + ahead, 1.0) >= 1.0 - _ANIMAL_GAIT.duty_factor,
+        spine=bends["spine"],
+        tail=bends["tail"],
+        label="salamander",
+    )
+    return captioned(
+        gait_diagram([ours, animal], unit="cycle"),
+        "One cycle of the robot, black, by foot pressure and joint angles, beside the mean cycle of a walking "
+        "salamander, Pleurodeles waltl, grey, by its filmed joint angles (Karakasiliotis et al. 2013), where a foot "
+        "that goes forward swings. Both begin with the left front foot's swing. Filled: a foot stands, or spine and "
+        "tail bend to the right; open: they bend to the left.",
+    )
+
+
+def _commanded(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the commanded angles of those parts that a servo bends [rad], of angles of shape (time, servo) [rad]."""
+    place = layout(robot)
     bends: dict[str, np.ndarray] = {}
     if place.trunk_yaw:
         bends["spine"] = -commanded[:, list(place.trunk_yaw)].sum(axis=1)
