@@ -1,21 +1,34 @@
-"""Pictures of flows: vorticity, pressure, and forces over time."""
+"""Pictures and films of flows: vorticity, pressure, what acts on the skin, and forces over time."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite
+from pathlib import Path
 from textwrap import wrap
+from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from suchus.errors import InvalidDesign, UnknownName
 from suchus.figures.data import carry
-from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth
+from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth, span
+from suchus.figures.film import film
 from suchus.figures.style import COLOURS, WIDTH, panels, styled
 from suchus.flow import ALONG_THE_SKIN, Markers, Record, Simulation, SkinMarkers, Surface
 from suchus.flow.pose import speeds
+from suchus.flow.rake import due_after
+from suchus.writing import write
 
 _PIXELS = 900
-_COVERING = 1.5  # width of the dots of a skin, over the side of the patch that the largest stands for
 """About how many pixels the longer side of a field has [-]."""
+_COVERING = 1.5
+"""Width of the dots of a skin, over the side of the patch that the largest stands for [-]."""
+_FILM_DPI = 75
+"""Resolution of a film [dot/inch]: the colours have to be found for every frame."""
 
 
 def _panel(width: float, height: float) -> tuple[Figure, Axes]:
@@ -24,38 +37,126 @@ def _panel(width: float, height: float) -> tuple[Figure, Axes]:
     return figure, axes[0, 0]
 
 
-def _field(sim: Simulation, values: np.ndarray, limit: float, label: str, cmap: str, shift: float) -> Figure:
-    grid = sim.setup.grid
-    wide, high = grid.size
-    with styled(axes__grid=False):
-        figure, axes = _panel(WIDTH, 1.2 + 0.76 * WIDTH * high / wide)
-        x0, y0 = grid.origin[0] + shift * grid.cell, grid.origin[1] + shift * grid.cell
-        extent = (x0, x0 + values.shape[1] * grid.cell, y0, y0 + values.shape[0] * grid.cell)
-        fine = smooth(values, _PIXELS)
-        image = axes.imshow(fine, origin="lower", extent=extent, cmap=cmap, vmin=-limit, vmax=limit)
-        carry(image, values)
-        for body in sim.setup.bodies:
-            edge = sim.surface(body.name).markers
-            axes.add_patch(Polygon(np.column_stack([edge.x, edge.y]), facecolor=SKIN, edgecolor=EDGE, label=body.name))
-        axes.set_xlabel("x [m]")
-        axes.set_ylabel("y [m]")
-        axes.set_title(f"t = {sim.time:.3g} s")
-        figure.colorbar(image, ax=axes, label=label, shrink=0.85, extend="both")
-    return figure
+class _Picture:
+    """A field of a plane flow and the bodies in it, which can be moved on in time."""
+
+    def __init__(self, sim: Simulation, values: np.ndarray, limit: float, label: str, cmap: str, shift: float) -> None:
+        self._cell, wide, high = sim.setup.grid.cell, *sim.setup.grid.size
+        self._origin = np.array(sim.setup.grid.origin) + shift * self._cell
+        with styled(axes__grid=False):
+            self.figure, self._axes = _panel(WIDTH, 1.2 + 0.76 * WIDTH * high / wide)
+            (x0, y0), (rows, columns) = self._origin, values.shape
+            self._image = self._axes.imshow(
+                smooth(values, _PIXELS), origin="lower", cmap=cmap, vmin=-limit, vmax=limit,
+                extent=(x0, x0 + columns * self._cell, y0, y0 + rows * self._cell),
+            )  # fmt: skip
+            self._bodies = [
+                Polygon(edge, facecolor=SKIN, edgecolor=EDGE, label=body.name)
+                for body, edge in zip(sim.setup.bodies, _edges(sim), strict=True)
+            ]
+            for outline in self._bodies:
+                self._axes.add_patch(outline)
+            carry(self._image, values)
+            self._axes.set_xlabel("x [m]")
+            self._axes.set_ylabel("y [m]")
+            self._axes.set_title(f"t = {sim.time:.3g} s", loc="left")
+            self.figure.colorbar(self._image, ax=self._axes, label=label, shrink=0.85, extend="both")
+
+    def move_on(self, time: float, values: np.ndarray, edges: list[np.ndarray]) -> None:
+        """Show another instant."""
+        self._image.set_data(smooth(values, _PIXELS))
+        self._axes.set_title(f"t = {time:.3g} s", loc="left")
+        for body, edge in zip(self._bodies, edges, strict=True):
+            body.set_xy(edge)
+
+
+def _edges(sim: Simulation) -> list[np.ndarray]:
+    """Return the outlines of the bodies in the frame of the grid, each of shape (marker, 2) [m]."""
+    return [sim.surface(body.name).markers.points.T for body in sim.setup.bodies]
+
+
+FieldName = Literal["vorticity", "pressure"]
+_FIELDS: Mapping[FieldName, tuple[str, str, float]] = MappingProxyType(
+    {"vorticity": ("vorticity [1/s]", VORTICITY, 0.5), "pressure": ("pressure [Pa]", PRESSURE, 0.0)}
+)
+
+
+def _of(sim: Simulation, what: FieldName) -> np.ndarray:
+    values: np.ndarray = sim.vorticity if what == "vorticity" else sim.pressure
+    return values
 
 
 def vorticity(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the vorticity, red counter-clockwise; ``limit`` is the end of the scale [1/s]."""
     values = sim.vorticity
-    end = float(np.quantile(np.abs(values), 0.99)) if limit is None else limit
-    return _field(sim, values, max(end, 1e-9), "vorticity [1/s]", VORTICITY, 0.5)
+    return _Picture(sim, values, limit or span(values, 0.99), *_FIELDS["vorticity"]).figure
 
 
 def pressure(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the pressure; ``limit`` is the end of the scale [Pa]."""
     values = sim.pressure
-    end = float(np.quantile(np.abs(values), 0.99)) if limit is None else limit
-    return _field(sim, values, max(end, 1e-9), "pressure [Pa]", PRESSURE, 0.0)
+    return _Picture(sim, values, limit or span(values, 0.99), *_FIELDS["pressure"]).figure
+
+
+@dataclass(slots=True)
+class FieldFilm:
+    """A film of a plane flow, taken during a run: ``sim.run(until, watch=film)``, then ``film.save("eel.gif")``.
+
+    The picture travels with the grid. Vorticity is red counter-clockwise, pressure purple above that of the far water.
+    """
+
+    every: float
+    """Interval of the frames [s]."""
+    what: FieldName = "vorticity"
+    """Which field."""
+    limit: float | None = None
+    """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
+    speed: float = 1.0
+    """Seconds of the flow in a second of the film [-]."""
+    _frames: list[tuple[float, np.ndarray, list[np.ndarray]]] = field(default_factory=list)
+    _due: float = 0.0
+    _sim: Simulation | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in (("every", self.every), ("speed", self.speed)):
+            if not (isfinite(value) and value > 0):
+                raise InvalidDesign(f"{name} of a film is {value}; a positive number is needed.")
+        if self.what not in _FIELDS:
+            raise UnknownName("field", str(self.what), tuple(_FIELDS))
+
+    def __call__(self, sim: Simulation) -> None:
+        """Keep the field and the outlines, if it is time.
+
+        Raises:
+            InvalidDesign: in space.
+        """
+        if sim.setup.grid.axes == 3:
+            raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
+        if sim.time >= self._due:
+            self._due, self._sim = due_after(sim.time, self.every), sim
+            self._frames.append((sim.time, _of(sim, self.what).astype(np.float32), _edges(sim)))
+
+    def save(self, path: Path | str) -> Path:
+        """Write the film as a GIF, which every browser plays, and return its place.
+
+        Raises:
+            InvalidDesign: another ending than .gif, or no run has been watched.
+            Unwritable: it cannot be written.
+        """
+        where = Path(path)
+        if where.suffix.lower() != ".gif":
+            raise InvalidDesign(f"a film is a GIF; give {where.name!r} the ending .gif.")
+        if self._sim is None:
+            raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
+        limit = self.limit or span(np.stack([values for _, values, _ in self._frames]), 0.99)
+        shown = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
+        shown.figure.set_dpi(_FILM_DPI)
+        times = [time for time, _, _ in self._frames]
+        seconds = max(times[-1] - times[0] + self.every, self.every) / self.speed
+        caption = f"{self.what} of a flow from {times[0]:.3g} to {times[-1]:.3g} s"
+        frames = self._frames
+        data = film(shown.figure, lambda i: shown.move_on(*frames[i]), len(frames), seconds=seconds, caption=caption)
+        return write(where, data)
 
 
 def forces(record: Record, body: str | int = 0) -> Figure:
