@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from changed import changes, delayed, put, shaken, swapped, told, walker
 
-from suchus.capture import UnusableTracks, observe
-from suchus.capture.screen import screened
+from suchus.capture import Tracks, UnusableTracks, observe
+from suchus.capture.screen import late, screened
+from suchus.capture.walk import _timed
 
 NEVER_SEEN_LATE = 3  # of the keypoints; frames by which some of them may run late without being found
 
@@ -75,6 +76,30 @@ def test_frames_that_come_late_are_found_on_the_midline_and_at_the_feet(filmed):
         assert found.named
         assert not found.outside
     assert "behind" in found.said
+
+
+def test_three_frames_late_show_in_both_links_of_a_point_that_goes_straight(filmed):
+    """The hip of these animals does not sway, so that neither of its links shows it alone."""
+    for tracks, names in ((filmed.tracks, set()), (delayed(filmed.tracks, "hip", 3), {"hip"})):
+        seen = screened(tracks)
+        timed, clock, _ = _timed(seen.tracks)
+        assert set(late(timed, clock, seen.tracks.time)) == names
+
+
+def test_a_chord_of_a_body_that_bends_between_keypoints_is_not_seen_late():
+    """A body of one curvature whose wave travels: links shorten where it bends, which looks like a lag."""
+    time, along = np.arange(0.0, 6.0, 0.02), np.linspace(0.0, 1.0, 400)
+    heading = 1.1 * np.sin(2 * np.pi * (along - time[:, None]))
+    place = np.stack([np.cumsum(-np.cos(heading), axis=1), np.cumsum(np.sin(heading), axis=1)], axis=-1) / 400
+    place[..., 0] += 0.4 * time[:, None]
+    names = ("snout", "spine_3", "spine_2", "spine_1", "tail_base", "tail_1", "tail_tip")
+    at = place[:, np.linspace(0, 399, len(names)).astype(int)]
+    noise = 5e-4 * np.random.default_rng(3).standard_normal(at.shape)
+    tracks = Tracks(time=time, points=names, position=at + noise, unit="m", source="an eel")
+    seen = screened(tracks)
+    assert not seen.wrong
+    timed, clock, _ = _timed(seen.tracks)
+    assert not late(timed, clock, seen.tracks.time)
 
 
 def test_noise_of_one_keypoint_is_told_from_that_of_all(filmed):
