@@ -12,23 +12,15 @@ from suchus.design.checks import Checks
 from suchus.errors import UnsuitedRobot
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
-from suchus.experiments.salamander.animal_walk import (
-    ANIMAL,
-    PAIRS,
-    Window,
-    advance,
-    beside,
-    stance_forces,
-    steps,
-    waves,
-    weight,
-)
+from suchus.experiments.salamander.animal_walk import PAIRS, beside, steps, waves
 from suchus.experiments.salamander.animal_walk import window as measured_window
 from suchus.experiments.salamander.figure import draw_angles, draw_feet
 from suchus.gaits import GAITS
 from suchus.land import Ground, Run, simulate
 from suchus.metrics import displacement, heading_change
+from suchus.metrics.foot_forces import Window, advance, stance_forces, weight
 from suchus.motion import START, Gait
+from suchus.paper.walking_salamanders import ANIMAL
 from suchus.robots import ROBOTS
 
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
