@@ -92,20 +92,21 @@ def keypoints(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
         record: of one run, without the dimension ``run``.
 
     Raises:
-        UnsuitedRobot: it has not the four limbs and the tail that ``Tracks`` are of.
+        UnsuitedRobot: it has not the trunk and the tail that ``Tracks`` are of, or limbs, but not four.
     """
-    check_needs(robot, ("four_limbs", "trunk", "tail_yaw"), "a made-up film")
+    limbs = layout(robot).limbs
+    check_needs(robot, ("four_limbs", "trunk", "tail_yaw") if limbs else ("trunk", "tail_yaw"), "a made-up film")
     angles = record.joint_angle.values.astype(float)
     place, found, marks = layout(robot), frames(robot, angles), landmarks(robot, angles)
-    front, hind = place.limbs[0].girdle, place.limbs[-1].girdle
-    points = {
-        "snout": marks.snout,
-        "neck": _on(found, place, front.segment, front.at + _NECK * hips_ahead(robot, 0)),
-        "shoulder": _on(found, place, front.segment, front.at),
-    }
+    points = {"snout": marks.snout}
+    if limbs:
+        front, hind = place.limbs[0].girdle, place.limbs[-1].girdle
+        points["neck"] = _on(found, place, front.segment, front.at + _NECK * hips_ahead(robot, 0))
+        points["shoulder"] = _on(found, place, front.segment, front.at)
     spine = [found.places[:, _moved_by(place, place.servos[servo])] for servo in place.trunk_yaw]
     points |= {f"spine_{i}": spine[i - 1] for i in range(len(spine), 0, -1)}
-    points |= {"hip": _on(found, place, hind.segment, hind.at)} | _tail(place, found) | {"tail_tip": marks.tail}
+    points |= {"hip": _on(found, place, hind.segment, hind.at)} if limbs else {}
+    points |= _tail(place, found) | {"tail_tip": marks.tail}
     points |= {limb.name: marks.feet[:, i] for i, limb in enumerate(place.limbs)}
     R, at = rotation.matrix(record.orientation.values.astype(float)), record.position.values.astype(float)
     return {name: at + np.einsum("tij,tj->ti", R, point) for name, point in points.items()}

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 import tyro
+import xarray as xr
 
 from suchus import blueprint
 from suchus.capture import (
@@ -35,11 +36,14 @@ from suchus.cli.run import run_it
 from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
 from suchus.figures import captioned, save
+from suchus.figures.forces import ground_forces_figure, water_forces_figure
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.figures.measured import curvature_figure, strides_figure
 from suchus.figures.overlay import overlay
+from suchus.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, said, walked_forces
 from suchus.gaits import own_gait
 from suchus.motion import Gait, check_limits
+from suchus.progress import Progress
 from suchus.record import check_replaceable, check_writable, write
 from suchus.record import save as save_record
 from suchus.record.tables import COLUMNS, write_tables
@@ -57,6 +61,9 @@ class CaptureOptions:
     """The gait file, by default captured.toml, or none where tables are asked for; its diagram is saved beside it."""
     tables: Path | None = None
     """Folder for what was measured: tables in CSV and NetCDF, every stride and the mean with intervals, and figures."""
+    forces: Path | None = None
+    """Folder for forces in newtons, through the body of --robot in the animal's size: under single feet of a walk, of
+    the water on a swim; tables in CSV and NetCDF with intervals, and a figure."""
     video: Path | None = None
     """The film itself, a video, a GIF or a folder of pictures; with --tables, skeleton and contacts are drawn on it."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -74,6 +81,18 @@ class CaptureOptions:
     animal's own."""
     trunk: float | None = None
     """The animal's length from hip to shoulder [m], for films in pixels, which do not show it."""
+    length: float | None = None
+    """The animal's whole length [m], for the forces of swims in pixels."""
+    medium: Literal["auto", "land", "water"] = "auto"
+    """Whether the animal of --forces walks or swims; auto: it walks if its feet were tracked."""
+    mass: tuple[float, ...] = ()
+    """The animal's mass, or the ends of its range [kg]; with --forces, by default that of the body at its size."""
+    friction: tuple[float, float] = (0.4, 1.0)
+    """Ends of the range of the friction between feet and ground [-]; with --forces."""
+    models: tuple[Rung, ...] = RUNGS
+    """Models of the water that --forces asks: forces section by section, a plane flow, the flow in space (minutes)."""
+    draws: int = DRAWS
+    """Choices of what is not known, by which forces have intervals [-]; with 39 these hold the truth in 95 of 100."""
     tail_share: float | None = None
     """Place along the tail up to which its bend is measured, 1 at the tip; by default the end of what is driven."""
     names: tuple[str, ...] = ()
@@ -106,19 +125,23 @@ def capture(words: Sequence[str]) -> int:
     """
     about = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
     options = parse(CaptureOptions, "suchus capture", words, about)
-    out = options.out or (None if options.tables else Path("captured.toml"))
+    out = options.out or (None if options.tables or options.forces else Path("captured.toml"))
     if options.video and not options.tables:
         raise BadCommand("--video is drawn into the folder of --tables; give that too, as in --tables measured.")
-    if options.tables:
-        check_writable(options.tables)
-        check_replaceable(options.tables)
+    for folder in (options.tables, options.forces):
+        if folder:
+            check_writable(folder)
+            check_replaceable(folder)
+    if options.tables and options.tables == options.forces:
+        raise BadCommand(f"--tables and --forces both name {options.tables}; give each a folder of its own.")
+    unknown = _unknown(options)
     if out:
         if out.suffix != ".toml":
             raise BadCommand(f"the gait goes into a .toml file; --out is {str(out)!r}.")
         check_writable(out.parent)
         check_replaceable(out)
     if is_angle_table(options.tracks):
-        return _play(options, out, _asked(words))
+        return _play(options, out, _asked(words), unknown)
     robot = options.robot
     if out:
         check_needs(robot, NEEDED, "a gait from tracked keypoints")
@@ -129,7 +152,7 @@ def capture(words: Sequence[str]) -> int:
         move("looking for the cycle", 0.3)
         driven = driven_share(robot) if out else 1.0
         walk = observe(tracks, tail_share=driven if options.tail_share is None else options.tail_share)
-        lines, notes, said = summary(walk), walk.notes, list[str]()
+        lines, notes, told = summary(walk), walk.notes, list[str]()
         if out:
             base = options.base or own_gait(robot)
             captured = to_gait(
@@ -146,17 +169,60 @@ def capture(words: Sequence[str]) -> int:
             lines, notes = [captured.timing, *lines], captured.notes
         if options.tables:
             move("measuring", 0.6)
-            said += _measured(walk, tracks, options.tables, options.video)
+            told += _measured(walk, tracks, options.tables, options.video)
+        if options.forces:
+            body = options.robot if _asked(words) or walk.cycle.sizes["leg"] else ROBOTS["swimmer"]
+            told += _forces(walk, body, options, unknown, bars.reporter("forces"))
         if out:
             move("writing", 0.8)
             if options.tables:
                 write_tables(apart, options.tables / "beside_the_robot")
             write_gait(captured, walk, out)
             picture = _draw(walk, out.parent, out.stem)
-            said += beside_lines(apart, robot.name)
-            said += [f"gait: {out}", f"diagram: {picture}", *run_it(robot, _asked(words), out)]
-    print(*lines, *(f"note: {note}" for note in notes), *said, sep="\n")
+            told += beside_lines(apart, robot.name)
+            told += [f"gait: {out}", f"diagram: {picture}", *run_it(robot, _asked(words), out)]
+    print(*lines, *(f"note: {note}" for note in notes), *told, sep="\n")
     return 0
+
+
+def _unknown(options: CaptureOptions) -> Unknown:
+    """Return what the film does not show of the animal, as far as it was said."""
+    mass = options.mass
+    if len(mass) > 2 or (mass and not 0.0 < mass[0] <= mass[-1]):
+        raise BadCommand(
+            f"--mass is {' '.join(map(str, mass))}; one mass above 0 is needed, or two, the lower one first."
+        )
+    return Unknown(mass=(mass[0], mass[-1]) if mass else None, friction=options.friction, draws=options.draws)
+
+
+def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, progress: Progress) -> list[str]:
+    """Compute the forces of a walk or a swim, write them, and return what is said of them."""
+    assert options.forces is not None
+    medium = options.medium
+    if medium == "auto":
+        medium = "land" if walk.cycle.sizes["leg"] else "water"
+    if medium == "water":
+        from suchus.forces.water import swim_gait, swum_forces  # noqa: PLC0415  loads the flow solver
+
+        data = swum_forces(
+            walk, body, rungs=options.models, unknown=unknown, length=options.length, progress=progress
+        )  # fmt: skip
+        lines = _write_forces(data, options.forces)
+        blueprint.write(swim_gait(walk, body), options.forces / "swim.toml")
+        return lines
+    data = walked_forces(
+        walk, body, options.base, unknown=unknown, duty=options.duty, trunk=options.trunk, progress=progress
+    )  # fmt: skip
+    return _write_forces(data, options.forces)
+
+
+def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
+    """Write forces as tables, NetCDF and a figure, and return what is said of them."""
+    write_tables(data, folder)
+    save_record(data, folder / "forces.nc")
+    save(ground_forces_figure(data) if data.attrs["medium"] == "land" else water_forces_figure(data), folder, "forces")
+    open_ends = [f"note: {note}" for note in data.attrs["notes"].splitlines()]
+    return [*said(data), *open_ends, f"forces: {folder}; what each column is stands in {folder / COLUMNS}"]
 
 
 def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> list[str]:
@@ -169,10 +235,10 @@ def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> l
     save(strides_figure(data), folder, "strides")
     if "curvature" in data:
         save(curvature_figure(data), folder, "curvature")
-    said = [f"tables: {folder}, {data.sizes['stride']} strides; what each column is stands in {folder / COLUMNS}"]
+    told = [f"tables: {folder}, {data.sizes['stride']} strides; what each column is stands in {folder / COLUMNS}"]
     if drawn is not None:
-        said.append(f"on the film: {write(folder / 'overlay.gif', drawn)}")
-    return said
+        told.append(f"on the film: {write(folder / 'overlay.gif', drawn)}")
+    return told
 
 
 def _asked(words: Sequence[str]) -> str:
@@ -185,7 +251,7 @@ def _asked(words: Sequence[str]) -> str:
     return ""
 
 
-def _play(options: CaptureOptions, out: Path | None, asked: str) -> int:
+def _play(options: CaptureOptions, out: Path | None, asked: str, unknown: Unknown) -> int:
     """Write the gait that plays a table of joint angles, its tables, say what they are, and return 0."""
     cycle = read_angles(options.tracks)
     gait = to_curves(cycle, options.robot, name=out.stem, period=options.period) if out else None
@@ -196,6 +262,12 @@ def _play(options: CaptureOptions, out: Path | None, asked: str) -> int:
         write_tables(data, options.tables)
         save_record(data, options.tables / "measured.nc")
         print(f"tables: {options.tables}, {data.sizes['joint']} joints over one cycle")
+    if options.forces:
+        with working() as bars:
+            data = played_forces(
+                cycle, options.robot, period=options.period, unknown=unknown, progress=bars.reporter("forces")
+            )  # fmt: skip
+        print(*_write_forces(data, options.forces), sep="\n")
     if out is None or gait is None:
         return 0
     blueprint.write(gait, out)

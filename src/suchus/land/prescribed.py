@@ -95,7 +95,8 @@ def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Datas
         cycles: how many [-].
 
     Returns:
-        Per cycle ``speed`` of the centre of mass forward and ``power`` on the water.
+        Per cycle ``speed`` of the centre of mass forward and ``power`` on the water; over ``phase`` of the last cycle
+        ``last_thrust`` forward and ``last_aside`` to the right, along the first course, and ``last_power``.
     """
     body = _Submerged(robot, lake)
     body.fill(lake.water.density)
@@ -108,18 +109,24 @@ def free_sections(robot: Robot, gait: Gait, lake: Lake, cycles: int) -> xr.Datas
     times = np.arange(cycles * INSTANTS + 1) / INSTANTS / gait.frequency
     swum = solve_ivp(accelerated, (0.0, times[-1]), np.zeros(6), t_eval=times, rtol=1e-6, atol=1e-8,
                      max_step=0.02 / gait.frequency)  # fmt: skip
-    power, centre = np.empty(times.size), np.empty(times.size)
+    power, centre, force = np.empty(times.size), np.empty(times.size), np.empty((times.size, 2))
     for i, (time, state) in enumerate(zip(times, swum.y.T, strict=True)):
         (angle, rate, bend), x, v = joints(float(time)), state[:3], state[3:]
         where, moving = body.qpos(x, angle), body.rates(v, rate)
         root = body.freed(where, moving, body.rates(np.zeros(3), bend))
         body.move(where, moving, body.rates(root, bend))
-        power[i], centre[i] = body.power, body.centre
+        power[i], centre[i], force[i] = body.power, body.centre, body.force[:2]
     means = power[1:].reshape(cycles, INSTANTS).mean(axis=1)
     speed = np.diff(centre[::INSTANTS]) * gait.frequency
     return xr.Dataset(
-        {"speed": ("cycle", speed, {"units": "m/s"}), "power": ("cycle", means, {"units": "W"})},
-        coords={"cycle": np.arange(1, cycles + 1)},
+        {
+            "speed": ("cycle", speed, {"units": "m/s"}),
+            "power": ("cycle", means, {"units": "W"}),
+            "last_thrust": ("phase", force[-INSTANTS:, 0], {"units": "N"}),
+            "last_aside": ("phase", -force[-INSTANTS:, 1], {"units": "N"}),
+            "last_power": ("phase", power[-INSTANTS:], {"units": "W"}),
+        },
+        coords={"cycle": np.arange(1, cycles + 1), "phase": np.arange(1, INSTANTS + 1) / INSTANTS},
     )
 
 

@@ -1,0 +1,70 @@
+"""What forces of a film say, in lines that people read."""
+
+import numpy as np
+import xarray as xr
+
+_STANDS_OUT = (
+    ("speed", ""),
+    ("peak_thrust", "thrust to "),
+    ("peak_aside", "aside to "),
+    ("mean_power", "on the water "),
+)
+
+
+def said(data: xr.Dataset) -> list[str]:
+    """Return what stands out in forces of a film, a line each.
+
+    Args:
+        data: as ``walked_forces``, ``played_forces`` or ``swum_forces`` return it.
+    """
+    return _on_land(data) if data.attrs["medium"] == "land" else _in_water(data)
+
+
+def _interval(data: xr.Dataset, name: str, digits: int = 3) -> str:
+    one = data.sel(quantity=name)
+    unit = str(one.unit.values)
+    return _told(float(one.value), float(one.low), float(one.high), "" if unit == "-" else unit, digits)
+
+
+def _told(value: float, low: float, high: float, unit: str, digits: int = 3) -> str:
+    ends = f" ({low:.{digits}g} to {high:.{digits}g})" if high > low else ""
+    return f"{value:.{digits}g}{ends}{unit and ' '}{unit}"
+
+
+def _on_land(data: xr.Dataset) -> list[str]:
+    lines = [f"body: {data.attrs['body']}'s, {_interval(data, 'length')} long, {_interval(data, 'mass')}"]
+    for pair in ("fore", "hind"):
+        one = data.sel(quantity=f"foot_force_net_{pair}")
+        net, held = (_interval(data, f"foot_force_{name}_{pair}") for name in ("net", "held"))
+        lines.append(
+            f"{pair} feet: at most {net} net, {held} without the strike of touching down; salamanders "
+            f"{float(one.animals):.3f} ± {float(one.animals_spread):.3f}, mean and standard deviation of trials"
+        )
+    lines.append(f"belly and tail carry {_interval(data, 'carried_belly')} and {_interval(data, 'carried_tail')}")
+    if "speed_to_filmed" in data.quantity.values:
+        one, told = data.sel(quantity="speed_to_filmed"), ""
+        if not float(one.low) <= 1.0 <= float(one.high):
+            told = ": it does not walk as the animal does, so that forces along the course are not the animal's"
+        times = _interval(data, "speed_to_filmed")
+        lines.append(f"the body comes {times} times as far in the same time as on the film{told}")
+    return lines
+
+
+def _in_water(data: xr.Dataset) -> list[str]:
+    long, displaced = _interval(data, "length"), _interval(data, "displaced")
+    lines = [f"body: {data.attrs['body']}'s, {long} long, displaces {displaced} of water"]
+    for rung in data.rung.values:
+        one = data.sel(rung=rung)
+        parts = []
+        for name, word in _STANDS_OUT:
+            value, low, high = (float(one[f"{name}{end}"]) for end in ("", "_low", "_high"))
+            parts.append(f"{word}{_told(value, low, high, str(one[name].units))}")
+        lines.append(f"{rung}: {', '.join(parts)}")
+    if "speed_filmed" not in data.quantity.values:
+        return lines
+    film = data.sel(quantity="speed_filmed")
+    near = (data.speed_low.values <= float(film.high)) & (data.speed_high.values >= float(film.low))
+    holds = [str(rung) for rung in data.rung.values[np.asarray(near)]]
+    told = f"within the interval of {' and '.join(holds)}" if holds else "outside the interval of every model"
+    lines.append(f"the film's own speed, {_interval(data, 'speed_filmed')}, is {told}")
+    return lines
