@@ -451,7 +451,7 @@ def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dic
     return found
 
 
-class _Link(NamedTuple):
+class _LaggedLink(NamedTuple):
     """How the distance of two neighbours varies if one of them is seen otherwise late."""
 
     varies: Float[np.ndarray, " lag"]
@@ -496,7 +496,7 @@ class _Lags:
             found[name] = np.stack([one.trend(when) for one in courses], axis=-1) + swings
         return found
 
-    def links(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], _Link]:
+    def links(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], _LaggedLink]:
         """Return how the distance of each pair varies with the lag of its second point; none in too short a film."""
         if len(self._time) < _FRAMES:
             return {}
@@ -509,13 +509,13 @@ class _Lags:
                 mean[j, i], varies[j, i] = np.mean(long), np.var(long)
         return {pair: self._link(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
 
-    def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _Link:
+    def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _LaggedLink:
         residual = [one.residual for name in pair for one in self._courses[name]]
         bent = np.mean([self._bent[name] for name in pair if name in self._bent] or [0.0])  # a chord of what bends
         sways = float(mean[self._now]) * np.hypot(_SKIN, bent / 8)
         noise = sum(float(np.nanvar(one)) for one in residual) / 2 + sways**2
         chord = float((mean[self._now] * bent / 16) ** 2 / noise)
-        return _Link(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
+        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
 
     def _surely(self, varies: np.ndarray, chord: float, gain: float, explains: float) -> tuple[float, float]:
         """Return the lag with which a distance varies least, 0 where that is not sure [s], and what is gained."""
@@ -526,7 +526,7 @@ class _Lags:
         lag = float(self.lags[best])
         return (lag if sure and abs(lag) > _LATE * self._clock.period else 0.0), gained
 
-    def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _Link]) -> dict[str, float]:
+    def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink]) -> dict[str, float]:
         """Return the point within a chain whose lag is sure by both of its links together, if there is one [s].
 
         A point that is late is as far behind the one as behind the other, so that each link alone may leave open what

@@ -219,7 +219,7 @@ def put(
         data[f"{name}{end}"] = (dims, value, {"units": unit, "long_name": f"{meaning}{ending[end]}"})
 
 
-class Table:
+class Quantities:
     """Quantities with their intervals, a row each."""
 
     def __init__(self) -> None:

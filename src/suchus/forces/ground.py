@@ -20,7 +20,7 @@ from suchus.design.ground import Ground
 from suchus.design.scale import scaled
 from suchus.design.servos import with_full_torque, with_servos
 from suchus.errors import OutsideLimits
-from suchus.forces.body import Table, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
+from suchus.forces.body import Quantities, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
 from suchus.gaits import own_gait
 from suchus.land import Run, simulate
 from suchus.metrics import mean_cycle, whole
@@ -315,7 +315,7 @@ def _told(body: Robot, masses: Sequence[float], felt: Sequence[_Felt], film: tup
     for name in ("belly", "tail"):
         carried = np.array([getattr(one, name) for one in felt])
         put(data, f"{name}_bw", ("phase",), carried, ("body weight", f"force of the ground on the {name}, up"))
-    table = Table()
+    table = Quantities()
     table.add("mass", masses, "kg", "of the animal")
     table.add("length", [body.length], "m", "of the whole body")
     if film:
@@ -333,7 +333,7 @@ def _told(body: Robot, masses: Sequence[float], felt: Sequence[_Felt], film: tup
     return data.merge(table.dataset())
 
 
-def _peaks(table: Table, body: Robot, felt: Sequence[_Felt]) -> None:
+def _peaks(table: Quantities, body: Robot, felt: Sequence[_Felt]) -> None:
     """Add what stands out in the forces on fore and hind feet, the mean of left and right, beside the salamanders'."""
     limbs = layout(body).limbs
     for pair, number in (("fore", 0), ("hind", limbs[-1].number)):

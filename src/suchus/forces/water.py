@@ -21,8 +21,22 @@ from suchus.design.physics import WATER_DENSITY
 from suchus.design.pieces import volumes
 from suchus.design.water import Water
 from suchus.errors import UnknownName
+from suchus.flow.immerse import THINNEST
 from suchus.flow.setup import LAYER_CELLS
-from suchus.forces.body import RUNGS, Rung, Table, Unknown, choices, errors, even, middle, put, sized, unsure, widened
+from suchus.forces.body import (
+    RUNGS,
+    Quantities,
+    Rung,
+    Unknown,
+    choices,
+    errors,
+    even,
+    middle,
+    put,
+    sized,
+    unsure,
+    widened,
+)
 from suchus.land.lake import Lake
 from suchus.land.prescribed import free_sections
 from suchus.motion import Gait, swimming_gait
@@ -35,8 +49,8 @@ from suchus.water.swim_setup import ResolvedSwim
 
 THICK = "sections, thick water"
 """Name of the sections in water as thick as that of the flows, beside which these stand."""
-CELLS = {"slice": 80, "space": 56}
-"""Cells per body length of the flows [-]."""
+CELLS = {"slice": 80, "space": 64}
+"""Cells per body length of the flows [-], more where a body is so thin that these do not show it."""
 CYCLES, FLOW_CYCLES = 8, 5
 """Cycles from rest by sections, and in a flow; the last one is looked at [-]."""
 _KINDS = (("thrust", "N", "force of the water, forward"), ("aside", "N", "force of the water, to the right"),
@@ -102,7 +116,7 @@ def swum_forces(
     all_shares = [likely, *choices(names, unknown.draws)]
     gaits = [seen.gait(shares) for shares in all_shares]
     solved = [rung for rung in rungs if rung != "sections"]
-    finer = CELLS | dict(cells or {})
+    finer = {rung: _cells(body, rung) for rung in solved} | dict(cells or {})
     thick = {rung: _viscosity(body, gaits[0], finer[rung]) for rung in solved}
     work = 1 + len(solved) * 4
     found: dict[str, list[_Swum]] = {"sections": []}
@@ -275,6 +289,13 @@ def _viscosity(body: Robot, gait: Gait, cells: int) -> float:
     return 1.01 * speed * (LAYER_CELLS * body.length / cells) ** 2 / body.length
 
 
+def _cells(body: Robot, rung: str) -> int:
+    """Return the cells per body length of a flow: as many as show the body, in a slice as it is thickened."""
+    wide, _ = Outline(body, 65).silhouette
+    needed = 1.02 * THINNEST * body.length / (2.0 * float(np.max(wide)))
+    return CELLS[rung] if rung == "slice" else max(CELLS[rung], int(np.ceil(needed)))
+
+
 def _by_flow(body: Robot, gait: Gait, rung: str, cells: int, viscosity: float, progress: Progress) -> _Swum:
     """Return a swim in a flow; that of a slice as deep as it displaces what the body does."""
     outline = Outline(body, cells + 1)
@@ -332,7 +353,7 @@ def _told(walk: Walk, body: Robot, gait: Gait, found: Mapping[str, Sequence[_Swu
         put(
             data, name, ("rung",), np.abs(forces[:, :, i]).max(axis=-1).T, ("N", f"greatest {name[5:]}, to either side")
         )
-    table = Table()
+    table = Quantities()
     displaces = WATER_DENSITY * sum(volumes(body).values())
     table.add("length", [body.length], "m", "of the body")
     table.add("displaced", [displaces], "kg", "water that the body displaces, and so its mass where it hovers")
@@ -346,7 +367,7 @@ def _told(walk: Walk, body: Robot, gait: Gait, found: Mapping[str, Sequence[_Swu
     return data.merge(_numbers(body, gait, speeds[0], table).dataset())
 
 
-def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Table) -> Table:
+def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> Quantities:
     """Add the numbers by which swims of other sizes are compared, in real water by the first rung."""
     viscosity, length = Water().viscosity, body.length
     outline = Outline(body, 65)
