@@ -71,6 +71,13 @@ def test_what_a_room_exports_is_what_its_reference_names():
         assert set(exported(room)) <= found, room
 
 
+def test_what_the_map_of_the_article_names_stands_in_the_reference():
+    """By itself, or as a part of a class or a module that does; another name would be a dead link of the built site."""
+    there = {name for room in rooms() for name in reference.names(room)} | {f"suchus.{room}" for room in rooms()}
+    found = {one.name for places in article.code_of(papers()).values() for one in places}
+    assert [name for name in sorted(found) if not {name, name.rpartition(".")[0]} & there] == []
+
+
 def test_every_name_of_the_package_has_a_home():
     assert set(reference.top()) == set(suchus.__all__) - {"__version__"}
 

@@ -6,7 +6,7 @@ from suchus.hardware.drive import BusClock, DriveSettings, TickClock, WallClock,
 from suchus.hardware.guard import DriveLimits
 from suchus.hardware.limits import check_commands, check_loads, overloaded
 from suchus.hardware.loads import LoadCase, ServoLoad, cases, loads, loads_of_each, share_at_limit
-from suchus.hardware.log import DriveLog, held
+from suchus.hardware.log import DriveLog, held, hinge_angles
 from suchus.hardware.rig import Rig, RigReading, senses
 from suchus.hardware.servo_map import ServoLine, ServoMap, read_map, straight, write_map
 from suchus.hardware.sizing import ServoFamily, Sizing, fitted, size, with_better
@@ -39,6 +39,7 @@ __all__ = [
     "drive",
     "fitted",
     "held",
+    "hinge_angles",
     "loads",
     "loads_of_each",
     "overloaded",
