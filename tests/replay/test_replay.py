@@ -10,7 +10,9 @@ import pytest
 
 from suchus.design import LEGS
 from suchus.design.ground import Bumps, Ground, Step, Stone, field
-from suchus.errors import IncompatibleRecord
+from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments import EXPERIMENTS
+from suchus.gaits import GAITS
 from suchus.record import ground_text
 from suchus.replay import replay, save
 from suchus.replay.frames import MOST, frames
@@ -42,6 +44,20 @@ def test_positions_are_those_of_the_bodies_to_a_tenth_of_a_millimetre(robot, cra
         assert np.allclose(now.foot_position.values, shown[i, -4:], atol=1e-4)
     turns = read(raw, actor["arrays"]["turns"]).reshape(actor["frames"], -1, 4) / 32767
     assert np.allclose(np.linalg.norm(turns, axis=-1), 1.0, atol=1e-4)
+
+
+def test_every_run_is_shown_and_each_needs_a_name(robot, crawled):
+    for ghost in (None, crawled):
+        meta, _ = opened(replay(crawled, robot, ghost=ghost))
+        assert len(meta["actors"]) == 1 + (ghost is not None)
+        with pytest.raises(InvalidDesign, match=r"of (1|2) runs has (0|1) labels; give each run a name"):
+            replay(crawled, robot, ghost=ghost, labels=("this run",) * (ghost is not None))
+
+
+def test_a_single_gait_of_many_is_replayed_too(crawled):
+    one = replace(EXPERIMENTS["speed_range"], gaits=(GAITS["belly_crawl"],))
+    (shown,) = one._replays([crawled]).values()
+    assert '"label":"belly crawl"' in shown.html
 
 
 def test_the_tail_and_its_load_are_told_so_that_it_can_support(robot, crawled):

@@ -17,6 +17,7 @@ from PIL import Image
 
 from suchus.design import Robot
 from suchus.design.ground import Ground
+from suchus.errors import InvalidDesign
 from suchus.figures import limb_colours, panels, styled, vortices
 from suchus.figures.posture import draw_posture
 from suchus.record import ground_of, versions, write
@@ -49,6 +50,7 @@ def replay(
 
     Raises:
         IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
+        InvalidDesign: there are more runs than labels.
     """
     return rendered("replay.html", record, robot, ghost=ghost, labels=labels, title=title, caption=caption,
                     overlaid=overlaid)  # fmt: skip
@@ -82,8 +84,14 @@ def rendered(
         caption: one or two sentences.
         overlaid: whether run and ghost begin in the same place.
         **more: what else the template names.
+
+    Raises:
+        IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
+        InvalidDesign: there are more runs than labels.
     """
     records = [record, *others, *([] if ghost is None else [ghost])]
+    if len(labels) < len(records):
+        raise InvalidDesign(f"a replay of {len(records)} runs has {len(labels)} labels; give each run a name.")
     runs = [checked(given, robot) for given in records]
     grounds = [ground_of(given) or Ground() for given in records]
     first = frames(runs[0], robot)

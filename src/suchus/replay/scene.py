@@ -80,6 +80,7 @@ def scene(
         "rate": moving[0].rate,
         "bones": len(surface.bones),
         "length": robot.length,
+        "size": max([robot.length, *(2 * girdle.limb.reach for girdle in robot.girdles)]),
         "aside": _BESIDE * robot.length,
         "radii": [limb.girdle.limb.foot.radius for limb in layout(robot).limbs],
         "loaded": LOADED_SHARE * robot.mass * GRAVITY,

@@ -113,7 +113,7 @@ class SpeedRange(Experiment):
             shown[0],
             self.robot,
             ghost=shown[1] if len(shown) > 1 else None,
-            labels=names if len(names) > 1 else (),
+            labels=names,
             title="In a hurry",
             caption=f"At the shortest cycle that was tried: {names[0]}{beside}.",
         )
@@ -336,7 +336,7 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
         handles, labels = axes[0, 0].get_legend_handles_labels()
         models = [Line2D([], [], color=COLOURS["printed"], linewidth=width) for width in (_THICK, _THIN)]
         handles, labels = [*handles, *models, band], [*labels, *servos, f"{_WALKING.who}, high walk"]
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=11)
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=11)
     return captioned(
         figure,
         f"Every gait over its cycle time. Thin: legs with {servos[1]}. The cost of servos whose torque falls "

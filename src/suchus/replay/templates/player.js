@@ -137,7 +137,7 @@
   Object.assign(state, { time: meta.start, forces: true, support: true, tracks: true, follow: true, run: 0,
     compare: meta.chosen || meta.actors.length < 2 ? "hidden" : meta.overlaid ? "over" : "beside" });
   const bodyLength = meta.length; // sizes of marks [m] were chosen for a robot as long as the article's, 1 m
-  const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.length, target: [0, 0, 0.06 * meta.length], moved: [0, 0, 0] };
+  const camera = { azimuth: -0.95, elevation: 0.36, distance: 2.2 * meta.size, target: [0, 0, 0.06 * meta.length], moved: [0, 0, 0] };
   let shown = null;
 
   const actors = meta.actors.map((actor) => {
@@ -428,7 +428,7 @@
   const move = (by) => { camera.moved = add(camera.moved, by); };
   const fitted = () => { // farther on narrow pictures, nearer on wide ones
     const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
-    return meta.length * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.35 : 1.15) / aspect);
+    return meta.size * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.35 : 1.15) / aspect);
   };
   $("time").min = meta.start; $("time").max = end; $("time").step = 1 / meta.rate;
   const choose = (run) => { state.run = run; $("choice").textContent = actors[run].label; $("chosen").setAttribute("aria-valuetext", actors[run].label); redraw(); };
