@@ -15,7 +15,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lighter import lighten
-from pages.stated import keep, kept
+from pages.stated import keep
 from pages.stated import main as write_pages
 from suchus.figures import COLOURS, panels, styled
 from suchus.jobs import conduct_sweep
@@ -38,8 +38,8 @@ FINEST = 128
 """Cells per body length of one swim on the spot more, which what three grids say of a finer one is tried on [-]."""
 SPEEDS = (0.02, 0.05, 0.1, 0.2)
 """Speeds of the tows [m/s]."""
-ANEW = ("half the amplitude", "half the frequency")
-"""Free swims that the experiment ``swim_3d`` has not [-]."""
+FREE_SWIMS = ("half the amplitude", "half the frequency", "whole wave", "trunk only", "tail only", "as printed")
+"""Motions of free swims, in the order of the page."""
 TOWED = "0.1 m/s"
 """Name of the tow that is computed on several grids [-]."""
 WHOLE = "whole wave"
@@ -99,14 +99,15 @@ def motions() -> dict[str, Gait]:
 
 
 def cases() -> list[Case]:
-    """Return every case that is computed here; the other free swims are those that the experiment ``swim_3d`` keeps."""
+    """Return every case."""
     swims = motions()
     whole = swims["whole wave"]
     found = [Case(name=name, kind="held", swim=swim) for name, swim in swims.items()]
     found += [Case(name="whole wave", kind="held", swim=whole, cells=cells) for cells in GRIDS[1:]]
     found += [Case(name=f"{speed:g} m/s", kind="towed", swim=whole, speed=speed) for speed in SPEEDS[::-1]]
     found += [Case(name=TOWED, kind="towed", swim=whole, speed=0.1, cells=cells) for cells in GRIDS[1:]]
-    return found + [Case(name=name, kind="free", swim=swims[name]) for name in ANEW]
+    found += [Case(name=name, kind="free", swim=swims[name]) for name in FREE_SWIMS]
+    return found + [Case(name=WHOLE, kind="free", swim=whole, cells=cells) for cells in GRIDS[1:]]
 
 
 def flowed(case: Case, progress: Progress) -> xr.Dataset:
@@ -258,16 +259,6 @@ def _beside(
     return {quantity: [row[quantity] for row in rows] for quantity in rows[0]}
 
 
-def from_swim_3d(measures: Mapping[str, float]) -> dict[tuple[str, str, int], xr.Dataset]:
-    """Return the free swims that the experiment ``swim_3d`` computed, from its measures, as those that are anew."""
-    keys = {(WHOLE, cells): f"{cells}_cells" for cells in GRIDS}
-    keys |= {(name, GRIDS[0]): name.replace(" ", "_") for name in ("trunk only", "tail only", "as printed")}
-    return {
-        ("free", name, cells): xr.Dataset({q: ("cycle", [measures[f"{q}_{key}"]]) for q in ("speed", "power")})
-        for (name, cells), key in keys.items()
-    }
-
-
 def draw(found: Found) -> Figure:
     """Draw thrust, side force and power of the body that is held over a cycle: the flow and the models."""
     swim, flow = motions()[WHOLE], found["held", WHOLE, GRIDS[0]]
@@ -299,7 +290,6 @@ def main(folder: Path) -> None:
     flows += conduct_sweep("finest", flowed, finest, folder / "finest", progress=_tell)
     asked += finest
     found = {(one.kind, one.name, one.cells): flow for one, flow in zip(asked, flows, strict=True)}
-    found |= from_swim_3d(kept("swim_3d"))
     keep("calibration", judged(stated(found)))
     write_pages([])
     figure = draw(found)

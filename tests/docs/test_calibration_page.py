@@ -37,14 +37,12 @@ def test_the_model_swims_freely_as_is_kept():
     assert (float(swum.speed[-1]), float(swum.power[-1])) == pytest.approx((one["speed"][1], one["power"][1]), rel=1e-3)
 
 
-def test_free_swims_are_those_of_the_experiment():
-    found = calibration.from_swim_3d(kept("swim_3d"))
-    for (_, name, cells), swum in found.items():
-        if cells == calibration.GRIDS[0]:
-            assert KEPT["free"][name]["speed"][0] == pytest.approx(float(swum.speed[-1]))
-        else:
-            where = calibration.GRIDS.index(cells)
-            assert KEPT["grids"]["free speed"]["values"][where] == pytest.approx(float(swum.speed[-1]))
+def test_what_is_kept_is_of_the_cases_that_are_asked():
+    cases, coarse = calibration.cases(), calibration.GRIDS[0]
+    for kind in ("held", "free", "towed"):
+        assert [*KEPT[kind]] == [one.name for one in cases if one.kind == kind and one.cells == coarse]
+    assert [one.cells for one in cases if one.kind == "free" and one.cells != coarse] == [*calibration.GRIDS[1:]]
+    assert KEPT["grids"]["free speed"]["values"][0] == KEPT["free"][calibration.WHOLE]["speed"][0]
 
 
 def test_three_grids_foretell_the_fourth_where_the_page_says_so():

@@ -9,16 +9,18 @@ import xarray as xr
 
 from suchus import flow
 from suchus.cli import main
-from suchus.design import layout
+from suchus.coupling.on_joints import floating
+from suchus.design import layout, with_values
 from suchus.design.pieces import pieces
 from suchus.errors import InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments._taken import TAKEN, TakenMidline
-from suchus.experiments.swim_3d.experiment import with_midlines
+from suchus.experiments.swim_3d.experiment import AS_COMMANDED, with_midlines
 from suchus.experiments.swim_3d.figure import draw_tails
 from suchus.figures import caption
 from suchus.flow import grid as grids
 from suchus.hydro.table import column
+from suchus.land.afloat import floats
 from suchus.progress import silent
 from suchus.robots import ROBOTS
 from suchus.water import Outline, displaced, fit, printed_wave, undulation
@@ -211,13 +213,14 @@ def bent():
 
 
 def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
-    without = [name for name, *_ in ASKED._runs(MOTION, MOTION)]
-    runs = ASKED._runs(MOTION, MOTION, bent())
-    added = [one for one in runs if one[0] not in without]
-    assert [name for name, *_ in added] == list(TAKEN)
-    for _, motion, setting in added:
-        assert setting == next(setting for name, _, setting in runs if name == "trunk only")
-        check_resolved_swim(ROBOT, motion, setting)
+    without = [name for name, _ in ASKED._runs(MOTION, MOTION)]
+    runs = dict(ASKED._runs(MOTION, MOTION, bent()))
+    added = {name: item for name, item in runs.items() if name not in without}
+    assert [*added] == list(TAKEN)
+    for item in added.values():
+        assert item.setting == runs["trunk only"].setting
+        assert not item.joints
+        check_resolved_swim(ROBOT, item.motion, item.setting)
     m = made(bent())
     assert m["speed_trunk_and_tail_as_taken"] == 0.03
     assert m["speed_tail_only_as_taken"] == -0.01
@@ -227,6 +230,25 @@ def test_midlines_as_taken_swim_beside_those_commanded(monkeypatch):
     assert "0.1 m high" in told
     assert "taken" not in ASKED.explain(made()).replace("taken together", "")
     assert not any("taken" in name for name in made())
+
+
+def test_the_robots_own_joints_move_it_unless_it_is_said():
+    own = dict(ASKED._runs(MOTION, MOTION))
+    assert {name for name, item in own.items() if not item.joints} == {"held", AS_COMMANDED}
+    assert own[AS_COMMANDED].setting == own["trunk only"].setting
+    commanded = dict(replace(ASKED, joints=False)._runs(MOTION, MOTION))
+    assert [*commanded] == [name for name in own if name != AS_COMMANDED]
+    assert not any(item.joints for item in commanded.values())
+    assert own["96 cells"] == commanded["96 cells"]._replace(joints=True)
+
+
+def test_a_robot_that_sinks_gets_the_foam_that_carries_it_and_others_stay_as_they_are():
+    carried = floating(ROBOT)
+    assert floats(carried)
+    assert carried == with_values(ROBOT, {"hull": carried.hull})
+    assert floating(carried) is carried
+    heavy = with_values(carried, {"hull": replace(carried.hull, foam=carried.hull.foam[:1])})
+    assert floating(heavy) == carried
 
 
 def test_the_midlines_are_asked_for_only_if_they_are_to_swim(monkeypatch):
@@ -250,23 +272,26 @@ def one(speed, *, power=2.0, weight=20.0):
             "speed": ("cycle", speed, {"units": "m/s"}),
             "thrust": ("cycle", [0.3] * count, {"units": "N"}),
             "power": ("cycle", [power] * count, {"units": "W"}),
+            "servo_power": ("cycle", [2 * power] * count, {"units": "W"}),
             "servo_torque": (("moment", "servo"), [[0.2, -0.1], [-0.5, 0.1]], {"units": "N m"}),
             "servo_limit": ("servo", [2.5, 1.0], {"units": "N m"}),
             **{name: ((), value) for name, value in {
                 "swing": 0.2, "head_yaw": 0.1, "weight": weight, "wave_speed": 1.0, "thin": 0.5, "steps": 9.0,
-                "million_cells": 0.1,
+                "million_cells": 0.1, "tail_spread": 1.5, "coupling_residual": 1e-4 * speed[-1], "energy_error": 2e-3,
+                "power_error": 1e-3,
             }.items()},
         },
         coords={"cycle": np.arange(1, count + 1), "servo": ["a", "b"]},
     )  # fmt: skip
 
 
-def swum(handed=()):
+def swum(handed=(), *, joints=True):
     """The record of swims by hand."""
-    asked = replace(ASKED, cells=(68, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,))
+    asked = replace(ASKED, cells=(68, 96), cycles=2, compared_cycles=2, tail_heights=(0.1,), joints=joints)
     swims = {"68 cells": one([0.01, 0.02]), "96 cells": one([0.02, 0.04], power=1.0), "held": one([0.0, 0.0]),
              "trunk only": one([0.0, 0.01]), "tail only": one([0.0, 0.005]), "as printed": one([0.0, -0.01]),
-             "limbs folded": one([0.01, 0.015], weight=25.0), "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
+             "as commanded": one([0.02, 0.03], power=1.5), "limbs folded": one([0.01, 0.015], weight=25.0),
+             "tail 0.1 m": one([0.02, 0.06], weight=30.0)}  # fmt: skip
     models = ("model", [0.05, 0.04])
     beside = xr.Dataset(
         {"slice_speed": ("cycle", [0.1, 0.4]), "model_speed": models, "model_power": models, "model_thrust": models,
@@ -297,6 +322,21 @@ def test_measures_are_of_the_finest_grid_and_its_last_cycle():
     assert m["servo_load_peak_b"] == pytest.approx(0.1)
 
 
+def test_what_the_joints_did_and_how_well_they_came_to_terms():
+    m = made()
+    assert (m["servo_power"], m["tail_spread"]) == (2.0, 1.5)
+    assert m["coupling_residual"] == pytest.approx(6e-6)  # the greatest, that of the highest tail
+    assert m["speed_as_commanded"] == 0.03
+    told = ASKED.explain(m)
+    assert "1.5 times as far as their mean" in told
+    assert "it swims 30.0 mm/s with 1.50 W on the grid where its own joints make 20.0 mm/s with 2.00 W" in told
+    commanded = {
+        name: measure.value for name, measure in replace(ASKED, joints=False).measure(swum(joints=False)).items()
+    }
+    assert not {"servo_power", "tail_spread", "energy_error"} & {*commanded}
+    assert "joints" not in ASKED.explain({name: value for name, value in commanded.items() if "commanded" not in name})
+
+
 def test_motions_and_tails_are_compared_on_one_grid():
     m = made()
     assert (m["speed_trunk_and_tail"], m["speed_trunk_only"], m["speed_as_printed"]) == (0.02, 0.01, -0.01)
@@ -318,5 +358,5 @@ def test_the_figure_of_tails_and_motions_is_drawn_from_the_record_alone():
     figure = draw_tails(swum())
     left, right = (sorted(line.get_label() for line in ax.lines if line.get_label()[0] != "_") for ax in figure.axes)
     assert left == ["last third 0.1 m high", "the robot's tail"]
-    assert right == ["as printed", "limbs folded", "tail only", "the robot's tail", "trunk only"]
+    assert right == ["as commanded", "as printed", "limbs folded", "tail only", "the robot's tail", "trunk only"]
     assert "on 68 cells a length at f L² / ν = 7000" in caption(figure)

@@ -61,6 +61,27 @@ def test_courses_of_the_experiment_are_plotted():
     assert VortexFilm(ringed()).curves() == ()
 
 
+@pytest.mark.parametrize(
+    ("cable", "title", "shown"),
+    [
+        (["a", "b", "c", "d"], "angle [degrees] of joints of one cable, from rest", ["a", "c", "d"]),
+        ([], "angle [degrees] of joints, from rest", ["b", "d"]),  # those that move
+    ],
+)
+def test_what_the_joints_took_in_a_flow_is_plotted(cable, title, shown):
+    """Also of a body without a cable, and in the plane."""
+    angles = np.outer([0.0, 0.1, 0.2], [0.0 if not cable else 3.0, 1.0, 0.0 if not cable else 2.0, -1.0])[None]
+    record = ringed().assign(
+        flow_joint_angle=(("flow_run", "flow_time", "joint"), angles),
+        coupling_residual=(("flow_run", "flow_time"), [[0.3, 0.01, 0.002]]),
+    ).assign_coords(flow_run=["whole"], flow_time=[0.0, 0.1, 0.2], joint=list("abcd"))  # fmt: skip
+    record = record.assign_attrs(cable=cable)
+    bends, left = VortexFilm(record).curves()
+    assert (bends.title, list(bends.lines)) == (title, shown)
+    assert bends.lines["d"] == pytest.approx(np.degrees([0.0, -0.1, -0.2]))
+    assert left.lines["left over"] == pytest.approx([0.3, 0.01, 0.002])
+
+
 def nan_line(record):
     return record.assign(film_x=record.film_x.where(record.film_x > 0.5))
 

@@ -76,7 +76,7 @@ class ViewSwimOptions(Where):
     """Options of ``suchus view swim``."""
 
     record: Annotated[Path, tyro.conf.Positional]
-    """The record.nc of the experiment swimming or swim_3d."""
+    """The record.nc of the experiment swimming or swim_3d, or of swim_free in a flow."""
 
 
 def view(words: Sequence[str]) -> int:
@@ -213,7 +213,8 @@ _HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT
        suchus view swim RECORD.nc
 
 Show in the browser a robot that walks live, a record played back, or a swim with the flow around it: a record of
-swimming in the plane from above, one of swim_3d with the surfaces around its vortices.
+swimming in the plane from above, one of swim_3d with the surfaces around its vortices, one of swim_free --water slice
+or space likewise, with the angles that its joints took.
 
   ROBOT, GAIT      names that `suchus list` shows, or TOML files; by default caiman and belly_crawl
   RECORD.nc        the record of an experiment, such as out/displacement/record.nc

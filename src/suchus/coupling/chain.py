@@ -18,6 +18,9 @@ from suchus.design.profile import stations
 from suchus.flow.twist import Twists
 from suchus.water.outline import Outline
 
+RECENT = 8
+"""Postures whose midlines are remembered [-]."""
+
 
 class ChainState(NamedTuple):
     """Coordinates and rates of a chain in the frame of the flow."""
@@ -98,6 +101,19 @@ class MidlineChain:
         return self.outline.joints_at(0.5 * (s[1:] + s[:-1])), self.outline.joints_at(s), at_root[0]
 
     def midline(self, place: np.ndarray) -> Points:
+        """Return the stations in a posture, which is worked out once: a step asks for the same ones often."""
+        known, key = self._recent, place.tobytes()
+        if key not in known:
+            if len(known) == RECENT:
+                del known[next(iter(known))]
+            known[key] = self._line(place)
+        return known[key]
+
+    @cached_property
+    def _recent(self) -> dict[bytes, Points]:
+        return {}
+
+    def _line(self, place: np.ndarray) -> Points:
         """Return the stations in a posture; places and their derivatives follow by summing tangents from the root."""
         middle, station, at_root = self._shares
         step, joints = self.outline.robot.length / (self.outline.stations - 1), place[3:]

@@ -7,9 +7,11 @@ mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a 
 were found last. What the robot was told in its last go, less what the flow says then, is the residual.
 """
 
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
-from math import prod
+from math import isfinite, prod
 from pathlib import Path
 
 import numpy as np
@@ -17,15 +19,19 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus import flow
+from suchus.control import Controller
 from suchus.coupling.chain import ChainState, MidlineChain, Way
 from suchus.coupling.recorded import Series, recorded
 from suchus.design import layout
 from suchus.design.scale import control_period, physics_step
 from suchus.design.water import Water
-from suchus.errors import Diverged, InvalidDesign, OutsideLimits
+from suchus.errors import Diverged, Doubtful, InvalidDesign, OutsideLimits
 from suchus.fault import check_faults
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
+from suchus.land.afloat import check_floats
+from suchus.land.batch import Beginning
+from suchus.land.lake import Lake
 from suchus.land.run import Run, check_pushes
 from suchus.land.stepper import PlaneState, Stepper, Stretch
 from suchus.land.waters import Slice
@@ -48,10 +54,24 @@ LONGEST = 1.25
 own, and while the robot swims it takes some 0.9."""
 FINER = 5
 """Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
+AGAIN = 8
+"""Steps after which the added mass may be computed anew where corrections left over too much [-]."""
 _ROUNDS, _SETTLED = 10, 1e-4
 """Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
 and the change of the acceleration, over its size, at which they have [-]."""
-_CHANGING = ("force", "push", "added", "kept", "computed", "greatest", "strikes", "start_added")
+_CHANGING = (
+    "force",
+    "push",
+    "added",
+    "kept",
+    "computed",
+    "greatest",
+    "strikes",
+    "left",
+    "since",
+    "effort",
+    "start_added",
+)
 """What a swim changes of its own."""
 _WIDER = 1.25
 """Swing that the box has room for, over that of the commanded midline [-]."""
@@ -62,9 +82,11 @@ class Swim:
 
     Args:
         run: with a ``Slice`` or a ``Space``.
-        duration: [s].
+        duration: [s]; infinity keeps no samples of the robot.
         timestep: of the physics [s]; None for the largest that the robot's size and ``FINER`` allow.
         thread_count: of the flow.
+        controller: what decides instead of the run's; None for that one.
+        begin: state of the robot at the beginning; None for the controller's first posture.
 
     Raises:
         InvalidDesign: a gait or a controller that leaves the plane, a robot that sinks, or a grid that cannot carry it.
@@ -72,7 +94,14 @@ class Swim:
     """
 
     def __init__(
-        self, run: Run, duration: float, *, timestep: float | None = None, thread_count: int | None = None
+        self,
+        run: Run,
+        duration: float,
+        *,
+        timestep: float | None = None,
+        thread_count: int | None = None,
+        controller: Controller | None = None,
+        begin: Beginning | None = None,
     ) -> None:
         water = run.solved
         assert water is not None
@@ -83,8 +112,10 @@ class Swim:
         self._times = self.depth if isinstance(water, Slice) else 1.0
         self._swing = self._expected_swing()
         self.timestep = self._physics_step() if timestep is None else timestep
-        self.ticks = round(duration / control_period(run.robot))
-        self.stepper = Stepper(run, self.chain.joints, self.timestep, self.ticks)
+        self.ticks = round(duration / control_period(run.robot)) if isfinite(duration) else 0
+        self.stepper = Stepper(
+            run, self.chain.joints, self.timestep, self.ticks, controller=controller, begin=begin
+        )  # fmt: skip
         self._signs = np.ones(self.chain.size)
         self._signs[:2] = -1.0
         start = self.stepper.now.place
@@ -92,12 +123,15 @@ class Swim:
         self.path = Way(0.0, self._seen(self.stepper.now))
         self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
         self.series = Series()
+        self._effort = 0.0
         self._force = np.zeros(self.chain.size)
         self._push = np.zeros(self.chain.size)
         self._added = np.zeros((self.chain.size, self.chain.size))
         self._kept = self._added
         self._computed: np.ndarray | None = None
-        self._greatest, self._strikes = 0.0, 0
+        self._greatest, self._strikes, self._left = 0.0, 0, 0.0
+        self._since = 0  # steps since the added mass was computed
+        self._stopped: set[str] = set()
         self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
         self.samples = Samples()
         """What a ``watch`` of ``go`` keeps; a checkpoint holds it too."""
@@ -117,6 +151,7 @@ class Swim:
                 'that does; take water="sections".'
             )
         self._check_plane()
+        check_floats(run.robot, Lake(level=run.robot.length))
         for name in ("depth", "pitch"):
             if getattr(run.control, name, None) is not None:
                 raise InvalidDesign(
@@ -184,6 +219,8 @@ class Swim:
     def _setup(self) -> flow.Setup:
         robot, axes = self.run.robot, self._axes
         setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
+        if self.water.beside is not None:
+            setting = replace(setting, beside=self.water.beside)
         grid = setting.grid(robot.length, _WIDER * self._swing, float(self.half_height.max()))
         shape = self.chain.body(self.path, axes, self._least, self.half_height)
         if self.water.limbs:
@@ -222,15 +259,25 @@ class Swim:
         """How far it has come [s]."""
         return self.stepper.time
 
+    @property
+    def effort(self) -> float:
+        """Work of the servos so far, braking counted as much as driving [J]."""
+        return self._effort
+
     def _renew(self) -> None:
-        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin."""
+        """Compute the added mass anew if it is no longer right, and when the wall first has its skin.
+
+        It is not where the body has turned or bent enough, or where corrections leave over more than they may.
+        """
+        self._since += 1
         posture = self.path.at(self.time)
         settled = len(self.series.time) == 1
         if self._computed is not None and not settled:
             bent = np.abs(posture.place[2:] - self._computed[2:]).max()
-            if bent < self.water.renewed:
+            missed = self._left > self.water.tolerance and self._since >= AGAIN
+            if bent < self.water.renewed and not missed:
                 return
-        self._computed = posture.place
+        self._computed, self._since = posture.place, 0
         before = self._added
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         found = self.sim.added_mass(self.run.robot.name, modes)
@@ -309,8 +356,9 @@ class Swim:
             sim.accelerate({name: more})
             found = self._found(posture)
             left, made = self._size(found - told) / self._greatest, made + 1
+        self._effort += stretch.effort
         self._note(stretch, found, began, posture, (first, left), made)
-        self._force, self._push = found, push
+        self._force, self._push, self._left = found, push, left
         self._watch(left)
         self._renew()
 
@@ -348,7 +396,7 @@ class Swim:
         return self._times * out
 
     def _watch(self, left: float) -> None:
-        """Refuse what has left the plane, or does not converge."""
+        """Refuse what has left the plane, or does not converge; say which joints come to the end of their range."""
         name, bend = self.stepper.off_plane
         if abs(bend) > OFF_PLANE:
             raise InvalidDesign(
@@ -356,6 +404,14 @@ class Swim:
                 f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, or "
                 'water="sections".'
             )
+        for joint, angle in self.stepper.at_stops.items():
+            if joint not in self._stopped:
+                self._stopped.add(joint)
+                warnings.warn(
+                    f"at t = {self.time:.4g} s joint {joint} of robot {self.run.robot.name!r} is driven to the end of "
+                    f"its range, {angle:.3g} rad: from then on its stop bears what servo, spring and water do not; a "
+                    "stiffer spring or a slower gait keeps it free.", Doubtful, stacklevel=3,
+                )  # fmt: skip
         self._strikes = self._strikes + 1 if left > LOST or not np.isfinite(left) else 0
         if self._strikes >= PATIENCE or not np.isfinite(left):
             raise Diverged(

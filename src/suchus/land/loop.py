@@ -165,6 +165,11 @@ class Loop:
             mean[:] = part + (1.0 - share) * mean
         self._count()
 
+    def skip(self, periods: int) -> None:
+        """Let control periods pass in which others move the robots that go on."""
+        for _ in range(periods):
+            self._count()
+
     def _count(self) -> None:
         self.tick += 1
         self.clocks += self._going

@@ -157,7 +157,9 @@ class Recorder:
             "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
             "ended": last,
             "cause": np.array(self._batch.cause),
-            "stands_on": np.array([ground_text(None if run.afloat else run.ground) for run in self._runs]),
+            "stands_on": np.array(
+                [ground_text(None if run.afloat or run.solved else run.ground) for run in self._runs]
+            ),
         }
         coordinates: dict[str, Sequence[object] | np.ndarray] = {
             "run": np.arange(len(robots)),

@@ -22,9 +22,10 @@ from jaxtyping import Bool, Float
 from mujoco.batch import SimulationError
 
 from suchus import hydro
-from suchus.control import Command
+from suchus.control import Command, Controller
 from suchus.design import layout
 from suchus.errors import Diverged, UnreadableFile
+from suchus.land.batch import Beginning, SimulationBatch
 from suchus.land.loop import Loop
 from suchus.land.readings import Recorder
 from suchus.land.run import Run
@@ -57,6 +58,8 @@ class Stretch:
     """Work of springs, dampers, friction and joint limits on the joints [J]."""
     energy: float
     """Kinetic energy at its end, the water's not counted [J]."""
+    effort: float
+    """Work of the servos, braking counted as much as driving [J]."""
 
 
 @dataclass(slots=True)
@@ -88,10 +91,23 @@ class Stepper:
         joints: names of those that the water feels beside the root.
         timestep: of the physics [s], a whole part of the control period.
         ticks: control periods for which controller, noise and record are prepared.
+        controller: what decides; None for the one that the run names.
+        begin: state in which it begins; None for the controller's first posture.
     """
 
-    def __init__(self, run: Run, joints: tuple[str, ...], timestep: float, ticks: int) -> None:
-        self._loop = loop = Loop([run], timestep, ticks=ticks + 1)
+    def __init__(
+        self,
+        run: Run,
+        joints: tuple[str, ...],
+        timestep: float,
+        ticks: int,
+        *,
+        controller: Controller | None = None,
+        begin: Beginning | None = None,
+    ) -> None:
+        self._loop = loop = Loop([run], timestep, ticks=ticks + 1, controller=controller)
+        if begin is not None:
+            loop.restart(0, begin, run.faults, run.pushes)
         self.timestep, self.period = timestep, loop.period
         self._per_tick = round(loop.period / timestep)
         self._batch, self._physics = loop.batch, loop.batch.physics
@@ -100,6 +116,14 @@ class Stepper:
         self._ticks = ticks
         self._places = joint_addresses(self.model, joints)
         self.dofs = np.array([*_PLANE, *(int(self.model.joint(name).dofadr[0]) for name in joints)])
+        self._joints = joints
+        hinges = [self.model.joint(name) for name in joints]
+        self._ranges = np.array(
+            [
+                hinge.range if hinge.id in np.flatnonzero(self.model.jnt_limited) else (-np.inf, np.inf)
+                for hinge in hinges
+            ]
+        ).reshape(-1, 2)
         self._other_hinges = [
             name for name in layout(run.robot).hinges
             if name not in joints and name in {hinge.name for hinge in run.robot.axis_hinges}
@@ -151,6 +175,13 @@ class Stepper:
         worst = max(bends, key=lambda name: abs(bends[name]), default="")
         return worst, bends.get(worst, 0.0)
 
+    @property
+    def at_stops(self) -> dict[str, float]:
+        """Joints that are at the end of their range, with their angles [rad]."""
+        angles, (low, high) = self._batch.qpos[0, self._places], self._ranges.T
+        found = np.flatnonzero((angles <= low) | (angles >= high))
+        return {self._joints[k]: float(angles[k]) for k in found}
+
     def mass(self) -> Float[np.ndarray, "coordinate coordinate"]:
         """Return the mass matrix of the coordinates as they are now, without the water's [kg, kg m, kg m2]."""
         self._look()
@@ -160,6 +191,12 @@ class Stepper:
         """Return the centre of mass in the world [m]."""
         self._look()
         return np.array(self._data.subtree_com[1])
+
+    def show(self, batch: SimulationBatch, row: int) -> None:
+        """Let a run of another batch of such robots be where this one is, and feel the same."""
+        self._read()
+        batch.feel(row, self._batch.felt(0))
+        batch.physics.state[row] = self._physics.state[0]
 
     def _look(self) -> None:
         data, model = self._data, self.model
@@ -223,7 +260,8 @@ class Stepper:
         self.steps, self._last = saved.step, saved.last
         self._applied[0] = 0.0
         self._applied[0, self.dofs] = force
-        worked = yielded = 0.0
+        worked = yielded = effort = 0.0
+        sensors, speeds, torques = self._batch.sensors[0], self._batch.velocities, self._batch.torques
         for _ in range(count):
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
@@ -240,11 +278,13 @@ class Stepper:
             way = 0.5 * self.timestep * (before + self._batch.qvel[0])
             own, passive, held = (float(part[0] @ way) for part in self._works)
             worked, yielded = worked + own, yielded + passive + held
+            effort += self.timestep * float(np.abs(sensors[speeds] * sensors[torques]).sum())
             self.steps += 1
         self._look()
         rate = self._batch.qvel[0]
         return Stretch(
-            end=self.now, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate)
+            end=self.now, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate),
+            effort=effort,
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:

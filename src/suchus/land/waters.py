@@ -44,6 +44,8 @@ class _Resolved:
     """In space: height of the last third of the body, as a fin as thick as the tail is; 0 leaves it as it is [m]."""
     limbs: bool = False
     """In space: whether the limbs are in the water, folded straight back along the body."""
+    beside: float | None = None
+    """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
     def _check(self, name: str) -> None:
         with Checks(name, self) as check:
@@ -54,7 +56,9 @@ class _Resolved:
             check.number("renewed", 1e-3, 10.0, "rad")
             check.whole("parts", 4, 48)
             check.number("tail_height", 0.0, 1.0, "m")
-            given = [one for one in ("tail_height", "limbs") if getattr(self, one)]
+            if self.beside is not None:
+                check.number("beside", 0.0, 3.0, "body lengths")
+            given = [one for one in ("tail_height", "limbs", "beside") if getattr(self, one)]
             check.that(name == "space" or not given, f"{name}.{', '.join(given)} is for a body in space: leave it out")
 
 

@@ -21,7 +21,10 @@ from suchus.skin.mesh import Mesh
 _FIELDS = ("vorticity", "pressure")
 _MAPS = {"vorticity": "RdBu_r", "pressure": "PuOr"}
 _CLIPPED = 0.985  # share of the values that the colours resolve; a few at the tail's tip are far beyond
-_TITLES = {"held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed"}
+_TITLES = {
+    "held": "held at the snout", "free": "free, from rest", "printed": "the wave as printed",
+    "field": "on its own joints, from rest",
+}  # fmt: skip
 
 
 def colours(name: str, shares: np.ndarray) -> np.ndarray:
@@ -86,7 +89,7 @@ def films(path: Path) -> tuple[tuple[Film, ...], tuple[PlottedCurve, ...]]:
     if not swims:
         raise IncompatibleRecord(
             f"{path} holds no fields of water: only records of swimming by CFD do, as the record.nc of "
-            "suchus run swimming or suchus run swim_3d."
+            "suchus run swimming, suchus run swim_3d or suchus run swim_free --water slice."
         )
     return tuple(swims), _curves(record)
 
@@ -155,7 +158,24 @@ def _curves(record: xr.Dataset) -> tuple[PlottedCurve, ...]:
     if "arm_speed" in record and set(record.arm_speed.dims) == {"arm", "cycle"} and "arm" in record.coords:
         lines = {str(arm): record.arm_speed.sel(arm=arm).values for arm in record.arm.values[:3]}
         curves.append(PlottedCurve("speed [m/s] of each cycle", np.arange(1.0, record.sizes["cycle"] + 1), lines))
-    return tuple(curves)
+    return (*curves, *_joint_curves(record))
+
+
+def _joint_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
+    """Yield what the joints did in a swim that was solved with its flow, and what was left over between the two."""
+    if "flow_joint_angle" not in record or not {"flow_run", "flow_time", "joint"} <= {*record.coords}:
+        return
+    angles = record.flow_joint_angle.isel(flow_run=0)
+    cable = [str(name) for name in record.attrs.get("cable", ()) if name in record.joint.values]
+    asked = cable or [str(name) for name in record.joint.values if float(np.ptp(angles.sel(joint=name).values)) > 0]
+    if asked:
+        shown = dict.fromkeys(asked[k] for k in (0, len(asked) // 2, -1))
+        lines = {name: np.degrees(angles.sel(joint=name).values) for name in shown}
+        whose = "joints of one cable" if cable else "joints"
+        yield PlottedCurve(f"angle [degrees] of {whose}, from rest", record.flow_time.values, lines)
+    if "coupling_residual" in record:
+        left = record.coupling_residual.isel(flow_run=0).values
+        yield PlottedCurve("force left over between robot and flow [-]", record.flow_time.values, {"left over": left})
 
 
 LARGEST = 60_000
@@ -260,7 +280,9 @@ def _space_curves(record: xr.Dataset) -> Iterator[PlottedCurve]:
     if "servo_torque" in record and set(record.servo_torque.dims) == {"moment", "servo"}:
         share = (record.servo_torque / record.servo_limit).transpose("servo", "moment")
         lines = {str(name): share.values[i] for i, name in enumerate(record.servo.values)}
-        yield PlottedCurve("torque of the water over the servo's limit [-]", record.moment.values, lines)
+        whose = "torque" if record.attrs.get("joints") else "torque of the water"
+        yield PlottedCurve(f"{whose} over the servo's limit [-]", record.moment.values, lines)
+    yield from _joint_curves(record)
 
 
 def vortex_film(path: Path) -> VortexFilm | None:

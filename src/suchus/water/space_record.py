@@ -41,7 +41,6 @@ class FreeInSpace:
         servos = [servo.name for servo in outline.servos]
         means = dict(zip(_PER_CYCLE, cycle_means(series, period, cycles, tuple(_PER_CYCLE)), strict=True))
         track, last = samples.series("track"), series.after((cycles - 1) * period * (1.0 + SLACK))
-        torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
         sign = {"velocity_x": -1.0, "force_x": -1.0, "power": 1.0}  # the body swims towards -x
         data = xr.Dataset(
             {
@@ -50,21 +49,31 @@ class FreeInSpace:
             }
         )
         data = data.assign(
-            moment=("moment", last.time, {"units": "s"}),
-            joint_torque=(("moment", "joint"), torques, {"units": "N m"}),
-            servo_torque=(("moment", "servo"), outline.at_servos(torques), {"units": "N m"}),
             servo_limit=("servo", [robot.servo(name).torque for name in servos], {"units": "N m"}),
             swing=((), float(np.ptp(track["tail"])), {"units": "m", "long_name": "of the tail's tip, peak to peak"}),
             head_yaw=((), 0.5 * float(np.ptp(track["heading"])), {"units": "rad"}),
-            weight=((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
             wave_speed=((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
             thin=((), sim.thin[sim.setup.bodies[0].name], {"units": "1"}),
             steps=((), float(len(last.time)), {"units": "1", "long_name": "in the last cycle"}),
             million_cells=((), float(np.prod(sim.setup.grid.cells)) / 1e6, {"units": "1"}),
             joint_place=("joint", outline.places, {"units": "m"}),
         )
-        data = data.assign_coords(servo=servos, cycle=np.arange(1, cycles + 1)).merge(wake(sim))
+        data = data.assign_coords(servo=servos, cycle=np.arange(1, cycles + 1)).merge(self._loads(sim)).merge(wake(sim))
         return data.merge(self._film.record(samples)).merge(course(sim, samples, period, cycles))
+
+    def _loads(self, sim: flow.Simulation) -> xr.Dataset:
+        """Return the moments of the last cycle at the joints and the servos, and the weight."""
+        outline, setting = self._swim.outline, self._swim.setting
+        last = sim.record.after((setting.cycles - 1) * self._swim.period * (1.0 + SLACK))
+        torques = last.along("torque_behind")[:, 1 + np.argsort(np.argsort(outline.places))]
+        return xr.Dataset(
+            {
+                "moment": ("moment", last.time, {"units": "s"}),
+                "joint_torque": (("moment", "joint"), torques, {"units": "N m"}),
+                "servo_torque": (("moment", "servo"), outline.at_servos(torques), {"units": "N m"}),
+                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
+            }
+        )
 
 
 class TetheredInSpace:

@@ -6,17 +6,18 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from suchus.coupling import swim_on_joints
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._taken import TAKEN, TakenMidline, midlines
-from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake
+from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake, how
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
 from suchus.jobs import at_scheduler, conduct_sweep
@@ -40,26 +41,37 @@ WHOLE = "trunk and tail"
 """The motion that the others are compared with."""
 LIMBS = "limbs folded"
 """The same with the limbs in the water."""
+AS_COMMANDED = "as commanded"
+"""The same along the midline that is commanded."""
+COUPLED = ("coupling_residual", "energy_error", "power_error")
+"""How well robots and water came to terms; see ``coupling.swim_on_joints``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Swim3d(Experiment):
-    """The robot free in three dimensions, from rest, its joints fitted to (20); no article's claim is judged by it.
+    """The robot free in three dimensions, from rest, its servos fitted to (20); no article's claim is judged by it.
 
     The body has elliptic sections as wide and high as the robot's pieces, without limbs unless it is said, and moves in
-    its plane of symmetry: along, to the side and about the vertical. It swims on several grids, in a water so thick
-    that ``reynolds``, the frequency times the length squared over the viscosity, is what the grids carry; the same
-    number holds for the slice of the experiment ``swimming`` and the slender-body models beside it. Nothing here is in
-    newtons or watts of the robot in real water, whose number is ``reynolds_real_water``.
+    its plane of symmetry: along, to the side and about the vertical. Its servos, springs, cables and passive end are
+    solved together with the water, which so decides how a cable's joints share their bend; the robot has its own mass,
+    with foam if it would sink. On one grid it swims along the commanded midline too, as heavy as the water that it
+    displaces: ``speed_as_commanded``; with ``joints`` False all swims are of that kind. It swims on several grids, in a
+    water so thick that ``reynolds``, the frequency times the length squared over the viscosity, is what the grids
+    carry; the same number holds for the slice of the experiment ``swimming`` and the slender-body models beside it,
+    which are commanded. Nothing here is in newtons or watts of the robot in real water, whose number is
+    ``reynolds_real_water``.
 
     ``speed`` is the mean of the last cycle on the finest grid and ``speed_gain`` by how much that is above the cycle
     before: a body so light for its power takes tens of cycles to its last speed. ``speed_over_grids`` is by how much
     the finest grid is faster than the next coarser one in the same cycle. ``thrust_held`` is the mean force forward on
-    a body that sways and turns but is kept from moving on. ``servo_load_peak`` is the greatest torque that the water
-    alone asks of a servo, over its limit. Trunk only, tail only, the printed direction, the body with its limbs folded
-    straight back and higher tails swim on ``compared_cells``. With ``taken`` the midlines that the same commands give
-    in six degrees of freedom at the surface, where the water distributes the cable's bend among its joints, swim there
-    as further conditions, joint by joint; of these midlines only yaw counts.
+    a body that sways and turns as commanded but is kept from moving on. ``power`` is that on the water, ``servo_power``
+    that of the servos, ``tail_spread`` the largest amplitude of a cable's joint over their mean, ``servo_load_peak``
+    the greatest torque of a servo over its limit: its own, or that which the water alone asks of it along a commanded
+    midline. ``coupling_residual`` is the greatest force that a step of any swim left over between robot and water after
+    the first cycle, ``energy_error`` what is missing in a robot's balance of energy. Trunk only, tail only, the printed
+    direction, the body with its limbs folded straight back and higher tails swim on ``compared_cells``. With ``taken``
+    the midlines that the same commands give in six degrees of freedom at the surface, where the water distributes the
+    cable's bend among its joints, swim there as further conditions, joint by joint; of these midlines only yaw counts.
     """
 
     title = "How fast does the robot's own body swim in three dimensions, and what does a higher tail change?"
@@ -77,6 +89,9 @@ class Swim3d(Experiment):
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
+    joints: bool = True
+    """Whether the robot's own servos, springs and cables move the body, solved together with the water; False: it
+    follows the commanded midline."""
     reading: str = "I"
     """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
     frequency: float = 1.0
@@ -138,7 +153,7 @@ class Swim3d(Experiment):
     def quick(self) -> "Swim3d":
         """A coarse grid, a thick water, two cycles."""
         return replace(
-            self, cells=(56,), compared_cells=56, slice_cells=40, cycles=2, compared_cycles=2, reynolds=3000.0,
+            self, cells=(54,), compared_cells=54, slice_cells=40, cycles=2, compared_cycles=2, reynolds=2500.0,
             tail_heights=(), frames=4, jobs=1,
         )  # fmt: skip
 
@@ -151,10 +166,10 @@ class Swim3d(Experiment):
         ours, printed = (self._motion(sign) for sign in (-1, 1))
         bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
         runs = self._runs(ours, printed, bent)
-        for _, motion, setting in runs:
-            check_resolved_swim(self.robot, motion, setting)
+        for _, item in runs:
+            check_resolved_swim(self.robot, item.motion, item.setting)
         check_resolved_swim(self.robot, ours, self._slice)
-        items = [(motion, setting) for _, motion, setting in runs]
+        items = [item for _, item in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
             found = conduct_sweep(
                 self.name(), partial(swum_in_space, self.robot), items, Path(folder) / "swims", client=client,
@@ -162,7 +177,7 @@ class Swim3d(Experiment):
                 local=partial(_swum_here, self.robot, self.keep),
             )  # fmt: skip
         beside = self._beside(ours, staged(progress, "the slice", 0.9, 0.95))
-        swims = {name: swum for (name, *_), swum in zip(runs, found, strict=True)}
+        swims = {name: swum for (name, _), swum in zip(runs, found, strict=True)}
         record = self.recorded(swims, with_midlines(beside, bent))
         film = film_vortices(record, staged(progress, "the film", 0.95, 1.0))
         kept = all_kept(self.keep, ["slice", *map(_kept_as, items)])
@@ -173,11 +188,15 @@ class Swim3d(Experiment):
         grids = [swims[f"{cells} cells"] for cells in self.cells]
         whole = swims.get("compared", swims.get(f"{self.compared_cells} cells"))
         assert whole is not None
-        names = [name for name in ("trunk only", "tail only", "as printed", LIMBS, *TAKEN) if name in swims]
+        arms = ("trunk only", "tail only", "as printed", AS_COMMANDED, LIMBS, *TAKEN)
+        names = [name for name in arms if name in swims]
         tails = {f"tail {high:g} m": high for high in self.tail_heights}
         compared = {WHOLE: whole, **{name: swims[name] for name in (*names, *tails)}}
-        finest = grids[-1].drop_vars(("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle"))
+        apart = ("speed", "thrust", "power", "steps", "million_cells", "thin", "cycle", *COUPLED)
+        finest = grids[-1].drop_vars(apart, errors="ignore")
         n, held = self.compared_cycles, swims["held"]
+        coupled = [one for one in {id(one): one for one in (*grids, *compared.values())}.values() if COUPLED[0] in one]
+        terms = {name: ("own", [float(one[name]) for one in coupled], {"units": "1"}) for name in COUPLED if coupled}
         speeds, powers = ([one[name].values[:n] for one in compared.values()] for name in ("speed", "power"))
         data = xr.Dataset(
             {
@@ -193,11 +212,12 @@ class Swim3d(Experiment):
                 "held_power": ((), float(held.power[-1]), {"units": "W"}),
                 "compared_cells": ((), float(self.compared_cells), {"units": "1"}),
                 "reynolds": ((), self.reynolds, {"units": "1"}),
+                **terms,
             },
             coords={"cells": ("grid", list(self.cells)), "compared": list(compared),
                     "cycle": grids[0].cycle.values, "compared_cycle": np.arange(1, n + 1)},
         )  # fmt: skip
-        return data.merge(finest).merge(beside)
+        return data.merge(finest).merge(beside).assign_attrs(joints=int(self.joints))
 
     def _motion(self, sign: int) -> Gait:
         wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
@@ -213,9 +233,7 @@ class Swim3d(Experiment):
         """Grid, water and time of the slice."""
         return SwimSetting(cells=self.slice_cells, viscosity=self.viscosity, cycles=self.cycles)
 
-    def _runs(
-        self, ours: Gait, printed: Gait, bent: Sequence[TakenMidline] = ()
-    ) -> Sequence[tuple[str, Motion, SwimSetting]]:
+    def _runs(self, ours: Gait, printed: Gait, bent: Sequence[TakenMidline] = ()) -> "Sequence[tuple[str, Item]]":
         """Return name, motion, grid and time of every swim in space."""
 
         def setting(cells: int, cycles: int, **other: Any) -> SwimSetting:
@@ -223,21 +241,25 @@ class Swim3d(Experiment):
                 axes=3, cells=cells, viscosity=self.viscosity, cycles=cycles, beside=self.beside, **other
             )
 
+        def swims(name: str, motion: Gait, how: SwimSetting) -> tuple[str, Item]:
+            return name, Item(motion, how, self.joints)
+
         compared = setting(self.compared_cells, self.compared_cycles)
-        runs: list[tuple[str, Motion, SwimSetting]] = [
-            (f"{cells} cells", ours, setting(cells, self.cycles)) for cells in self.cells[:-1]
-        ]
-        runs.append((f"{self.cells[-1]} cells", ours, setting(self.cells[-1], self.cycles, frames=self.frames)))
+        runs = [swims(f"{cells} cells", ours, setting(cells, self.cycles)) for cells in self.cells[:-1]]
+        runs.append(swims(f"{self.cells[-1]} cells", ours, setting(self.cells[-1], self.cycles, frames=self.frames)))
         if self.compared_cells not in self.cells or self.compared_cycles > self.cycles:
-            runs.append(("compared", ours, compared))
-        runs.append(("held", ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT)))
+            runs.append(swims("compared", ours, compared))
+        runs.append(("held", Item(ours, setting(self.compared_cells, min(3, self.compared_cycles), free=ON_THE_SPOT))))
         if self.tail_heights:
             trunk, tail = ours.straightened("tail"), ours.straightened("trunk")
             arms = {"trunk only": trunk, "tail only": tail, "as printed": printed}
-            runs += [(name, motion, compared) for name, motion in arms.items()]
-            runs.append((LIMBS, ours, replace(compared, limbs=True)))
-        runs += [(one.name, one.motion, compared) for one in bent]
-        return runs + [(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights]
+            runs += [swims(name, motion, compared) for name, motion in arms.items()]
+            runs += [(AS_COMMANDED, Item(ours, compared))] * self.joints
+            runs.append(swims(LIMBS, ours, replace(compared, limbs=True)))
+        runs += [(one.name, Item(one.motion, compared)) for one in bent]
+        return runs + [
+            swims(f"tail {high:g} m", ours, replace(compared, tail_height=high)) for high in self.tail_heights
+        ]
 
     def _beside(self, ours: Any, progress: Any) -> xr.Dataset:
         """Return the speed of the slice and of the slender-body models at the same Reynolds number."""
@@ -259,6 +281,7 @@ class Swim3d(Experiment):
             _slice_and_models(record),
             _compared(record),
             _loads(record),
+            _joints(record),
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -273,18 +296,29 @@ class Swim3d(Experiment):
         return figures | ({"swim_3d_tails": draw_tails(record)} if record.sizes["compared"] > 1 else {})
 
 
-Item = tuple[Motion, SwimSetting]
-"""What differs between the swims."""
+class Item(NamedTuple):
+    """What differs between the swims."""
+
+    motion: Motion
+    """What is commanded."""
+    setting: SwimSetting
+    """Grid, water, time, and what moves the body."""
+    joints: bool = False
+    """Whether the robot's own joints do it."""
 
 
-def swum_in_space(robot: Robot, item: Item, progress: Progress) -> xr.Dataset:
+def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path | None = None) -> xr.Dataset:
     """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
-    return resolved_swim(robot, *item, progress=progress)
+    motion, setting, joints = item
+    if joints:
+        assert isinstance(motion, Gait)
+        return swim_on_joints(robot, motion, setting, checkpoint=checkpoint, progress=progress)
+    return resolved_swim(robot, motion, setting, checkpoint=checkpoint, progress=progress)
 
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
     """Return the same, and keep in a folder how far it has come."""
-    return resolved_swim(robot, *item, checkpoint=kept_in(keep, _kept_as(item)), progress=progress)
+    return swum_in_space(robot, item, progress, kept_in(keep, _kept_as(item)))
 
 
 def _kept_as(item: Item) -> str:
@@ -292,10 +326,21 @@ def _kept_as(item: Item) -> str:
     return fingerprint(item)[:16]
 
 
+def _joints(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield what the robot's joints did on the finest grid, and how well all robots came to terms with the water."""
+    if not record.attrs["joints"]:
+        return
+    yield "servo_power", Measure(float(record.servo_power[-1]), "W")
+    if not np.isnan(record.tail_spread):
+        yield "tail_spread", Measure(float(record.tail_spread), "-")
+    for name in COUPLED:
+        yield name, Measure(float(record[name].max()), "-")
+
+
 def _replays(record: xr.Dataset) -> dict[str, Replay]:
     """Return the page on which the body swims through its last cycle on the finest grid, vortices around it."""
     caption = (
-        f"The body of the robot in three dimensions at f L² / ν = {float(record.reynolds):.0f}, on "
+        f"The body of the robot in three dimensions{how(record)} at f L² / ν = {float(record.reynolds):.0f}, on "
         f"{int(record.cells[-1])} cells a length, in its last cycle. Surfaces lie where the second invariant of the "
         f"velocity gradient is {float(record.vortex_level):.3g} 1/s², around vortices."
     )

@@ -13,6 +13,11 @@ from suchus.figures.style import COLOURS, captioned, panels, styled
 _DOTS = ((0, (1, 1.5)), (0, (3, 1, 1, 1)))
 
 
+def how(record: xr.Dataset) -> str:
+    """Return what moves the body, for captions, where it is not the commanded midline."""
+    return ", moved by its own joints," if record.attrs["joints"] else ""
+
+
 def draw_speeds(record: xr.Dataset) -> Figure:
     """Draw the mean speed of each cycle on every grid, beside the slice and the slender-body models.
 
@@ -33,10 +38,13 @@ def draw_speeds(record: xr.Dataset) -> Figure:
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
         ax.set(xlabel="cycle [-]", ylabel="mean speed [mm/s]")
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=11)
+    others = (
+        "the slice and the slender-body models of the round body" + ", which are commanded" * record.attrs["joints"]
+    )
     return captioned(
         figure,
         f"Mean speed of each cycle from rest, at f L² / ν = {float(record.reynolds):.0f}: the robot's body in three "
-        "dimensions on grids of so many cells a length, the slice, and the slender-body models of the round body.",
+        f"dimensions{how(record)} on grids of so many cells a length, and {others}.",
     )
 
 
@@ -117,11 +125,13 @@ def draw_tails(record: xr.Dataset) -> Figure:
             ax.set_xlabel("cycle [-]")
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=11)
         axes[0, 0].set_ylabel("mean speed [mm/s]")
+    right = ["the motions of trunk and tail alone", "the printed direction of (20)", "the limbs folded back"]
+    right += ["the midline that is commanded, where the others are moved by their own joints"] * record.attrs["joints"]
     return captioned(
         figure,
         f"Mean speed of each cycle on {float(record.compared_cells):.0f} cells a length at f L² / ν = "
         f"{float(record.reynolds):.0f}. Left: the last third of the body raised to a fin as thick as the tail. Right: "
-        "the motions of trunk and tail alone, the printed direction of (20), and the limbs folded back."
+        f"{', '.join(right[:-1])}, and {right[-1]}."
         + " Dashed: the midline that the joints take of the same commands in six degrees of freedom."
         * taken,
     )
