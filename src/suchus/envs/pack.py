@@ -14,11 +14,13 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus import rotation
-from suchus.control import Command, Sensed, Standing
+from suchus.control import Standing
 from suchus.control.standing import BALANCE
 from suchus.design import Robot, layout, servo_ranges
 from suchus.design.scale import control_period, scaled
+from suchus.envs.actor import Actor
 from suchus.envs.senses import Observer, turning
+from suchus.envs.tanks import Tanks
 from suchus.envs.task import AnyGoal, Task, Terms, remaining
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
@@ -79,13 +81,15 @@ def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
 
 
 def _afloat(task: Task, model: Any) -> Beginning:
-    """Put a robot on the water in the mean posture of its swimming motion."""
-    assert task.lake is not None  # see ``Task``
+    """Put a robot on the water, or into a flow, in the mean posture of its swimming motion."""
     swim = task.swum
     check_limits(task.robot, swim)
     check_speeds(task.robot, swim)
     servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight
     stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
+    if task.solved is not None:
+        return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
+    assert task.lake is not None  # see ``Task``
     qpos = surfaced(task.body, task.lake, up(task.ground), stands, task.timestep)
     if np.array_equal(qpos, stands):
         raise InvalidDesign(
@@ -168,8 +172,12 @@ class Pack:
         self._turn = task.decision * np.array([task.robot.servo(name).speed for name in layout(task.robot).servos])
         periods = round(task.decision / control_period(task.robot))
         self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs))
-        run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
-        self.loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
+        if task.solved is None:
+            run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
+        else:
+            run = Run(robot=task.body, gait=task.swum, water=task.solved)
+        self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
+        self._tanks = None if task.solved is None else Tanks(run, loop.batch, periods, loop.period)
         self._observer = Observer(task.robot, count, goal=task.goal is not None)
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
@@ -209,7 +217,10 @@ class Pack:
             chance = draw(self.task, random)
             faults = () if chance.broken is None else (chance.broken,)
             pushes = () if chance.push is None else (chance.push,)
-            self.loop.restart(i, off_by(self.task, self._begin, jitter), faults, pushes)
+            at = off_by(self.task, self._begin, jitter)
+            self.loop.restart(i, at, faults, pushes)
+            if self._tanks is not None:
+                self._tanks.restart(i, at, faults, pushes)
             self._actor.target[i], self._turned[i] = self._begin.commanded, 0.0
             self.chances[i], self.faults[i], self.causes[i] = chance, chance.fault, ""
             self._phases[i] = chance.phase
@@ -233,15 +244,19 @@ class Pack:
         shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
         angles = np.clip(self.centre + self.task.span * shares, self._low, self._high)
         target = np.where(self._cranks, self._commanded + self._turn * shares, angles)
-        target = np.where(who[:, None], target, self._commanded)
+        target = np.where(who[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded)
         turned = target - self._commanded
         before, work, far = self.loop.sensors["centre_of_mass"].copy(), np.zeros(self.count), self.remaining
         self.loop.choose(who)
         self._actor.aim(target)
-        for period in range(1, self._actor.periods + 1):
-            self.loop.decide()
-            self.loop.advance(felt=period == self._actor.periods)  # nothing feels the ground in between
-            work += self._servo_power() * self.loop.period
+        if self._tanks is not None:
+            work = self._tanks.act(target, who)
+            self.loop.skip(self._actor.periods)
+        else:
+            for period in range(1, self._actor.periods + 1):
+                self.loop.decide()
+                self.loop.advance(felt=period == self._actor.periods)  # nothing feels the ground in between
+                work += self._servo_power() * self.loop.period
         self._turned = np.where(who[:, None], turned, self._turned)
         return self._terms(who, before, far, work, (turned**2).sum(axis=1))
 
@@ -317,36 +332,6 @@ class Pack:
         tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
         root = self.task.robot.root
         return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
-
-
-class Actor:
-    """The controller of a pack: commanded angles go in a straight line from those of one action to those of the next.
-
-    Args:
-        first: angles in which the robots begin, shape (run, servo) [rad]; written by ``aim``.
-        periods: control periods from one action to the next.
-        limbs: of a robot.
-    """
-
-    def __init__(self, first: Float[np.ndarray, "run servo"], periods: int, limbs: int) -> None:
-        self.target, self.periods = first, periods
-        self._begin, self._passed = first.copy(), 0
-        self._phase = np.zeros((len(first), limbs))
-
-    def rest(self) -> Float[np.ndarray, "run servo"]:
-        """Return the angles in which the robots begin [rad]."""
-        return self.target
-
-    def aim(self, target: Float[np.ndarray, "run servo"]) -> None:
-        """Begin the way to other angles [rad]."""
-        self._begin[:], self.target[:], self._passed = self.target, target, 0
-
-    def command(self, tick: int, sensed: Sensed | None) -> Command:
-        """Return the angles at the end of the next control period."""
-        del tick, sensed
-        self._passed += 1
-        way = self._passed / self.periods
-        return Command(self._begin + way * (self.target - self._begin), self._phase)
 
 
 def draw(task: Task, random: np.random.Generator) -> Chance:

@@ -12,6 +12,7 @@ from suchus.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Ta
 from suchus.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.gaits import GAITS, gait_of
 from suchus.land import Ground, Lake
+from suchus.land.waters import Slice, Space
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 
@@ -76,7 +77,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
     A robot or a gait may be given by its name on the shelf or the path of its file; a robot brings its gait and its
-    size, see ``Task.on``.
+    size, see ``Task.on``. With ``water`` a flow takes the place of the lake.
 
     Raises:
         UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
@@ -92,6 +93,8 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         if name not in names:
             raise UnknownName("field of a task", name, names)
     values = dict(changes)
+    if values.get("water", "sections") != "sections":
+        values.setdefault("lake", None)
     if isinstance(values.get("robot"), (str, Path)):
         values["robot"] = ROBOTS.resolve(values["robot"])
     for name in ("gait", "swim"):
@@ -105,6 +108,7 @@ def chosen(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "breaks": (Breaks, type(None)),
         "pushes": (Pushes, type(None)),
         "lake": (Lake, type(None)),
+        "water": (str, Slice, Space),
         "swim": (Gait, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),
     }

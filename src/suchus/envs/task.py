@@ -28,6 +28,7 @@ from suchus.gaits import GAITS, own_gait, suits
 from suchus.land import Ground, Lake
 from suchus.land.afloat import check_floats
 from suchus.land.lake import check_lake
+from suchus.land.waters import FORMS, Form, Slice, Space
 from suchus.motion import Gait
 from suchus.robots import ROBOTS
 from suchus.water import swim_of
@@ -381,6 +382,10 @@ class Task:
     """The push of each episode; None: no push."""
     lake: Lake | None = None
     """Water in which the robot swims or wades, its level and air fraction numbers; None on dry land."""
+    water: Slice | Space | Form = "sections"
+    """How the water of a ``swimming`` start acts: section by section, that of ``lake``; or a flow that is solved
+    together with each robot, "slice", "space" or with settings. Such a flow has neither surface nor ground, sees the
+    servos that bend the axis sideways alone, and takes some hundred times as long and more."""
     swim: Gait | None = None
     """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20), see ``water.swim_of``."""
     goal: AnyGoal | None = None
@@ -390,6 +395,11 @@ class Task:
     def body(self) -> Robot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else with_servos(self.robot, with_full_torque)
+
+    @property
+    def solved(self) -> Slice | Space | None:
+        """The flow that is solved together with each robot, if any is."""
+        return self.water if isinstance(self.water, Slice | Space) else None
 
     @property
     def period(self) -> float:
@@ -439,6 +449,10 @@ class Task:
         return replace(self, robot=robot, **(changes | ({"gait": gait} if gait is not None else {})))
 
     def __post_init__(self) -> None:
+        if isinstance(self.water, str) and self.water != "sections":
+            if self.water not in FORMS:
+                raise UnknownName("water", self.water, ("sections", *FORMS))
+            object.__setattr__(self, "water", FORMS[self.water]())
         if self.start in NEEDED:
             check_needs(self.robot, NEEDED[self.start], f"a task that begins {self.start}")
         if isinstance(self.goal, Landing):
@@ -454,8 +468,14 @@ class Task:
                 f"task.start is {self.start!r}; {' or '.join(get_args(Start))} is allowed",
             )
             check.that(
-                not (self.start == "swimming" and self.lake is None),
+                not (self.start == "swimming" and self.lake is None and self.solved is None),
                 "task.lake is None; a task that begins swimming needs water: give it a land.Lake",
+            )
+            alone = self.lake is None and self.ground == Ground() and not isinstance(self.goal, Landing)
+            check.that(
+                self.solved is None or (self.start == "swimming" and alone),
+                "task.water is a flow, which has neither surface nor ground: the task must begin swimming, without "
+                'lake, ground or landing; leave them out, or take water="sections"',
             )
             check.number("span", 0.01, 3.2, "rad")
             check.number("decision", period, 100 * period, "s")
@@ -479,6 +499,8 @@ class Task:
             check_water(self.robot, self.lake)
             if self.start == "swimming":
                 check_floats(self.robot, self.lake)
+        if self.solved is not None:
+            check_floats(self.robot, Lake(level=self.robot.length))
         if self.goal is not None:
             self.goal.check(self.ground, self.lake)
 
