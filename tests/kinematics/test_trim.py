@@ -56,7 +56,7 @@ def test_it_hovers_level_and_with_the_air_in_its_foam_it_did_not():
     air_fraction = neutral_air_fraction(ROBOT)
     level, steep = (hydrostatics(one, BACK, air_fraction=air_fraction, heels=3) for one in (ROBOT, IN_FOAM))
     assert abs(level.trim_submerged) < 1e-6
-    assert np.degrees(steep.trim_submerged) > 30.0  # nose up
+    assert np.degrees(steep.trim_submerged) < -30.0  # nose up
     assert level.metacentric_height > 0.004
 
 
@@ -67,7 +67,7 @@ def test_air_that_moves_ahead_raises_the_nose():
             ROBOT, BACK, air_fraction=(air_fraction + moved / front, air_fraction - moved / rear), heels=3
         )
         assert found.volume * 1000.0 == pytest.approx(ROBOT.mass)
-        assert np.sign(found.trim_submerged) == np.sign(moved)
+        assert np.sign(found.trim_submerged) == -np.sign(moved)
         assert abs(found.trim_submerged) > 0.2
 
 

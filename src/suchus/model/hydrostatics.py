@@ -41,9 +41,9 @@ class Hydrostatics:
     draft: float
     """Distance from the surface down to its lowest point, upright; NaN if it sinks or no trim balances it [m]."""
     trim: float
-    """Pitch at rest, upright, nose up positive; NaN if it sinks, or none up to 80 degrees balances it [rad]."""
+    """Pitch at rest, upright, nose down positive; NaN if it sinks, or none up to 80 degrees balances it [rad]."""
     trim_submerged: float
-    """Pitch at which, wholly under water, its centre of buoyancy is above that of mass, nose up positive [rad]."""
+    """Pitch at which, wholly under water, its centre of buoyancy is above that of mass, nose down positive [rad]."""
     metacentric_height: float
     """Transverse: slope of the righting lever where it is upright; under water, the centre of buoyancy over that of
     mass [m]."""
@@ -83,9 +83,9 @@ class _Rigid:
         self.reach = 2.0 * float(robot.length)
         self.sunk = self.volume <= self.mass / density
 
-    def at(self, heel: float, trim: float) -> tuple[np.ndarray, np.ndarray, float]:
+    def at(self, heel: float, rise: float) -> tuple[np.ndarray, np.ndarray, float]:
         """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
-        up = np.array([sin(trim), cos(trim) * sin(heel), cos(trim) * cos(heel)])
+        up = np.array([sin(rise), cos(rise) * sin(heel), cos(rise) * cos(heel)])
         level = self.reach if self.sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
                                                -self.reach, self.reach, xtol=1e-10)  # fmt: skip
         found = self._statics(up, level)
@@ -95,29 +95,30 @@ class _Rigid:
         return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.air_fraction))
 
     def trim_submerged(self) -> float:
-        """Return the pitch at which the centre of buoyancy is above that of mass, wholly under water [rad]."""
+        """Return the pitch at which the centre of buoyancy is above that of mass, under water, nose down [rad]."""
         found = self._statics(np.array([0.0, 0.0, 1.0]), 2.0 * self.reach)
         arm = found[1:4] / found[0] - self.centre
-        return atan2(arm[0], arm[2])
+        return -atan2(arm[0], arm[2]) + 0.0  # no -0
 
     def rest(self, heel: float, near: float) -> tuple[float, float, float]:
-        """Return trim [rad], righting lever and level [m] at a heel; afloat the trim is free, from one nearby on.
+        """Return by how much the nose rises [rad], righting lever and level [m] at a heel; afloat it rises as it likes.
 
-        All three are NaN where no trim up to 80 degrees balances it: it would hang upright in the water.
+        It is looked for from a rise nearby on. All three are NaN where none up to 80 degrees balances it: it would hang
+        upright in the water.
         """
 
-        def along(trim: float) -> float:
-            up, arm, _ = self.at(heel, trim)
+        def along(rise: float) -> float:
+            up, arm, _ = self.at(heel, rise)
             ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
             return float(arm @ ahead)
 
-        trim = 0.0 if self.sunk else _root(along, near)
-        if isnan(trim):
+        rise = 0.0 if self.sunk else _root(along, near)
+        if isnan(rise):
             return nan, nan, nan
-        up, arm, level = self.at(heel, trim)
+        up, arm, level = self.at(heel, rise)
         ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
         left = np.cross(up, ahead / np.linalg.norm(ahead))
-        return trim, -float(arm @ left), level
+        return rise, -float(arm @ left), level
 
 
 def _root(function: Any, near: float) -> float:
@@ -165,15 +166,15 @@ def hydrostatics(
         )
     body = _Rigid(robot, angles, density, fractions)
     floats = body.volume * density > body.mass
-    trim, _, level = body.rest(0.0, 0.0)
+    rise, _, level = body.rest(0.0, 0.0)
     heel = np.linspace(0.0, np.pi, int(heels))
-    lever, near = np.zeros(len(heel)), 0.0 if isnan(trim) else trim
+    lever, near = np.zeros(len(heel)), 0.0 if isnan(rise) else rise
     for i, angle in enumerate(heel):
         balanced, lever[i], _ = body.rest(float(angle), near)
         near = near if isnan(balanced) else balanced
-    near = 0.0 if isnan(trim) else trim
+    near = 0.0 if isnan(rise) else rise
     slope = (body.rest(_SMALL, near)[1] - body.rest(-_SMALL, near)[1]) / (2 * _SMALL)
-    ends = nan if isnan(trim) else _lowest(body, body.at(0.0, trim)[0])
+    ends = nan if isnan(rise) else _lowest(body, body.at(0.0, rise)[0])
     return Hydrostatics(
         mass=body.mass,
         volume=body.volume,
@@ -181,7 +182,7 @@ def hydrostatics(
         missing=body.mass / density - body.volume,
         surplus=body.mass - density * body.volume,
         draft=level - ends if floats else float("nan"),
-        trim=trim if floats else float("nan"),
+        trim=-rise + 0.0 if floats else float("nan"),
         trim_submerged=body.trim_submerged(),
         metacentric_height=float(slope),
         heel=heel,
