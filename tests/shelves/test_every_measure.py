@@ -53,6 +53,11 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_period: load[n:] - load[:-n] the other way round": _SIZE,
         "_period: min(int(1.5 * period / step), len(load) - 2) is max": "The best shift is shorter than both.",
     },
+    "pattern_generator": {
+        "measure: measures['turn_asymmetry'].value - measu ... traight'].value the other way round": _SIZE,
+        "_locked: len(locked) / len(since) the other way round": "In its quick form each start locks: it is one.",
+        "_locked: cycle.dims[0] is the last": "A cycle's index is all that the error of a start is over.",
+    },
     "salamander": {
         "measure: stride[0] is the last": "The last ground's stride is the greatest there with or without the first's.",
         "window: record.period[0] is the last": "All of its runs are of one gait.",
