@@ -53,7 +53,7 @@ class DeathRoll(Experiment):
     trunk: float = radians(60)
     """Amplitude of both bends of the trunk [rad]."""
     tail_lateral: float = radians(60)
-    """Amplitude of the tail's lateral bend [rad]; the faster the roll, the less the speed of the cable's servo allows."""
+    """Amplitude of the tail's lateral bend [rad]; the servo of the cable must be fast enough for it."""
     tail_vertical: float = radians(40)
     """Amplitude of the tail's pitch joint [rad]; the cable's end bends no more than this at the root."""
     cycles: int = 3
