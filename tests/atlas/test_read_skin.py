@@ -41,7 +41,7 @@ def test_the_solver_s_own_reading_of_the_same_swirl_is_worse():
     sim = simulation(cells=16)
     swirl(sim, 3.0)
     marks = sim.surface()
-    own = marks.shear[0] * -marks.markers.normal_y + marks.shear[1] * marks.markers.normal_x
+    own = marks.shear[0] * -marks.markers.normals[1] + marks.shear[1] * marks.markers.normals[0]
     assert np.abs(own / 0.01 - 6.0).max() > 1.5 * np.abs(read_skin(sim).vorticity - 6.0).max()
 
 

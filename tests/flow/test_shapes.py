@@ -33,15 +33,15 @@ def test_distance_is_that_to_the_nearest_marker(shape):
     nearest = np.sqrt(((gx[..., None] - m.x) ** 2 + (gy[..., None] - m.y) ** 2).min(axis=-1))
     near = nearest < 0.4
     assert np.abs(np.abs(field.distance) - nearest)[near].max() < 0.01
-    assert np.hypot(field.normal_x, field.normal_y)[near & (nearest > 1e-3)] == pytest.approx(1, abs=1e-6)
+    assert np.hypot(*field.normal)[near & (nearest > 1e-3)] == pytest.approx(1, abs=1e-6)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_normals_close_and_markers_enclose_the_area(shape):
     m = shape.markers(0.0, STILL, 0.01)
-    assert abs((m.normal_x * m.length).sum()) < 1e-9
-    assert abs((m.normal_y * m.length).sum()) < 1e-9
-    area = 0.5 * ((m.x * m.normal_x + m.y * m.normal_y) * m.length).sum()
+    assert abs((m.normals[0] * m.share).sum()) < 1e-9
+    assert abs((m.normals[1] * m.share).sum()) < 1e-9
+    area = 0.5 * ((m.x * m.normals[0] + m.y * m.normals[1]) * m.share).sum()
     assert area == pytest.approx(shape.mass(0.0).area, rel=0.01)
     assert area > 0
 
@@ -129,10 +129,10 @@ def test_a_turned_midline_is_the_turned_field(angle, px, py):
     m, n = shape.markers(0.2, STILL, 0.05), shape.markers(0.2, pose, 0.05)
     wx, wy = pose.to_world(m.x, m.y)
     assert (n.x, n.y) == (pytest.approx(wx), pytest.approx(wy))
-    vx, vy = pose.turn(m.velocity_x, m.velocity_y)
+    vx, vy = pose.turn(*m.velocities)
     cx, cy = pose.carry(wx, wy)
-    assert n.velocity_x == pytest.approx(vx + cx, abs=1e-9)
-    assert n.velocity_y == pytest.approx(vy + cy, abs=1e-9)
+    assert n.velocities[0] == pytest.approx(vx + cx, abs=1e-9)
+    assert n.velocities[1] == pytest.approx(vy + cy, abs=1e-9)
 
 
 def test_a_blunted_eel_keeps_its_head_and_gets_a_round_tail():

@@ -18,7 +18,7 @@ from suchus.figures.data import carry
 from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth, span
 from suchus.figures.film import film
 from suchus.figures.style import COLOURS, WIDTH, panels, styled
-from suchus.flow import ALONG_THE_SKIN, Markers, Record, Simulation, SkinMarkers, Surface
+from suchus.flow import ALONG_THE_SKIN, Record, Simulation, Surface
 from suchus.flow.pose import speeds
 from suchus.flow.rake import due_after
 from suchus.writing import write
@@ -184,17 +184,17 @@ def skin(sim: Simulation, body: str | None = None) -> Figure:
     """Return pressure and friction along a body's outline or over its skin now, and what is known of their error."""
     surface = sim.surface(body)
     with styled():
-        draw = _over_the_skin if isinstance(surface.markers, SkinMarkers) else _along_the_outline
+        draw = _over_the_skin if sim.setup.grid.axes == 3 else _along_the_outline
         figure: Figure = draw(surface)
         figure.suptitle(f"t = {sim.time:.3g} s", fontsize="medium", x=0.02, ha="left")
         figure.supxlabel("\n".join(wrap(ALONG_THE_SKIN, 110)), fontsize="x-small", x=0.02, ha="left")
     return figure
 
 
-def _along_the_outline(surface: Surface[Markers]) -> Figure:
+def _along_the_outline(surface: Surface) -> Figure:
     m = surface.markers
-    place = np.cumsum(m.length) - m.length / 2
-    friction = surface.shear[1] * m.normal_x - surface.shear[0] * m.normal_y
+    place = np.cumsum(m.share) - m.share / 2
+    friction = surface.shear[1] * m.normals[0] - surface.shear[0] * m.normals[1]
     figure, grid = panels(1, 2, width=WIDTH, height=3.8)
     for axes, values, label in zip(
         grid[0], (surface.pressure, friction), ("pressure [Pa]", "friction, counter-clockwise [Pa]"), strict=True
@@ -204,7 +204,7 @@ def _along_the_outline(surface: Surface[Markers]) -> Figure:
     return figure
 
 
-def _over_the_skin(surface: Surface[SkinMarkers]) -> Figure:
+def _over_the_skin(surface: Surface) -> Figure:
     """Draw both as one looks along y, and from above, each point where it faces who looks."""
     m, friction = surface.markers, speeds(surface.shear)
     most = max(float(np.abs(surface.pressure).max()), 1e-12)

@@ -9,6 +9,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.log import FlowLoads
+from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.mesh import TriangleMesh, from_mesh
 from suchus.flow.midline import Midline, MidlineState, foil
@@ -19,11 +20,11 @@ from suchus.flow.rake import Rake, Sample, line
 from suchus.flow.record import Coefficients, Record
 from suchus.flow.resolution import ALONG_THE_SKIN
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Cylinder, Ellipse, Field, Markers, Plate, Shape, Solid
+from suchus.flow.shape import Cylinder, Ellipse, Field, Plate, Shape, Solid
 from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
-from suchus.flow.solid import Ellipsoid, SkinMarkers, SpaceField, SpaceShape, Sphere
+from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
@@ -69,7 +70,6 @@ __all__ = [
     "Side",
     "Sides",
     "Simulation",
-    "SkinMarkers",
     "Slip",
     "Solid",
     "SpaceField",

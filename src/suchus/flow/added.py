@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from suchus.flow.markers import Markers
 from suchus.flow.pose import TURNS
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
 from suchus.flow.twist import Twists, held_faces, none, part_of, rise
 from suchus.flow.water import Fluid
 
@@ -16,7 +15,7 @@ _LIMIT = 1e-5
 
 
 def added_mass(
-    water: Fluid, markers: Markers | SkinMarkers, about: tuple[float, ...], density: float, body: int = 0,
+    water: Fluid, markers: Markers, about: tuple[float, ...], density: float, body: int = 0,
     wanted: Sequence[bool] | np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Return the added mass for accelerations along each axis and about a point, in the plane of shape (3, 3).
@@ -49,7 +48,7 @@ def added_mass(
 
 
 def generalised_added_mass(
-    water: Fluid, outlines: Sequence[Markers | SkinMarkers], modes: Sequence[Twists], density: float
+    water: Fluid, outlines: Sequence[Markers], modes: Sequence[Twists], density: float
 ) -> np.ndarray:
     """Return the added mass for motions of all bodies together, such as those of joints, shape (mode, mode).
 
@@ -141,7 +140,7 @@ def _work(mode: list[np.ndarray], parts: list[np.ndarray]) -> float:
 
 
 def _rim(
-    water: Fluid, outlines: Sequence[Markers | SkinMarkers], modes: Sequence[Sequence[Twists]],
+    water: Fluid, outlines: Sequence[Markers], modes: Sequence[Sequence[Twists]],
     cut: Sequence[tuple[bool, ...]],
 ) -> np.ndarray:  # fmt: skip
     """Return the mass over the density of the skin that the immersion holds with the bodies, per mode and mode.

@@ -13,7 +13,7 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
-from suchus.flow.shape import Markers
+from suchus.flow.markers import Markers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,12 +71,13 @@ def _pushes(contact: BodyContact, one: Markers, other: Markers) -> np.ndarray:
     k = (one.x > other.x.min() - contact.gap) & (one.x < other.x.max() + contact.gap)
     k &= (one.y > other.y.min() - contact.gap) & (one.y < other.y.max() + contact.gap)
     dx, dy = one.x[k, None] - other.x, one.y[k, None] - other.y
-    half = other.length / 2
-    along = np.clip(dy * other.normal_x - dx * other.normal_y, -half, half)
-    rx, ry = dx + along * other.normal_y, dy - along * other.normal_x
+    half = other.share / 2
+    out_x, out_y = other.normals
+    along = np.clip(dy * out_x - dx * out_y, -half, half)
+    rx, ry = dx + along * out_y, dy - along * out_x
     nearest = np.argmin(rx**2 + ry**2, axis=1)
     here = (np.arange(nearest.size), nearest)
-    nx, ny = other.normal_x[nearest], other.normal_y[nearest]
+    nx, ny = out_x[nearest], out_y[nearest]
     distance = np.copysign(np.hypot(rx[here], ry[here]), rx[here] * nx + ry[here] * ny)
-    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * one.length[k]
+    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * one.share[k]
     return np.stack([one.x[k], one.y[k], push * nx, push * ny])

@@ -1,11 +1,11 @@
 # mypy: disable-error-code="no-untyped-def"
 # (the kernels get their types from numba)
-"""Distance, normal and velocity of an ellipsoid in any attitude, painted onto a window in space."""
+"""Distance and normal of an ellipse, and of an ellipsoid in any attitude, painted onto a window in space."""
 
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.compiled import compiled, part, signed, threaded
 
 _STEPS = 12
 """Newton steps to the foot point on an ellipsoid at most [-]: with 8 the distance is right to rounding on a 20:1."""
@@ -82,6 +82,18 @@ def _paint_ellipsoid_point(out, at, away, turn, a, reach, depth):
     n = (np.copysign(nx, away[0]), np.copysign(ny, away[1]), np.copysign(nz, away[2]))
     for d in range(3):
         out[1 + d, q, j, i] = turn[d, 0] * n[0] + turn[d, 1] * n[1] + turn[d, 2] * n[2]
+
+
+@compiled
+def measure_ellipse(out, x, y, a):
+    """Write signed distance and outward normal of an ellipse with half-axes ``a`` at points, shape (3, point)."""
+    for k in range(x.size):
+        px, py = max(abs(x[k]), TINY * a[0]), max(abs(y[k]), TINY * a[1])
+        t = foot_parameter((px, py), a)
+        nx, ny = px / (t + a[0] * a[0]), py / (t + a[1] * a[1])
+        size = 1.0 / np.sqrt(nx * nx + ny * ny)
+        off = (px - a[0] * a[0] * nx) * nx + (py - a[1] * a[1] * ny) * ny
+        out[0, k], out[1, k], out[2, k] = off * size, np.copysign(nx * size, x[k]), np.copysign(ny * size, y[k])
 
 
 @threaded

@@ -3,15 +3,13 @@
 """Forces on bodies: pressure and shear over the skin, and the momentum through a box around them."""
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
 
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, part
 from suchus.flow.grid import Grid
+from suchus.flow.markers import Markers
 from suchus.flow.pose import TURNS
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
 from suchus.flow.water import Fluid
 
 GAP = 1.0
@@ -42,17 +40,14 @@ class Load:
         return self.moment[-1]
 
 
-Skin = TypeVar("Skin", Markers, SkinMarkers)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Surface(Generic[Skin]):
+class Surface:
     """Pressure and friction along a body's outline or over its skin: where the load sits.
 
     ``resolution.ALONG_THE_SKIN`` says how far off they are. For the sum take ``Record.force``.
     """
 
-    markers: Skin
+    markers: Markers
     """Points on the skin, where the values are given [m]."""
     pressure: np.ndarray
     """Pressure, zero on the average along the sides of the domain, shape (marker,) [Pa]."""
@@ -87,7 +82,7 @@ def steps_of(a: np.ndarray) -> np.ndarray:
     return np.array([stride // a.itemsize for stride in reversed(a.strides)])
 
 
-def sample(water: Fluid, markers: Skin, density: float) -> Surface[Skin]:
+def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     """Return pressure and friction at the markers; densities in [kg/m^3]."""
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)

@@ -6,11 +6,12 @@ from functools import lru_cache
 import numpy as np
 
 from suchus.errors import InvalidDesign
+from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
-from suchus.flow.solid import SkinMarkers, SpaceField
+from suchus.flow.solid import SpaceField
 from suchus.flow.trunk import Trunk, in_world
 from suchus.kinds import show
 
@@ -196,7 +197,7 @@ class Limbed(Trunk):
     def _part(self, limb: Capsule) -> int:
         return int(np.searchsorted(self.cuts, limb.at, side="right"))
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points over what is outside of trunk and capsules: those inside stand for no area."""
         spine, frame = self.placed(time, pose)
         skin = self._skin(spine, spacing)
@@ -221,7 +222,7 @@ class Limbed(Trunk):
                 if k != i + 1:
                     inside = limb.distance(one[0], one[1], one[2], spine) < -1e-9 * limb.radius
                     area[inside] = 0.0
-        whole = SkinMarkers(
+        whole = Markers(
             points=np.concatenate(points, axis=1), share=np.concatenate(share),
             velocities=np.concatenate(rates, axis=1), normals=np.concatenate(normals, axis=1),
             spins=np.concatenate(spins, axis=1), part=np.concatenate(part) if part else None,

@@ -8,13 +8,12 @@ import numpy as np
 from suchus.errors import Diverged
 from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
+from suchus.flow.markers import Markers
 from suchus.flow.midline import Midline
 from suchus.flow.momentum import Reaction, contents_of, reaction, skins
 from suchus.flow.pose import Pose, cross
 from suchus.flow.record import COLUMNS, HEAD, PART_COLUMNS, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
 from suchus.flow.trunk import Trunk
 from suchus.flow.water import Fluid
 
@@ -62,7 +61,7 @@ class Log:
     def __post_init__(self) -> None:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
-    def hold(self, water: Fluid, outlines: Sequence[Markers | SkinMarkers]) -> None:
+    def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
         """Note what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
         held = [
@@ -72,7 +71,7 @@ class Log:
         self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *held])
 
     def reactions(
-        self, water: Fluid, outlines: Sequence[Markers | SkinMarkers], about: list[tuple[float, ...]], dt: float,
+        self, water: Fluid, outlines: Sequence[Markers], about: list[tuple[float, ...]], dt: float,
         push: tuple[float, ...], before: np.ndarray,
     ) -> list[list[Reaction]]:  # fmt: skip
         """Return, per body, what the water did to the whole body in the step that just ended, and to its parts.

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from suchus.flow.consistency import Consistency
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
+from suchus.flow.markers import Markers
 
 if TYPE_CHECKING:
     from suchus.flow.simulation import Simulation
@@ -34,7 +33,7 @@ class Snapshot:
     """Rows of the record and of its control volume, and the last row."""
     watched: tuple[Consistency, ...]
     """How rates and places agreed so far."""
-    outlines: tuple[Markers | SkinMarkers, ...]
+    outlines: tuple[Markers, ...]
     """Skins of the bodies."""
 
 

@@ -17,10 +17,11 @@ from scipy.spatial import KDTree
 
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import part, signed, threaded
+from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
-from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape, is_blunt
+from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
 from suchus.isosurface import isosurface
 from suchus.reading import read_mesh
 
@@ -98,7 +99,7 @@ class TriangleMesh(SpaceShape):
         """Return the corners in the world, shape (vertex, 3) [m]."""
         return np.stack(place.place(self.vertices.T), axis=1)
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
         place = pose.along(3)
         corners = self._placed(place)[self.faces]
@@ -113,7 +114,7 @@ class TriangleMesh(SpaceShape):
             share.append(np.repeat(area[some] / count**2, count**2))
             normals.append(np.repeat(across[some] / np.maximum(2 * area[some, None], 1e-300), count**2, axis=0).T)
         at = np.concatenate(points, axis=1)
-        return SkinMarkers(
+        return Markers(
             points=at, share=np.concatenate(share), velocities=np.stack(place.rates(at)),
             normals=np.concatenate(normals, axis=1), spins=np.broadcast_to(place.spins[:, None], at.shape),
         )  # fmt: skip

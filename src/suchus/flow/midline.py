@@ -9,10 +9,11 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from suchus.errors import InvalidDesign
+from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, sections
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Markers, Shape, positive
+from suchus.flow.shape import Field, Shape, positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,7 +206,10 @@ class Midline(Shape):
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
         vx, vy, spin = sections(point, guess, placed.rows, placed.swell)
         part_of = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
-        return Markers(point[0], point[1], normal[0], normal[1], length[edge] / count, vx, vy, spin, s, side, part_of)
+        return Markers(
+            points=point, share=length[edge] / count, velocities=np.stack([vx, vy]), normals=normal, spins=spin[None],
+            part=part_of, station=s, side=side,
+        )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, part, signed
+from suchus.flow.markers import Markers
 from suchus.flow.pose import TURNS
-from suchus.flow.shape import Markers
 from suchus.flow.slab import row_length
-from suchus.flow.solid import SkinMarkers
 
 
 def sums_of(axes: int) -> int:
@@ -145,7 +144,7 @@ def contents(sums, b, mu0, owner, component, place, near, inner):
 
 
 def skins(
-    markers: Markers | SkinMarkers, offset: float, origin: tuple[float, ...], h: float, count: int
+    markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
     """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, part by part.
 

@@ -12,11 +12,11 @@ from suchus.flow.body import Body, cuts, thin_share, window_of
 from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
+from suchus.flow.markers import Markers
 from suchus.flow.pose import speeds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
-from suchus.flow.shape import Markers
 from suchus.flow.sides import Sides
-from suchus.flow.solid import SkinMarkers, SpaceShape
+from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 from suchus.kinds import show
 
@@ -183,7 +183,7 @@ class Setup:
     def layer_error(
         self,
         body: Body | FreeBody,
-        markers: Markers | SkinMarkers,
+        markers: Markers,
         stream: tuple[float, ...],
         time: float,
         *,

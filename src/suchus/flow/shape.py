@@ -6,12 +6,15 @@ Distances are negative inside; normals point into the water.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isfinite
 from typing import ClassVar
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
+from suchus.flow.ellipsoid import measure_ellipse
+from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_outline
 from suchus.flow.pose import Pose
 
@@ -44,59 +47,6 @@ class Field:
     def velocity(self) -> tuple[np.ndarray, ...]:
         """Velocity of the body, along each axis [m/s]."""
         return self.velocity_x, self.velocity_y
-
-
-@dataclass(slots=True)
-class Markers:
-    """Points along the outline, counter-clockwise; arrays of shape (marker,)."""
-
-    x: np.ndarray
-    """Position along x [m]."""
-    y: np.ndarray
-    """Position along y [m]."""
-    normal_x: np.ndarray
-    """Outward normal along x [-]."""
-    normal_y: np.ndarray
-    """Outward normal along y [-]."""
-    length: np.ndarray
-    """Length of outline that the marker stands for [m]."""
-    velocity_x: np.ndarray
-    """Velocity of the surface along x [m/s]."""
-    velocity_y: np.ndarray
-    """Velocity of the surface along y [m/s]."""
-    spin: np.ndarray
-    """Rate at which the surface there turns [rad/s]."""
-    station: np.ndarray
-    """Where along the body: arc length of the midline, or of the outline where there is no midline [m]."""
-    side: np.ndarray
-    """+1 on the left of the midline, -1 on the right, 0 where there is no midline [-]."""
-    part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
-
-    @property
-    def points(self) -> np.ndarray:
-        """Position, shape (2, marker) [m]."""
-        return np.stack([self.x, self.y])
-
-    @property
-    def normals(self) -> np.ndarray:
-        """Outward normal, shape (2, marker) [-]."""
-        return np.stack([self.normal_x, self.normal_y])
-
-    @property
-    def spins(self) -> np.ndarray:
-        """Rate at which the surface there turns about z, shape (1, marker) [rad/s]."""
-        return self.spin[None]
-
-    @property
-    def share(self) -> np.ndarray:
-        """Length of outline that the marker stands for [m]."""
-        return self.length
-
-    @property
-    def velocities(self) -> np.ndarray:
-        """Velocity of the surface, shape (2, marker) [m/s]."""
-        return np.stack([self.velocity_x, self.velocity_y])
 
 
 class Shape(ABC):
@@ -140,6 +90,10 @@ class Shape(ABC):
         return True
 
 
+_ROUGH, _FEWEST = 256, 32
+"""Points by which the length of an outline is found, and those that markers are made of, at least [-]."""
+
+
 def positive(name: str, value: float) -> None:
     """Refuse a length that is not a positive number.
 
@@ -170,26 +124,48 @@ class Solid(Shape):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges."""
-        rough = np.stack(self.outline(256))
-        around = float(np.hypot(*(np.roll(rough, -1, axis=1) - rough)).sum())
-        px, py = self.outline(max(32, int(np.ceil(around / spacing))))
-        qx, qy = np.roll(px, -1), np.roll(py, -1)
-        length = np.hypot(qx - px, qy - py)
-        nx, ny = pose.turn((qy - py) / length, (px - qx) / length)
-        mx, my = pose.to_world((px + qx) / 2, (py + qy) / 2)
-        vx, vy = (np.broadcast_to(v, mx.shape) for v in pose.carry(mx, my))
-        station = np.cumsum(length) - length / 2
-        zero = np.zeros_like(mx)
-        return Markers(mx, my, nx, ny, length, vx, vy, np.full_like(mx, pose.spin), station, zero)
+        middle, normal, length = _edges(self, spacing)
+        points = np.stack(pose.to_world(*middle))
+        return Markers(
+            points=points, share=length, velocities=np.stack(pose.carry(*points)), normals=np.stack(pose.turn(*normal)),
+            spins=np.full((1, length.size), pose.spin), station=np.cumsum(length) - length / 2,
+            side=np.zeros(length.size),
+        )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        x, y = pose.to_world(*self.outline(256))
+        x, y = pose.to_world(*_ring(self, _ROUGH))
         return float(x.min()), float(x.max()), float(y.min()), float(y.max())
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments of the outline's polygon."""
         return of_outline(*self.outline(2048))
+
+
+def _ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return ``count`` points around the outline, which is rigid: they are kept, where the shape can be a key."""
+    try:
+        return _kept_ring(shape, count)
+    except TypeError:
+        return shape.outline(count)
+
+
+@lru_cache(maxsize=64)
+def _kept_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+    x, y = (np.array(line, float) for line in shape.outline(count))
+    x.flags.writeable = y.flags.writeable = False
+    return x, y
+
+
+def _edges(shape: Solid, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return middles, outward normals and lengths of the outline's edges in the body's frame, about evenly spaced."""
+    rough = np.stack(_ring(shape, _ROUGH))
+    around = float(np.hypot(*(np.roll(rough, -1, axis=1) - rough)).sum())
+    here = np.stack(_ring(shape, max(_FEWEST, int(np.ceil(around / spacing)))))
+    following = np.roll(here, -1, axis=1)
+    along = following - here
+    length = np.hypot(*along)
+    return (here + following) / 2, np.stack([along[1], -along[0]]) / length, length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,23 +207,12 @@ class Ellipse(Solid):
         positive("width", self.width)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal, by Newton's method on the foot point's angle."""
-        a, b = self.length / 2, self.width / 2
-        px, py = np.abs(x), np.abs(y)
-        cos, sin = np.full_like(px, 2**-0.5), np.full_like(px, 2**-0.5)
-        for _ in range(5):  # each step replaces the ellipse by its circle of curvature: safe from every start
-            ex, ey = (a * a - b * b) * cos**3 / a, (b * b - a * a) * sin**3 / b
-            r = np.hypot(a * cos - ex, b * sin - ey)
-            q = np.maximum(np.hypot(px - ex, py - ey), 1e-300)
-            cos = np.clip(((px - ex) * r / q + ex) / a, 0, 1)
-            sin = np.clip(((py - ey) * r / q + ey) / b, 0, 1)
-            size = np.maximum(np.hypot(cos, sin), 1e-300)
-            cos, sin = cos / size, sin / size
-        nx, ny = cos / a, sin / b
-        size = np.hypot(nx, ny)
-        nx, ny = nx / size, ny / size
-        d = (px - a * cos) * nx + (py - b * sin) * ny
-        return d, np.copysign(nx, x), np.copysign(ny, y)
+        """Return signed distance and outward normal, by Newton's method on the foot point."""
+        px, py = (np.ascontiguousarray(part, float) for part in np.broadcast_arrays(x, y))
+        out = np.empty((3, px.size))
+        measure_ellipse(out, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
+        d, nx, ny = out.reshape(3, *px.shape)
+        return d, nx, ny
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return points around the ellipse, evenly spaced along it."""

@@ -5,7 +5,7 @@ from copy import copy
 from dataclasses import replace
 from math import isfinite, prod
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -24,6 +24,7 @@ from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
+from suchus.flow.markers import Markers
 from suchus.flow.memory import Snapshot, give, take
 from suchus.flow.midline import Midline, Remembered
 from suchus.flow.pose import Pose, length, speeds
@@ -31,8 +32,8 @@ from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Cylinder, Markers
-from suchus.flow.solid import SkinMarkers, Sphere
+from suchus.flow.shape import Cylinder
+from suchus.flow.solid import Sphere
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, joined, moved_on, none
@@ -61,7 +62,7 @@ def _remembering(body: AnyBody) -> AnyBody:
     return replace(body, shape=shape)
 
 
-def _fastest_marker(markers: Markers | SkinMarkers) -> float:
+def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
     return float(speeds(markers.velocities).max())
 
@@ -259,11 +260,8 @@ class Simulation(Fields):
         outlines, centres = [], []
         for body in self._bodies:
             outline = body.shape.markers(self.time, self.pose(body.name), setup.grid.cell)
-            assert isinstance(outline, Markers)  # contact is for plane grids
             ahead = 0.5 * dt
-            outlines.append(
-                replace(outline, x=outline.x + ahead * outline.velocity_x, y=outline.y + ahead * outline.velocity_y)
-            )
+            outlines.append(replace(outline, points=outline.points + ahead * outline.velocities))
             swimmer = self.swimmers.get(body.name)
             centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + ahead * swimmer.rate[:2])
         found = contact.forces(setup.contact, outlines, centres)
@@ -288,7 +286,7 @@ class Simulation(Fields):
         for k, (body, markers, point, (act, *parts)) in enumerate(
             zip(self._bodies, outlines, about, reactions, strict=True)
         ):
-            load = sample(water, markers, setup.density).load(point) if isinstance(markers, Markers) else None
+            load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
             place = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
@@ -523,7 +521,7 @@ class Simulation(Fields):
 
     # --- what there is to see ----------------------------------------------------------------------------------
 
-    def surface(self, name: str | None = None) -> Surface[Any]:
+    def surface(self, name: str | None = None) -> Surface:
         """Return pressure and friction along a body's outline or over its skin, positions in the frame of the grid.
 
         Of a body that mirrors cut it is the part inside the domain.
@@ -536,7 +534,7 @@ class Simulation(Fields):
             raise UnknownName("body", "" if name is None else name, names or ("none",))
         body, grid = self._bodies[0 if name is None else names.index(name)], self.setup.grid
         skin = body.shape.markers(self.time, self._in_frame(self.pose(body.name)), grid.cell)
-        if isinstance(skin, SkinMarkers):
+        if grid.axes == 3:
             low = np.array(grid.origin)[:, None]
             skin = skin.of(((skin.points >= low) & (skin.points <= low + np.array(grid.size)[:, None])).all(axis=0))
         return sample(self.water, skin, self.setup.density)

@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.flow.ellipsoid import paint_ellipsoid
+from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
@@ -44,32 +45,6 @@ class SpaceField:
     """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
 
 
-@dataclass(slots=True)
-class SkinMarkers:
-    """Points spread over the surface of a body in space."""
-
-    points: np.ndarray
-    """Where, shape (3, point) [m]."""
-    share: np.ndarray
-    """Area that each point stands for, shape (point,) [m^2]."""
-    velocities: np.ndarray
-    """Velocity of the surface, shape (3, point) [m/s]."""
-    normals: np.ndarray
-    """Outward normal, shape (3, point) [-]."""
-    spins: np.ndarray
-    """Angular velocity of the surface there, shape (3, point) [rad/s]."""
-    part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0, shape (point,); None for a body of one part [-]."""
-
-    def of(self, chosen: np.ndarray) -> "SkinMarkers":
-        """Return some of the points, by a mask of shape (point,)."""
-        return SkinMarkers(
-            points=self.points[:, chosen], share=self.share[chosen], velocities=self.velocities[:, chosen],
-            normals=self.normals[:, chosen], spins=self.spins[:, chosen],
-            part=None if self.part is None else self.part[chosen],
-        )  # fmt: skip
-
-
 class SpaceShape(ABC):
     """A body's shape in space in its own frame; it may change with time."""
 
@@ -85,7 +60,7 @@ class SpaceShape(ABC):
         """
 
     @abstractmethod
-    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points over the skin, about ``spacing`` [m] apart."""
 
     @abstractmethod
@@ -165,7 +140,7 @@ class Ellipsoid(SpaceShape):
         )  # fmt: skip
         return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), out[7])
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
         place, rings = pose.along(3), max(_FEWEST, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
@@ -178,7 +153,9 @@ class Ellipsoid(SpaceShape):
         points = np.stack(place.place(a * unit))
         normals = np.stack(turned(place.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
         spins = np.broadcast_to(place.spins[:, None], points.shape)
-        return SkinMarkers(points, share, np.stack(place.rates(points)), normals, spins)
+        return Markers(
+            points=points, share=share, velocities=np.stack(place.rates(points)), normals=normals, spins=spins
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""

@@ -7,12 +7,13 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.errors import InvalidDesign
+from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, of_trunk
 from suchus.flow.midline import MidlineState, check_cuts
 from suchus.flow.paint import ring
 from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
-from suchus.flow.solid import SkinMarkers, SpaceField, SpaceShape
+from suchus.flow.solid import SpaceField, SpaceShape
 
 _FEWEST = 12
 """Points around a section, at least [-]."""
@@ -103,12 +104,12 @@ class Trunk(SpaceShape):
         u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (out[4], out[5], 0 * out[5])), strict=True))
         return SpaceField(out[0], turned(matrix, out[1:4]), (u, v, w), out[6], part)
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> SkinMarkers:
+    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of patches between stations, as many around as the widest section needs."""
         spine, frame = self.placed(time, pose)
         return in_world(self._skin(spine, spacing), frame)
 
-    def _skin(self, spine: MidlineState, spacing: float) -> SkinMarkers:
+    def _skin(self, spine: MidlineState, spacing: float) -> Markers:
         """Return the same in the frame of a midline."""
         wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
         station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
@@ -135,7 +136,7 @@ class Trunk(SpaceShape):
         part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
         spins = np.zeros(square.shape)
         spins[2] = _middles(np.broadcast_to(turn, aside.shape)[None])[0]
-        return SkinMarkers(
+        return Markers(
             points=_middles(corner).reshape(3, -1), share=0.5 * size.ravel(),
             velocities=_middles(rate).reshape(3, -1),
             normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part,
@@ -196,11 +197,11 @@ class Trunk(SpaceShape):
         return np.column_stack(frame.place((x, y, 0 * x)))
 
 
-def in_world(skin: SkinMarkers, frame: Pose) -> SkinMarkers:
+def in_world(skin: Markers, frame: Pose) -> Markers:
     """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
     points = np.array(frame.place(skin.points))
     velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
-    return SkinMarkers(
+    return Markers(
         points=points, share=skin.share, velocities=velocities,
         normals=np.array(turned(frame.matrix, skin.normals)),
         spins=np.array(turned(frame.matrix, skin.spins)) + frame.spins[:, None], part=skin.part,

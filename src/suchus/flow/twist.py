@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from suchus.flow.markers import Markers
 from suchus.flow.pose import TURNS
-from suchus.flow.shape import Markers
-from suchus.flow.solid import SkinMarkers
 from suchus.flow.water import Fluid
 
 SOLVED = 1e-4
@@ -171,19 +170,16 @@ def accelerate(water: Fluid, more: Twists, dt: float) -> None:
     water.given += sums
 
 
-def part_of(outline: Markers | SkinMarkers) -> np.ndarray:
+def part_of(outline: Markers) -> np.ndarray:
     """Return which of its body's parts each point of a skin belongs to, shape (point,) [-]."""
     if outline.part is None:
         return np.zeros(outline.points.shape[1], np.intp)
     return outline.part.astype(np.intp)
 
 
-def moved_on(outline: Markers | SkinMarkers, more: Twists) -> Markers | SkinMarkers:
+def moved_on(outline: Markers, more: Twists) -> Markers:
     """Return the skin of one body whose parts move faster, by twists of this body's parts alone."""
     row = part_of(outline)
     velocities = outline.velocities + more.at(row, outline.points)
-    if isinstance(outline, SkinMarkers):
-        return replace(outline, velocities=velocities)
-    return replace(
-        outline, velocity_x=velocities[0], velocity_y=velocities[1], spin=outline.spin + more.angular[row, 0]
-    )
+    spins = outline.spins + more.angular[row].T
+    return replace(outline, velocities=velocities, spins=spins)

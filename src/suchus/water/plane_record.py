@@ -23,8 +23,6 @@ QUARTERS = (0.25, 0.5, 0.75, 1.0)
 """Instants of the measured cycle at which the article shows the pressure [cycle]."""
 PLACES = 33
 """Places along the tail at which the pressures of its two sides are kept [-]."""
-PlaneSurface = flow.Surface[flow.Markers]
-"""Pressure and friction along an outline."""
 
 
 class TetheredSlice:
@@ -186,7 +184,7 @@ class FreeSlice:
         return data.merge(shown.assign_coords(frame=("frame", phase, {"units": "1"})))
 
 
-def joint_torques(outline: Outline, surface: PlaneSurface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
+def joint_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
     """Return the moment of the water about the first joint of each lateral servo, of what lies beyond it [N m/m].
 
     Beyond a joint ahead of the root lies the part towards the snout, beyond one behind it the part towards the tip.
@@ -200,7 +198,7 @@ def joint_torques(outline: Outline, surface: PlaneSurface, midline: flow.Midline
     return _moments(outline, surface, midline, np.ones(surface.markers.station.size))[first]
 
 
-def servo_torques(outline: Outline, surface: PlaneSurface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
+def servo_torques(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> Float[np.ndarray, " servo"]:
     """Return what the water asks of the lateral servos, each at its own shaft; see ``Outline.at_servos`` [N m].
 
     Every section is as high as the robot is there and feels the pressures of the flow, which knows no height: water
@@ -216,11 +214,11 @@ def servo_torques(outline: Outline, surface: PlaneSurface, midline: flow.Midline
 
 
 def _moments(
-    outline: Outline, surface: PlaneSurface, midline: flow.MidlineState, high: np.ndarray
+    outline: Outline, surface: flow.Surface, midline: flow.MidlineState, high: np.ndarray
 ) -> Float[np.ndarray, " joint"]:
     """Return the moment about each joint of what the water does beyond it, markers being so high."""
     m = surface.markers
-    fx, fy = surface.traction * m.length * high
+    fx, fy = surface.traction * m.share * high
     moments = []
     for i, place in enumerate(outline.places):
         x, y = np.interp(place, outline.s, midline.x), np.interp(place, outline.s, midline.y)
@@ -229,7 +227,7 @@ def _moments(
     return np.array(moments)
 
 
-def tail_sides(outline: Outline, surface: PlaneSurface) -> Float[np.ndarray, "2 place"]:
+def tail_sides(outline: Outline, surface: flow.Surface) -> Float[np.ndarray, "2 place"]:
     """Return the pressure on the robot's left and right of its tail, from root to tip [Pa]."""
     m = surface.markers
     places = np.linspace(outline.tail_root, outline.robot.length, PLACES)
@@ -241,13 +239,13 @@ def tail_sides(outline: Outline, surface: PlaneSurface) -> Float[np.ndarray, "2 
     return out
 
 
-def convex_less_concave(outline: Outline, surface: PlaneSurface, midline: flow.MidlineState) -> float:
+def convex_less_concave(outline: Outline, surface: flow.Surface, midline: flow.MidlineState) -> float:
     """Return the mean pressure along the convex side of the tail less that along the concave side [Pa]."""
     m, start = surface.markers, outline.tail_root
     means = []
     for side in (1.0, -1.0):
         part = (m.side == side) & (m.station > start)
-        means.append(float(np.average(surface.pressure[part], weights=m.length[part])))
+        means.append(float(np.average(surface.pressure[part], weights=m.share[part])))
     # what bends to the right is convex on the left
     return (means[1] - means[0]) * float(np.sign(bend(outline, midline)))
 

@@ -1,0 +1,49 @@
+"""Points along the outline or over the skin of a body, where the water is felt."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Markers:
+    """Points along an outline, counter-clockwise, or spread over a skin in space."""
+
+    points: np.ndarray
+    """Where, shape (axis, marker) [m]."""
+    share: np.ndarray
+    """Length of outline or area of skin that each stands for, shape (marker,) [m, m^2]."""
+    velocities: np.ndarray
+    """Velocity of the surface, shape (axis, marker) [m/s]."""
+    normals: np.ndarray
+    """Outward normal, shape (axis, marker) [-]."""
+    spins: np.ndarray
+    """Angular velocity of the surface there, about z in the plane, shape (1, marker), else (3, marker) [rad/s]."""
+    part: np.ndarray | None = None
+    """Which of the body's parts each belongs to, counted from 0, shape (marker,); None for a body of one part [-]."""
+    station: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Where along a plane body: arc length of the midline, or of the outline where there is no midline; empty in
+    space [m]."""
+    side: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """+1 on the left of a plane body's midline, -1 on the right, 0 where there is no midline; empty in space [-]."""
+
+    @property
+    def x(self) -> np.ndarray:
+        """Position along x [m]."""
+        x: np.ndarray = self.points[0]
+        return x
+
+    @property
+    def y(self) -> np.ndarray:
+        """Position along y [m]."""
+        y: np.ndarray = self.points[1]
+        return y
+
+    def of(self, chosen: np.ndarray) -> "Markers":
+        """Return some of them, by a mask of shape (marker,)."""
+        station, side = (one[chosen] if one.size else one for one in (self.station, self.side))
+        return Markers(
+            points=self.points[:, chosen], share=self.share[chosen], velocities=self.velocities[:, chosen],
+            normals=self.normals[:, chosen], spins=self.spins[:, chosen],
+            part=None if self.part is None else self.part[chosen], station=station, side=side,
+        )  # fmt: skip
