@@ -27,7 +27,6 @@ WAITING = {
     "height_standing",
     "high_walk_speed_high",
     "high_walk_speed_low",
-    "joint_pid",
     "oscillators_direction",
     "salamander_force_times",
     "salamander_fore_force",
