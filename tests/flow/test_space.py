@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus import flow
+from suchus import flow, large
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import grid as grids
 from suchus.flow.added import added_mass
@@ -495,11 +495,20 @@ def test_fields_beyond_the_machine_are_refused_with_the_number(monkeypatch):
     sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1.0))
     own = sim.water.arrays * sim.water.p.size * 4
     assert need == pytest.approx(own, rel=0.1)  # what is promised is what is taken
-    monkeypatch.setattr(grids, "machine_memory", lambda: need)
+    monkeypatch.setattr(large, "memory", lambda: 2 * need)
     flow.Setup(grid=grid, viscosity=1.0)
-    monkeypatch.setattr(grids, "machine_memory", lambda: need - 1)
-    with pytest.raises(InvalidDesign, match=rf"64 x 32 x 32 cells takes {need / 1e9:.3g} GB of memory") as caught:
+    monkeypatch.setattr(large, "memory", lambda: 2 * need - 1)
+    with pytest.raises(InvalidDesign, match="or say --large"):
+        flow.Setup(grid=grid, viscosity=1.0)
+    with large.allowing():
+        flow.Setup(grid=grid, viscosity=1.0)
+    monkeypatch.setattr(large, "memory", lambda: need - 1)
+    with (
+        large.allowing(),
+        pytest.raises(InvalidDesign, match=rf"64 x 32 x 32 cells takes some {need / 1e9:.3g} GB of memory") as caught,
+    ):
         flow.Setup(grid=grid, viscosity=1.0)
     assert "take cells of at least" in str(caught.value)
-    monkeypatch.setattr(grids, "machine_memory", lambda: None)
+    assert "--large" not in str(caught.value)
+    monkeypatch.setattr(large, "memory", lambda: None)
     flow.Setup(grid=grid, viscosity=1.0)

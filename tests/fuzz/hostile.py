@@ -117,7 +117,7 @@ name = "o"
 evaluations = 8
 pareto = true
 aims = [{name = "displacement"}, {name = "stability"}]
-limits = [{name = "peak_torque", value = 2.0}]
+limits = [{name = "torque", value = 2.0}]
 [[vary]]
 field = "gait.stroke"
 low = 0.0
@@ -162,14 +162,20 @@ class Range:
         self.sound["study.json"] = (place / "store" / "study.json").read_bytes()
         self.sound["outcome.json"] = (place / "outcome" / "outcome.json").read_bytes()
 
-    def case(self, number: int) -> str:
-        """Run a case, and return of which kind it was.
+    def case(self, number: int) -> None:
+        """Run a case.
 
         Raises:
             BaseException: whatever must not happen; ``Hang`` and ``Silent`` are ours.
         """
+        self.carry_out(KINDS[number % len(KINDS)], number)
+
+    def carry_out(self, kind: Any, number: int) -> int:
+        """Run a case of a kind, as ``case`` does, and return how many it was; 0 if it was refused.
+
+        Some kinds judge several at once.
+        """
         dice = Random(number)
-        kind = KINDS[number % len(KINDS)]
         before = [signal.signal(clock, self._alarm) for clock in _CLOCKS]
         signal.setitimer(signal.ITIMER_PROF, PATIENCE)
         signal.setitimer(signal.ITIMER_REAL, _LOOK, _LOOK)
@@ -179,16 +185,17 @@ class Range:
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 warnings.simplefilter("ignore")
-                kind(self, dice)
+                return kind(self, dice) or 1
         except SuchusError as error:
             judge(str(error))
+            self.refusal = str(error)
+            return 0
         finally:
             jaxtyping.config.update("jaxtyping_disable", checks)
             signal.setitimer(signal.ITIMER_PROF, 0.0)
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             for clock, handler in zip(_CLOCKS, before, strict=True):
                 signal.signal(clock, handler)
-        return kind.__name__
 
     def _alarm(self, number: int, _: object) -> None:
         if number == signal.SIGPROF:

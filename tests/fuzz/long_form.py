@@ -1,7 +1,7 @@
 """The long form of the fuzzer: its cases, what came of them, and the passage of docs/reliability.md that says so.
 
 ``python tests/fuzz/long_form.py [COUNT]``; stopped early, what was run until then counts, and the next call goes on
-behind it if neither suchus nor the cases have changed.
+behind it if neither suchus nor the cases have changed. The cases run in processes of their own, see ``farm.py``.
 """
 
 import hashlib
@@ -9,26 +9,26 @@ import json
 import re
 import sys
 import tempfile
-import time
 from collections import Counter
 from datetime import date
 from pathlib import Path
 from typing import Any
 
-from hostile import KINDS, Hang, Range
+from doors import Doors
+from farm import carried_out
 
 from suchus.record import code_digest, versions
 
-FIRST, COUNT = 2_000, 50_000
-"""Number of the first case, which is where those of the short form end, and how many there are."""
+COUNT = 100_000
+"""How many cases there are."""
 OUTCOME = Path(__file__).with_name("long_form.json")
 PAGE = Path(__file__).parents[2] / "docs" / "reliability.md"
 PROGRESS = Path(__file__).parents[2] / "build" / "long_form.json"
 """What was found so far, also while it is less than what ``OUTCOME`` holds of other code."""
 _PASSAGE = re.compile(r"(<!-- fuzz: made by tests/fuzz/long_form.py -->\n).*?(\n<!-- /fuzz -->)", re.DOTALL)
-_EVERY = 250  # cases between two writings
+_EVERY = 250  # numbers between two writings
 _TOLD = ("suchus", "python", "mujoco", "numpy", "xarray", "h5netcdf")
-_CASES = Path(__file__).with_name("hostile.py")
+_CASES = tuple(Path(__file__).with_name(name) for name in ("hostile.py", "doors.py", "farm.py"))
 
 
 def run(place: Path, count: int = COUNT, *, keep: bool = False, so_far: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -36,29 +36,25 @@ def run(place: Path, count: int = COUNT, *, keep: bool = False, so_far: dict[str
 
     Args:
         place: an empty folder.
-        count: how many cases.
+        count: how many cases; a batch of which each is judged counts as so many.
         keep: whether it is written to files too, now and then and at the end, see ``write``.
         so_far: what an earlier call found in the first of them, see ``kept``; they are not run again.
     """
-    found = {**_about(), "failures": [], "longest_seconds": 0.0, "processor_seconds": 0.0, **(so_far or {})}
+    found = {**_about(), "next": 0, "failures": [], "longest_seconds": 0.0, "processor_seconds": 0.0, **(so_far or {})}
     found |= {"date": date.today().isoformat(), "failures": [*found["failures"]]}
-    found["kinds"], done = Counter(found.get("kinds", {})), found.get("cases", 0)
-    cases, last = Range(place), time.process_time()
+    found |= {name: Counter(found.get(name, {})) for name in ("kinds", "refused")}
     try:
-        for number in range(FIRST + done, FIRST + count):
-            kind = KINDS[number % len(KINDS)].__name__
-            try:
-                cases.case(number)
-            except (Exception, Hang) as error:
-                found["failures"].append(
-                    {"case": number, "kind": kind, "error": f"{type(error).__name__}: {error}"[:300]}
-                )
-            now = time.process_time()
-            took, last = now - last, now
-            found["kinds"][kind] += 1
-            found["longest_seconds"] = max(found["longest_seconds"], took)
-            found["processor_seconds"] += took
-            if keep and found["kinds"].total() % _EVERY == 0:
+        for came in carried_out(Doors(place), range(found["next"], count)):
+            if found["kinds"].total() >= count:
+                break
+            if came.error:
+                found["failures"].append({"case": came.number, "kind": came.kind, "error": came.error})
+            found["kinds"][came.kind] += came.count
+            found["refused"][came.kind] += came.count * came.refused
+            found["next"] = came.number + 1
+            found["longest_seconds"] = max(found["longest_seconds"], came.seconds)
+            found["processor_seconds"] += came.seconds
+            if keep and found["next"] % _EVERY == 0:
                 write(_rounded(found))
     finally:
         if keep:
@@ -81,7 +77,7 @@ def _about() -> dict[str, Any]:
     return {
         "date": date.today().isoformat(),
         "versions": {name: version for name, version in versions().items() if name in _TOLD},
-        "source": hashlib.sha256(code_digest(".").encode() + _CASES.read_bytes()).hexdigest()[:12],
+        "source": hashlib.sha256(code_digest(".").encode() + b"".join(f.read_bytes() for f in _CASES)).hexdigest()[:12],
         "asked": COUNT,
     }
 
@@ -92,6 +88,7 @@ def _rounded(found: dict[str, Any]) -> dict[str, Any]:
         **found,
         "cases": found["kinds"].total(),
         "kinds": dict(sorted(found["kinds"].items())),
+        "refused": {kind: found["refused"][kind] for kind in sorted(found["kinds"])},
         "longest_seconds": round(found["longest_seconds"], 1),
         "processor_seconds": round(found["processor_seconds"]),
     }
@@ -110,12 +107,15 @@ def write(found: dict[str, Any]) -> None:
 def passage(found: dict[str, Any]) -> str:
     """Return the passage of the page."""
     made_by = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
-    rows = "\n".join(f"| {name.replace('_', ' ')} | {count} |" for name, count in found["kinds"].items())
-    numbers = f"{found['cases']:,} of the {found['asked']:,}".replace(",", " ")
+    kinds = found["kinds"].items()
+    refused, numbers = found["refused"], f"{found['cases']:,} of the {found['asked']:,}".replace(",", " ")
+    rows = "\n".join(f"| {name.replace('_', ' ')} | {count} | {count - refused[name]} |" for name, count in kinds)
+    passed = found["cases"] - sum(refused.values())
     return (
         f"Of the long form {numbers} cases have run, on {found['date']} with\n{made_by} (source {found['source']}).\n"
+        f"{passed} of them got through the door and did what they asked for, the others ended in a sentence.\n"
         f"**{len(found['failures'])}** of them failed. They took {found['processor_seconds']} s of a processor, the\n"
-        f"longest {found['longest_seconds']} s.\n\n| kind | cases |\n|---|---|\n{rows}"
+        f"longest {found['longest_seconds']} s.\n\n| kind | cases | through the door |\n|---|---|---|\n{rows}"
     )
 
 

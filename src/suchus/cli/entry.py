@@ -10,6 +10,7 @@ from pkgutil import resolve_name
 from shutil import get_terminal_size
 from unicodedata import category
 
+from suchus import large
 from suchus.errors import BusFailure, Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
 from suchus.stopping import Stopped, stopping
@@ -21,6 +22,8 @@ REPLACE = "--replace"
 """Option of every command: what a user wrote or changed may be replaced, see ``suchus.writing``."""
 MIXED = "--mixed"
 """Option of every command: what another arithmetic began may be continued, see ``suchus.machine``."""
+LEAST = 2**30
+"""Address space that suchus and its libraries need to begin with, 0.5 GB were too little [byte]."""
 PORTABLE = "SUCHUS_PORTABLE"
 """Environment variable that asks for portable arithmetic, see ``suchus.machine``."""
 
@@ -178,9 +181,10 @@ def main(words: Sequence[str] | None = None) -> int:
         if of_this_process and PORTABLE in os.environ:
             _begin_portable()
         words, folder = _apart(words)
-        replace, mixed = REPLACE in words, MIXED in words
-        words = [word for word in words if word not in (REPLACE, MIXED)]
-        with stopping(), plain_warnings(), within(folder), replacing(replace), _mixing(mixed):
+        replace, mixed, any_size = (option in words for option in (REPLACE, MIXED, large.OPTION))
+        words = [word for word in words if word not in (REPLACE, MIXED, large.OPTION)]
+        with stopping(), plain_warnings(), within(folder), replacing(replace), _mixing(mixed), large.allowing(any_size):
+            _check_room()
             return _flushed(words)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
@@ -188,12 +192,28 @@ def main(words: Sequence[str] | None = None) -> int:
         return _complain(str(error), 3)
     except SuchusError as error:
         return _complain(str(error), 2)
+    except MemoryError:
+        return _complain("the memory does not suffice for this; ask for less at a time, or give more.", 2)
     except KeyboardInterrupt as stop:
         number = stop.number if isinstance(stop, Stopped) else signal.SIGINT
         return _complain("stopped; what was finished is kept, nothing half-written is left.", 128 + number)
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         _drop_output()
         return 0
+
+
+def _check_room() -> None:
+    """Refuse to begin where libraries could not even be loaded, which would end in errors of theirs.
+
+    Raises:
+        BadCommand: this process may take too little memory.
+    """
+    room = large.memory()
+    if room is not None and room < LEAST:
+        raise BadCommand(
+            f"this process may take {room / 1e9:.2g} GB of memory, and suchus needs {LEAST / 1e9:.2g} GB: raise the "
+            "limit, as with ulimit -v unlimited."
+        )
 
 
 def _begin_portable() -> None:
@@ -294,6 +314,8 @@ def _help() -> str:
             "the working folder, if that has a suchus.toml.",
             f"suchus COMMAND ... {REPLACE} replaces files that you wrote or changed too, and keeps a backup; without",
             "it they are never touched.",
+            f"suchus COMMAND ... {large.OPTION} begins what takes more than half of the memory, or a day of a",
+            "processor; without it that is estimated and refused.",
             f"suchus COMMAND ... {MIXED} goes on with a study that a machine with other last bits began; the results",
             "then tell so. SUCHUS_PORTABLE=1 in the environment computes the same bits on every x86-64 with Linux.",
         )

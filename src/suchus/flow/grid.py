@@ -1,6 +1,5 @@
 """The grid: square cells in a rectangle or cubic ones in a box, and where its staggered values sit."""
 
-import os
 from dataclasses import dataclass
 from math import ceil, isfinite
 from numbers import Real
@@ -8,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from suchus import large
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.multigrid import COARSEST, LONGEST
@@ -198,25 +198,18 @@ def needed_memory(grid: Grid, dtype: type) -> int:
     return int(cells * arrays_of(grid.axes) * np.dtype(dtype).itemsize)
 
 
-def machine_memory() -> int | None:
-    """Return the memory of this machine, None where it does not say [bytes]."""
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
-        return None
-
-
 def check_memory(grid: Grid, dtype: type) -> None:
-    """Refuse a grid whose fields the machine cannot hold.
+    """Refuse a grid whose fields the machine cannot hold, or hardly and nobody said that it may, see ``suchus.large``.
 
     Raises:
         InvalidDesign: with both numbers, and the cell that would do.
     """
-    need, have = needed_memory(grid, dtype), machine_memory()
-    if have is None or need <= have:
+    need, have = needed_memory(grid, dtype), large.memory()
+    if have is None:
         return
-    cell = grid.cell * (need / have) ** (1 / grid.axes)
-    raise InvalidDesign(
-        f"a grid of {' x '.join(map(str, grid.cells))} cells takes {need / 1e9:.3g} GB of memory, and this machine has "
-        f"{have / 1e9:.3g} GB; take cells of at least {cell:.2g} m, or a smaller domain."
+    cell = grid.cell * (need / (large.SHARE * have)) ** (1 / grid.axes)
+    large.check_memory(
+        f"a grid of {' x '.join(map(str, grid.cells))} cells",
+        need,
+        f"take cells of at least {cell:.2g} m, or a smaller domain",
     )

@@ -14,6 +14,7 @@ from suchus.design.scale import check_step, control_period, physics_step
 from suchus.errors import Diverged, InvalidDesign
 from suchus.fault import Fault, check_faults
 from suchus.gaits import gait_of
+from suchus.land.extent import check_extent
 from suchus.land.lake import Lake, check_lake
 from suchus.land.loop import Loop, physics_steps
 from suchus.land.readings import with_equal_variables
@@ -51,7 +52,7 @@ def simulate(
         Contact forces are means over the control period before each sample, torques those of its last physics step.
 
     Raises:
-        InvalidDesign: no runs, robots of different topology, a bad duration or time step.
+        InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears.
         OutsideLimits: a gait that a robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
@@ -60,6 +61,7 @@ def simulate(
         raise InvalidDesign("there are no runs to simulate; give at least one.")
     timestep = _own_step(runs) if timestep is None else timestep
     period = _check(runs, duration, timestep, every)
+    check_extent(runs, duration, timestep, period, every)
     ticks = round(duration / period)
     parts, order = [], []
     groups = _groups(runs)

@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus import blueprint
+from suchus import blueprint, large
 from suchus.design import with_values
 from suchus.design.scale import physics_step
 from suchus.errors import IncompatibleRecord, NotConverged
 from suchus.jobs import MADE_BY, InMemory, Job, Place, Store, Tally, deciding, finish, place_for
 from suchus.land import Run, simulate
+from suchus.land.extent import processor_seconds
 from suchus.optimise.aims import AIMS
 from suchus.optimise.evaluate import allowed, columns, evaluate, losses, measure, score, units
 from suchus.optimise.search import SearchResult, search, titled
@@ -56,8 +57,12 @@ def optimise(
         NoOptimiser: a library is missing.
         NotConverged: nothing that was tried keeps all limits.
         NoCluster: the cluster was lost.
+        InvalidDesign: it is larger than anybody asked for, see ``suchus.large``.
     """
     place, count = place_for("a search", client=client), len(spec.arms)
+    walks = count * spec.evaluations * len(spec.friction_scales)
+    seconds = walks * processor_seconds(spec.run, spec.duration, spec.timestep)
+    large.check_work(f"search {spec.name!r} of {walks} walks", seconds, "ask for fewer evaluations or shorter walks")
     return tuple(
         _arm(spec.of(arm), folder, portion(progress, number, count), place) for number, arm in enumerate(spec.arms)
     )

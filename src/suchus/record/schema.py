@@ -157,6 +157,8 @@ def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
         raise IncompatibleRecord(f"{where} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.")
     if not record.time.size:
         raise IncompatibleRecord(f"{where} has no frame; run for longer than one sample.")
+    if others := list(filter(None, (_other_meaning(record, name) for name in ("time", *names)))):
+        raise IncompatibleRecord(f"{where} holds {'; '.join(others)}: records are in SI units, as suchus writes them.")
     wrong = [name for name in names if not _as_said(record, name)]
     wrong += [name for name in ("label", "gait", "robot", *PER_RUN) if name in record and not _per_run(record[name])]
     if wrong:
@@ -170,9 +172,24 @@ def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
         raise IncompatibleRecord(f"{where} has the legs {seen}, not pairs of left and right, as {', '.join(LEGS)}.")
 
 
+def _other_meaning(record: xr.Dataset, name: str) -> str:
+    """Return in words what a variable says of itself that the schema does not: another unit, or to be another variable.
+
+    Nothing where it says the same or nothing of itself.
+    """
+    variable, unit = record[name], VARIABLES[name][1] if name in VARIABLES else "s"
+    if (said := variable.attrs.get("units", unit)) != unit:
+        return f"{name} in {str(said)[:20]!r} instead of {unit}"
+    what = variable.attrs.get("long_name")
+    other = next((one for one, (_, _, meaning) in VARIABLES.items() if one != name and meaning == what), None)
+    return f"{other} under the name of {name}" if other else ""
+
+
 def _as_said(record: xr.Dataset, name: str) -> bool:
     variable, dims = record[name], VARIABLES[name][0]
-    if set(variable.dims) not in ({*dims}, {"run", *dims}) or variable.dtype.kind not in "fiu":
+    if variable.dims not in (dims, ("run", *dims)) or variable.dtype.kind not in "fiu":
+        return False
+    if not all(_in_order(record, dim, order) for dim, order in (("xyz", XYZ), ("wxyz", WXYZ)) if dim in dims):
         return False
     if not all(size for dim, size in variable.sizes.items() if dim != "leg"):  # a swimmer may have no limbs
         return False
@@ -187,6 +204,11 @@ def _as_said(record: xr.Dataset, name: str) -> bool:
         length = np.sqrt((np.asarray(variable, dtype=float) ** 2).sum(axis=variable.dims.index("wxyz")))
         return bool((np.abs(length[np.isfinite(length)] - 1.0) < _UNIT).all())
     return True
+
+
+def _in_order(record: xr.Dataset, dim: str, order: Sequence[str]) -> bool:
+    """Return whether axes are labelled as the schema has them, if they are."""
+    return dim not in record.coords or tuple(map(str, record[dim].values.ravel())) == tuple(order)
 
 
 def _per_run(variable: xr.DataArray) -> bool:

@@ -6,9 +6,11 @@ from typing import Any
 
 import xarray as xr
 
+from suchus import large
 from suchus.errors import UnreadableFile
 from suchus.jobs import InMemory, Job, Store, ThisProcess, finish, place_for
 from suchus.jobs.store import together
+from suchus.land.extent import processor_seconds
 from suchus.progress import Progress, silent
 from suchus.study.chunk import run_chunk
 from suchus.study.plan import Plan
@@ -45,11 +47,24 @@ def conduct(
         NoCluster: the cluster was lost.
         ProcessDied: the processes at a batch died again and again.
         OutsideLimits: less than one process is asked for, or several beside a cluster.
+        InvalidDesign: it is larger than anybody asked for.
     """
     place, job = place_for("a study", client=client, jobs=jobs, here=HERE), job_of(study)
+    check_study(study)
     with Store(folder, study).opened() as store:
         finish(job, store, place=place, progress=progress)
         return store.gather(len(job.items))
+
+
+def check_study(study: Study) -> None:
+    """Refuse a study that computes for more than a day, unless that is asked for, see ``suchus.large``.
+
+    Raises:
+        InvalidDesign: with the estimate.
+    """
+    count = len(Plan(study))
+    seconds = count * processor_seconds(study.run, study.duration, study.timestep)
+    large.check_work(f"study {study.name!r} of {count} runs", seconds, "ask for fewer samples or shorter runs")
 
 
 def job_of(study: Study) -> Job[int, xr.Dataset]:

@@ -1,0 +1,58 @@
+"""Records that somebody changed with other tools mean what they say, or are refused in a sentence."""
+
+import numpy as np
+import pytest
+
+from suchus.errors import IncompatibleRecord
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.record import check_land
+from suchus.robots import ROBOTS
+
+NAMES = ("position", "orientation", "joint_angle", "snout", "tail_tip", "foot_position")
+
+
+@pytest.fixture(scope="module")
+def record():
+    return simulate([Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])], duration=0.05)
+
+
+SAME = {
+    "single precision": lambda r: r.assign(position=r.position.astype("f4")),
+    "one run taken out": lambda r: r.isel(run=0),
+    "no units": lambda r: r.assign(position=r.position.drop_attrs()),
+    "another description": lambda r: r.assign(position=r.position.assign_attrs(long_name="where it is")),
+    "half of the samples": lambda r: r.isel(time=slice(None, None, 2)),
+    "no labels of axes": lambda r: r.drop_vars(["xyz", "wxyz"]),
+}
+OTHER = {
+    "centimetres": (lambda r: r.assign(snout=(100 * r.snout).assign_attrs(units="cm")), "snout in 'cm' instead of m"),
+    "degrees": (
+        lambda r: r.assign(joint_angle=np.degrees(r.joint_angle).assign_attrs(units="deg")),
+        "joint_angle in 'deg' instead of rad",
+    ),
+    "milliseconds": (
+        lambda r: r.assign_coords(time=("time", 1e3 * r.time.values, {"units": "ms"})),
+        "time in 'ms' instead of s",
+    ),
+    "exchanged": (
+        lambda r: r.rename(snout="tail_tip", tail_tip="snout"),
+        "tail_tip under the name of snout; snout under the name of tail_tip",
+    ),
+    "dimensions": (lambda r: r.transpose("xyz", "run", "time", ...), "holds position, snout, tail_tip, foot_position"),
+    "axes": (lambda r: r.isel(xyz=[2, 0, 1]), "holds position, snout, tail_tip, foot_position otherwise"),
+    "quaternions": (lambda r: r.isel(wxyz=[1, 2, 3, 0]), "holds orientation otherwise"),
+    "backwards": (lambda r: r.isel(time=slice(None, None, -1)), "times that do not rise"),
+}
+
+
+@pytest.mark.parametrize("how", SAME)
+def test_what_means_the_same_is_read(record, how):
+    check_land(SAME[how](record), NAMES, "it")
+
+
+@pytest.mark.parametrize("how", OTHER)
+def test_what_means_something_else_is_refused(record, how):
+    change, said = OTHER[how]
+    with pytest.raises(IncompatibleRecord, match=said):
+        check_land(change(record), NAMES, "it")

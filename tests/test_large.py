@@ -1,0 +1,163 @@
+"""What is larger than the machine bears is estimated and refused before it begins, on both sides of each bound."""
+
+import os
+import resource
+import subprocess
+import sys
+import time
+
+import pytest
+
+from suchus import large
+from suchus.cli import main
+from suchus.cli.entry import LEAST
+from suchus.errors import InvalidDesign
+from suchus.gaits import GAITS
+from suchus.land import Run, simulate
+from suchus.land.extent import processor_seconds, record_bytes
+from suchus.robots import ROBOTS
+
+CRAWL = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])
+STUDY = """
+name = "grip"
+duration = {duration}
+measure = ["displacement"]
+design = "latin"
+samples = {samples}
+
+[[vary]]
+field = "ground.friction_scale"
+low = 0.5
+high = 1.0
+"""
+SEARCH = """
+name = "far"
+evaluations = {evaluations}
+aims = [{{name = "displacement"}}]
+[[vary]]
+field = "gait.stroke"
+low = 0.1
+high = 0.3
+"""
+
+
+def refused(call):
+    with pytest.raises(InvalidDesign) as caught:
+        call()
+    return str(caught.value)
+
+
+def test_half_of_the_memory_is_free_the_rest_is_asked_for_and_more_than_all_is_refused(monkeypatch):
+    monkeypatch.setattr(large, "memory", lambda: 4 * 10**9)
+    large.check_memory("a thing", 2e9, "take less")
+    said = "a thing takes some 2.1 GB of memory, and this machine has 4 GB; take less, or say --large"
+    assert refused(lambda: large.check_memory("a thing", 2.1e9, "take less")).startswith(said)
+    with large.allowing():
+        large.check_memory("a thing", 4e9, "take less")
+        assert refused(lambda: large.check_memory("a thing", 4.1e9, "take less")).endswith("has 4 GB; take less.")
+    monkeypatch.setattr(large, "memory", lambda: None)
+    large.check_memory("a thing", 1e18, "take less")
+
+
+def test_a_day_of_a_processor_is_free_and_more_is_asked_for():
+    large.check_work("a thing", large.LONG, "take less")
+    said = refused(lambda: large.check_work("a thing", 2 * large.LONG, "take less"))
+    assert said == "a thing takes some 2 days of a processor; take less, or say --large to begin all the same."
+    with large.allowing():
+        large.check_work("a thing", 2 * large.LONG, "take less")
+
+
+def test_what_was_allowed_before_is_allowed_afterwards(monkeypatch):
+    monkeypatch.delenv(large.WANTED, raising=False)
+    with large.allowing(False):
+        assert not large.allowed()
+    with large.allowing():
+        assert large.allowed()
+        with large.allowing():
+            pass
+        assert large.allowed()
+        assert os.environ[large.WANTED] == "1"  # which processes that help see
+    assert not large.allowed()
+    assert large.WANTED not in os.environ
+
+
+def test_memory_is_the_machines_or_less_by_a_limit(monkeypatch):
+    whole = large.memory()
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (whole // 2, whole))
+    assert large.memory() == whole // 2
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (2 * whole, 2 * whole))
+    assert large.memory() == whole
+
+
+@pytest.mark.parametrize(("robot", "gait"), [("caiman", "belly_crawl"), ("swimmer", "undulation")])
+def test_estimates_are_of_the_size_of_what_a_run_takes(robot, gait):
+    run = Run(robot=ROBOTS[robot], gait=GAITS[gait])
+    began = time.process_time()
+    record = simulate([run], duration=1.0)
+    took = time.process_time() - began
+    assert record_bytes(run, record.sizes["time"]) == pytest.approx(record.nbytes, rel=0.3)
+    assert 0.05 < processor_seconds(run, 1.0, record.attrs["timestep"]) / took < 20.0  # other machines and loads
+
+
+def test_a_run_is_refused_before_it_begins_and_only_if_it_is_too_large(monkeypatch):
+    need = 2 * record_bytes(CRAWL, 0.1 / 0.01)
+    monkeypatch.setattr(large, "memory", lambda: int(need / large.SHARE) + 1)
+    simulate([CRAWL], duration=0.1)
+    monkeypatch.setattr(large, "memory", lambda: int(need / large.SHARE) - 1)
+    assert refused(lambda: simulate([CRAWL], duration=0.1)).startswith("a run of 0.1 s takes some")
+    assert refused(lambda: simulate([CRAWL] * 2, duration=0.1)).startswith("a batch of 2 runs of 0.1 s takes some")
+    simulate([CRAWL], duration=0.1, every=2)
+    with large.allowing():
+        simulate([CRAWL], duration=0.1)
+
+
+def test_a_study_is_refused_by_its_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    a_day = large.LONG / processor_seconds(CRAWL, 9.0, 0.005)
+    (tmp_path / "s.toml").write_text(STUDY.format(duration=9.0, samples=int(1.01 * a_day)))
+    assert main(["study", "s.toml", "--out", "made"]) == 2
+    said = capsys.readouterr().err
+    assert "of a processor; ask for fewer samples or shorter runs, or say --large to begin" in said
+    assert not (tmp_path / "made").exists()
+
+
+def test_a_search_is_refused_by_its_walks_and_begins_with_large(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "o.toml").write_text(SEARCH.format(evaluations=1_000_000))
+    assert main(["optimise", "o.toml", "--out", "made"]) == 2
+    assert "search 'far' of 1000000 walks takes some" in capsys.readouterr().err
+    assert not list(tmp_path.rglob("*.nc"))
+
+    def begun(*_):
+        raise InvalidDesign("it has begun.")
+
+    monkeypatch.setattr(sys.modules["suchus.optimise.conduct"], "_arm", begun)
+    assert main(["optimise", "o.toml", "--out", "made", "--large"]) == 2
+    assert "it has begun" in capsys.readouterr().err
+
+
+def test_a_process_of_too_little_memory_is_told_in_a_sentence(monkeypatch, capsys):
+    monkeypatch.setattr(large, "memory", lambda: LEAST - 1)
+    assert main(["--version"]) == 2
+    assert "raise the limit" in capsys.readouterr().err
+    monkeypatch.setattr(large, "memory", lambda: LEAST)
+    assert main(["--version"]) == 0
+
+
+def test_memory_that_runs_out_is_a_sentence(monkeypatch, capsys):
+    def hungry(words):
+        raise MemoryError
+
+    monkeypatch.setattr(sys.modules["suchus.cli.entry"], "_dispatch", hungry)
+    assert main(["list"]) == 2
+    assert "the memory does not suffice" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="address space is limited on Linux")
+def test_with_a_real_limit_nothing_spins(tmp_path):
+    line = f"ulimit -v 250000; exec {sys.executable} -m suchus run displacement --quick --out '{tmp_path}/made'"
+    done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "raise the limit" in done.stderr
+    assert not (tmp_path / "made").exists()
