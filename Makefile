@@ -8,7 +8,7 @@ export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
 .PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas bench docs
-.PHONY: release version pins licences matrix sizes clean
+.PHONY: release reliability version pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus reproduce --out out
@@ -84,6 +84,9 @@ docs: .venv/.docs
 
 release: .venv/.dev # wheel and sdist, tried in fresh environments; nothing is published
 	$(PY) tools/make_release.py
+
+reliability: .venv/.dev # the batteries again, and their table in docs/reliability.md
+	$(PY) tools/reliability.py
 
 version: .venv/.dev # whether all places and the tag of this commit say the same version
 	$(PY) tools/make_release.py --check

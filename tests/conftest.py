@@ -17,6 +17,7 @@ from hypothesis import settings
 from jaxtyping import install_import_hook
 
 import first_calls
+from batteries import counted  # noqa: F401  a fixture
 from left_out import COLLECTED
 
 CHECKED = (

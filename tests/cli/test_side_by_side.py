@@ -94,7 +94,7 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
 
 @pytest.mark.slow("processes are stopped")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
-def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path, number):
+def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path, number, counted):
     out, started = tmp_path / "out", tmp_path / "started"
     (tmp_path / "slow.py").write_text(SLOW)
     process = subprocess.Popen(
@@ -113,6 +113,7 @@ def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(
     else:
         os.kill(process.pid, number)
     told, complaint = process.communicate(timeout=30)
+    counted("kills")
     killed = number == signal.SIGKILL
     assert (process.returncode, told) == (-number if killed else 128 + number, "")
     assert "Traceback" not in complaint

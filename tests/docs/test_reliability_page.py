@@ -1,10 +1,15 @@
 """What broke once has a test, and the page names it."""
 
 import ast
+import json
 import re
 from pathlib import Path
 
 import pytest
+
+import batteries
+import reliability
+from pages.passages import put
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "reliability.md").read_text(encoding="utf-8")
@@ -50,3 +55,40 @@ def test_every_test_that_the_page_names_is_there():
 )
 def test_a_row_without_a_test_is_seen(row, said):
     assert lacking(f"| what | tests |\n|---|---|\n{row}\n") == [said]
+
+
+CASES = {"cases": 100, "kinds": {"walks": 90, "runs": 10}, "failures": [{"case": 1}], "date": "2031-01-02"}
+
+
+def test_the_page_counts_what_the_batteries_did():
+    """Renew with ``make reliability``, or with ``python tools/reliability.py --table`` what is kept."""
+    kept, cases = (json.loads(file.read_text("utf-8")) for file in (reliability.KEPT, reliability.CASES))
+    assert put(PAGE, {"batteries": reliability.table(kept, cases)}) == PAGE
+    assert {one["battery"] for one in kept.values()} == reliability.BATTERIES.keys()
+    files = {test.partition("::")[0] for test in kept}
+    assert files <= {str(Path(file).relative_to(ROOT)) for file in reliability.tests()}
+
+
+def test_a_battery_is_the_sum_of_its_tests_and_one_that_failed_is_told(tmp_path):
+    kept = tmp_path / "batteries.json"
+    batteries.keep("a.py::test_a", {"kills": 3}, failed=False, kept=kept)
+    batteries.keep("a.py::test_b", {"kills": 4}, failed=True, kept=kept)
+    batteries.keep("a.py::test_a", {"kills": 5}, failed=False, kept=kept)
+    rows = [line.split(" | ") for line in reliability.table(json.loads(kept.read_text()), CASES).splitlines()]
+    counts = {row[0].removeprefix("| "): row[2:4] for row in rows[2:]}
+    assert counts["kills"] == ["9", "1"]
+    assert counts["failed writes"] == ["0", "0"]
+    assert counts["fuzzer"] == ["100", "1"]
+
+
+def test_the_fixture_counts_only_where_it_is_asked_to(monkeypatch, tmp_path, request):
+    kept = []
+    monkeypatch.setattr(batteries, "keep", lambda test, numbers, failed: kept.append((numbers, failed)))
+    for asked in ("", "write"):
+        monkeypatch.setenv("SUCHUS_BATTERIES", asked)
+        steps = batteries.counted.__wrapped__(request)
+        count = next(steps)
+        count("kills")
+        count("kills", 2)
+        assert next(steps, None) is None
+    assert kept == [({"kills": 3}, False)]

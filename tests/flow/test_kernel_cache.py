@@ -146,7 +146,7 @@ FLIPPED = [12, pytest.param(200, marks=pytest.mark.slow("200 kernels are compile
 
 
 @pytest.mark.parametrize("count", FLIPPED)
-def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_path, count):
+def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_path, count, counted):
     draw = random.Random(count)
     kernel()
     for i in range(count):
@@ -160,6 +160,7 @@ def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_pa
         path.write_bytes(data)
         assert kernel() == (7, False), path
         assert kernel() == (7, True), "it was not mended"
+        counted("flipped caches")
 
 
 def test_what_another_wrote_is_never_unpickled(kernel, tmp_path):

@@ -1,6 +1,6 @@
 """Cases in processes of their own: each gets a limit of memory and time, and what kills one kills nothing else.
 
-``python tests/fuzz/farm.py NUMBER ...`` runs single cases of the long form again. The parent imports everything once
+``python tests/fuzz/farm.py NUMBER|FROM-TO ...`` runs cases of the long form again. The parent imports everything once
 and makes the sound files; each child is a fork of it, warm at once, and carries out a batch of cases. It says on a pipe
 which case begins and how each ended, so that a child that dies has a name to die by, and the next one goes on behind.
 """
@@ -11,17 +11,15 @@ import resource
 import select
 import signal
 import sys
+import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
-for _name in ("SUCHUS_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")  # a process of several threads cannot be forked
-
-from doors import WEIGHTS, Doors  # noqa: E402
-from hostile import KINDS, Hang, Range  # noqa: E402
+from doors import WEIGHTS, Doors
+from hostile import KINDS, Hang, Range
 
 BATCH = 100
 """Cases of a child [-]."""
@@ -147,10 +145,30 @@ def _carry_out(place: Range, numbers: Sequence[int], writing: int) -> None:
     os._exit(0)
 
 
-if __name__ == "__main__":
-    import tempfile
+def alone() -> None:
+    """Begin this process anew if libraries may start threads in it: a process of several threads cannot be forked."""
+    names = ("SUCHUS_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+    single = dict.fromkeys(names, "1")
+    if not single.items() <= os.environ.items():
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], os.environ | single)
 
+
+def main(words: Sequence[str]) -> int:
+    """Run the cases that are named, say which failed and how many there were, and return 1 if one failed."""
+    failed, count = 0, 0
     with tempfile.TemporaryDirectory() as folder:
         doors = Doors(Path(folder))
-        for asked in map(int, sys.argv[1:]):
-            print(*carried_out(doors, [asked]))
+        for word in words:
+            first, _, last = word.partition("-")
+            for came in carried_out(doors, range(int(first), int(last or first) + 1)):
+                count += came.count
+                if came.error:
+                    failed += 1
+                    print(f"{came.number} {came.kind}: {came.error}")
+    print(f"{count} cases, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    alone()
+    sys.exit(main(sys.argv[1:]))

@@ -185,7 +185,8 @@ class Range:
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 warnings.simplefilter("ignore")
-                return kind(self, dice) or 1
+                count = kind(self, dice)
+                return 1 if count is None else count
         except SuchusError as error:
             judge(str(error))
             self.refusal = str(error)
@@ -375,7 +376,7 @@ def foreign_records(self: Range, dice: Random) -> None:
 # commands
 
 
-def commands(self: Range, dice: Random) -> None:
+def commands(self: Range, dice: Random) -> int:
     """A command with hostile words; what would run for long has a word that stops it."""
     command = dice.choice(COMMANDS)
     options = (
@@ -428,11 +429,11 @@ def commands(self: Range, dice: Random) -> None:
         "parts",
     ):
         words += ["--no-such-option"]
-    told(main, [command.name if dice.random() < 0.95 else dice.choice(WORDS), *words])
+    return 0 if told(main, [command.name if dice.random() < 0.95 else dice.choice(WORDS), *words]) else 1
 
 
-def told(command: Any, words: list[str]) -> None:
-    """Run a command, and look at what it says."""
+def told(command: Any, words: list[str]) -> int:
+    """Run a command, look at what it says, and return its exit code."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
@@ -444,6 +445,7 @@ def told(command: Any, words: list[str]) -> None:
         raise Silent(f"exit code {code}, {complaint[:200]!r}")
     if code == 2:
         judge(complaint)
+    return code or 0
 
 
 # values

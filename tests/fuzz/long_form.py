@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from doors import Doors
-from farm import carried_out
+from farm import alone, carried_out
 
 from suchus.record import code_digest, versions
 
@@ -120,7 +120,9 @@ def passage(found: dict[str, Any]) -> str:
 
 
 if __name__ == "__main__":
+    alone()
     with tempfile.TemporaryDirectory() as folder:
         came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True, so_far=kept())
     for failure in came["failures"]:
         print(failure)
+    sys.exit(1 if came["failures"] else 0)

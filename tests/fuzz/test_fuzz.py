@@ -1,13 +1,25 @@
-"""The fuzzer; see docs/reliability.md. ``hostile.py`` holds the cases, ``long_form.py`` those that take long."""
+"""The fuzzer; see docs/reliability.md.
+
+``hostile.py`` and ``doors.py`` hold the cases, ``farm.py`` runs each in a process, ``long_form.py`` runs all of them.
+"""
 
 import json
 import os
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import long_form
 import pytest
+from doors import WEIGHTS
+from farm import Came
 from hostile import KINDS, Hang, Range
-from long_form import COUNT, FIRST, OUTCOME, PAGE, passage, run
+from long_form import COUNT, OUTCOME, PAGE, passage, run
+
+SHORT, SAMPLE = 2_000, 1_000
+"""Numbers of the cases of the short form, which run in this process, and of the sample of the long one."""
+FARM = Path(__file__).with_name("farm.py")
 
 
 @pytest.fixture(scope="session")
@@ -20,7 +32,7 @@ REST = pytest.mark.slow("seven eighths of 2 000 cases")
 
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=REST) for part in range(1, 8))])
 def test_two_thousand_hostile_cases_end_in_a_result_or_a_sentence(place, part):
-    for number in range(part, FIRST, 8):
+    for number in range(part, SHORT, 8):
         try:
             place.case(number)
         except BaseException as error:
@@ -44,51 +56,107 @@ def test_what_waits_is_a_hang_and_what_the_code_raises_passes(place, monkeypatch
         place.case(1)
 
 
+@pytest.mark.slow("a thousand cases of the long form")
+def test_a_sample_of_the_farm_ends_in_results_and_sentences():
+    words = [sys.executable, str(FARM), f"0-{SAMPLE - 1}"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    assert int(done.stdout.split()[-4]) > SAMPLE  # some numbers stand for a batch
+
+
+DEADLY = """
+import os, signal, sys, time
+sys.path[:0] = [sys.argv[1]]
+import farm
+farm.BATCH, farm.STUCK, farm.WAITS, farm.MEMORY = 4, 1.0, 30.0, 2**28
+
+def sound(): return 3
+def refused(): return 0
+def breaks(): raise IndexError("a bare one")
+def dies(): os.kill(os.getpid(), signal.SIGSEGV)
+def eats(): return len(bytearray(2**30))
+def spins():
+    signal.signal(signal.SIGXCPU, signal.SIG_DFL)
+    while True: pass
+def waits(): time.sleep(60)
+def leaves(): os._exit(7)
+
+class Place:
+    def carry_out(self, kind, number): return kind()
+
+kinds = [sound, dies, refused, eats, breaks, spins, waits, sound, leaves, sound]
+farm.kind_of = lambda number: kinds[number]
+for came in farm.carried_out(Place(), range(len(kinds))):
+    print(came.number, came.kind, came.count, int(came.refused), came.error, sep="|")
+"""
+
+
+@pytest.mark.slow("processes die in every way")
+def test_what_kills_a_case_kills_no_other_one_and_is_named():
+    words = [sys.executable, "-c", DEADLY, str(FARM.parent)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
+    came = [line.split("|") for line in done.stdout.splitlines()]
+    assert [line[1] for line in came] == [
+        "sound", "dies", "refused", "eats", "breaks", "spins", "waits", "sound", "leaves", "sound"
+    ], done.stderr  # fmt: skip
+    assert [line[0] for line in came] == [str(number) for number in range(10)]
+    counts = [line[2:4] for line in came if line[1] in ("sound", "refused")]
+    assert counts == [["3", "0"], ["1", "1"], ["3", "0"], ["3", "0"]]
+    said = {line[1]: line[4] for line in came}
+    assert said["sound"] == said["refused"] == ""
+    assert "SIGSEGV" in said["dies"]
+    assert "MemoryError" in said["eats"]
+    assert said["breaks"] == "IndexError: a bare one"
+    assert "SIGXCPU" in said["spins"]
+    assert "SIGKILL" in said["waits"]
+    assert said["leaves"] == "the process ended with 7"
+
+
 def test_the_page_says_what_the_long_form_found():
     found = json.loads(OUTCOME.read_text())
     assert passage(found) in PAGE.read_text()
-    assert found["cases"] == sum(found["kinds"].values()) <= found["asked"] == COUNT
-    assert set(found["kinds"]) == {kind.__name__ for kind in KINDS}
+    assert found["cases"] == sum(found["kinds"].values())
+    assert found["asked"] == COUNT
+    assert set(found["kinds"]) == {kind.__name__ for kind in (*KINDS, *WEIGHTS)}
+    assert all(0 <= found["refused"][kind] <= count for kind, count in found["kinds"].items())
     assert f"**{len(found['failures'])}** of them failed" in PAGE.read_text()
 
 
 def test_the_long_form_goes_on_where_it_stopped_but_not_on_other_code(tmp_path, monkeypatch):
     numbers = []
 
-    class Cases:
-        def __init__(self, place):
-            pass
-
-        def case(self, number):
+    def carried_out(place, asked):
+        for number in asked:
             numbers.append(number)
-            if number == FIRST + 2:
-                raise IndexError("a bare one")
-            if number == FIRST + 4 and len(numbers) == 5:
+            if number == 4 and len(numbers) == 5:
                 raise KeyboardInterrupt
+            error = "IndexError: a bare one" if number == 2 else ""
+            yield Came(number, 2 if number == 3 else 1, number == 1, "walks", 0.1, error)
 
-    monkeypatch.setattr(long_form, "Range", Cases)
+    monkeypatch.setattr(long_form, "carried_out", carried_out)
+    monkeypatch.setattr(long_form, "Doors", lambda place: None)
     for name in ("OUTCOME", "PROGRESS", "PAGE"):
         monkeypatch.setattr(long_form, name, tmp_path / name)
     long_form.PAGE.write_text(PAGE.read_text())
-    long_form.OUTCOME.write_text('{"cases": 5}')
+    long_form.OUTCOME.write_text('{"cases": 6}')
     with pytest.raises(KeyboardInterrupt):
-        run(tmp_path, 6, keep=True)
+        run(tmp_path, 7, keep=True)
     first = long_form.kept()
-    assert (first["cases"], [one["case"] for one in first["failures"]]) == (4, [FIRST + 2])
+    assert (first["cases"], first["next"], [one["case"] for one in first["failures"]]) == (5, 4, [2])
     assert long_form.PAGE.read_text() == PAGE.read_text()  # which tells of more cases
-    found = run(tmp_path, 6, keep=True, so_far=first)
-    assert numbers == [*range(FIRST, FIRST + 5), FIRST + 4, FIRST + 5]
-    assert (found["cases"], found["failures"]) == (6, first["failures"])
+    found = run(tmp_path, 7, keep=True, so_far=first)
+    assert numbers == [0, 1, 2, 3, 4, 4, 5, 6]
+    assert (found["cases"], found["kinds"], found["refused"]) == (7, {"walks": 7}, {"walks": 1})
+    assert found["failures"] == first["failures"]
     assert json.loads(long_form.OUTCOME.read_text()) == found
-    assert "Of the long form 6 of the 50 000 cases" in long_form.PAGE.read_text()
+    assert "Of the long form 7 of the 100 000 cases" in long_form.PAGE.read_text()
+    assert "6 of them got through the door" in long_form.PAGE.read_text()
     monkeypatch.setattr(long_form, "code_digest", lambda room: "other")
     assert long_form.kept() is None
 
 
 @pytest.mark.validate
-def test_fifty_thousand_hostile_cases(tmp_path):
-    count = int(os.environ.get("SUCHUS_FUZZ", COUNT))
-    before = long_form.kept()
-    so_far = before if before and before["cases"] <= count else None
-    found = run(tmp_path, count, keep=True, so_far=so_far)
-    assert (found["cases"], found["failures"]) == (count, [])
+def test_a_hundred_thousand_cases():
+    words = [sys.executable, str(FARM.with_name("long_form.py")), os.environ.get("SUCHUS_FUZZ", str(COUNT))]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]

@@ -106,7 +106,7 @@ def squared(number, progress):
 
 
 @pytest.mark.slow("a cluster, of which parts are killed, and a second run")
-def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
+def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, counted):
     with connected(machines.address) as client:
         client.wait_for_workers(2, timeout=60)
         optimise(search, tmp_path / "search", client=client)
@@ -116,6 +116,7 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path):
             conduct_sweep(
                 "squares", squared, range(1, 6), tmp_path / "sweep", progress=lambda *_: machines.stop(), client=client
             )
+    counted("kills", 2)
     assert 1 <= len(list((tmp_path / "sweep" / "parts").iterdir())) < 5
     results = conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep")  # resumed, here
     assert [(float(one.x[1]), one.attrs) for one in results] == [(float(n**2), {"of": n}) for n in range(1, 6)]

@@ -70,12 +70,13 @@ def page(tmp_path):
 
 
 @pytest.mark.slow("a process is killed, and the search run twice")
-def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes(page, tmp_path):
+def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes(page, tmp_path, counted):
     store = tmp_path / "killed"
     with subprocess.Popen([sys.executable, "-c", ALONE, str(page), str(store)]) as process:
         while len(list((store / "free" / "parts").glob("*.nc"))) < 3 and process.poll() is None:
             time.sleep(0.002)
         os.kill(process.pid, signal.SIGKILL)
+    counted("kills")
     kept = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in store.rglob("*.nc") if not p.parent.name.startswith(".")}
     assert len(kept) >= 3
     optimise(read_optimisation(page), store)

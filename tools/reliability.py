@@ -1,0 +1,90 @@
+"""The table of docs/reliability.md that counts what the batteries did: run them and write it, ``make reliability``.
+
+``python tools/reliability.py --table`` writes the table of what is kept, without running anything. The cases of the
+fuzzer are run by ``python tests/fuzz/long_form.py``, which takes much longer.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pages.passages import put
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "reliability.md"
+KEPT, CASES = ROOT / "tests" / "batteries.json", ROOT / "tests" / "fuzz" / "long_form.json"
+BATTERIES = {
+    "failed writes": (
+        "every n-th open, write, close, rename, fsync, link and mkdir of a command fails; what was kept is whole, and "
+        "the next run gives the same bytes",
+        "swims that were forgotten before their result was saved; nothing fsynced; files left after exit code 2",
+    ),
+    "kills": (
+        "processes of studies, searches, swims, sweeps and clusters are ended, most by SIGKILL; what was finished "
+        "stays, and the end has the same bytes",
+        "workers of `reproduce` that computed on; drafts that stayed",
+    ),
+    "flipped caches": (
+        "kept kernels with flipped bits or cut are compiled anew, and give the right result",
+        "a process that ended by SIGSEGV or SIGABRT until the cache was deleted by hand",
+    ),
+    "imitated processors": (
+        "the same study, and values of the three libraries, on processors with and without fused multiply-add",
+        "other bytes on another processor, and stores that mixed both without a word",
+    ),
+}
+"""Of each battery what is done, and what it found, mended since."""
+_FOUND = (
+    "records in centimetres, degrees or milliseconds, with axes in another order or two variables exchanged, that were "
+    "read as if they were in SI units"
+)
+
+
+def table(kept: Mapping[str, Mapping[str, Any]], cases: Mapping[str, Any]) -> str:
+    """Return the table, a row for each battery.
+
+    Args:
+        kept: what each test did, see ``tests/batteries.py``.
+        cases: what came of the fuzzer's cases, see ``tests/fuzz/long_form.py``.
+    """
+    rows = ["| battery | what is done | how many | failed | last run | found, and mended since |"]
+    rows.append("|---|---|---:|---:|---|---|")
+    for name, (what, found) in BATTERIES.items():
+        of = [one for one in kept.values() if one["battery"] == name]
+        last = max((one["date"] for one in of), default="never")
+        failed = sum(one["failed"] for one in of)
+        rows.append(f"| {name} | {what} | {sum(one['number'] for one in of)} | {failed} | {last} | {found} |")
+    what = f"hostile cases and cases that are nearly right, [{len(cases['kinds'])} kinds](#how-it-is-tested)"
+    done = f"{cases['cases']} | {len(cases['failures'])} | {cases['date']}"
+    return "\n".join([*rows, f"| fuzzer | {what} | {done} | {_FOUND} |"]) + "\n"
+
+
+def write() -> None:
+    """Write the table of what is kept into the page."""
+    kept, cases = (json.loads(file.read_text(encoding="utf-8")) for file in (KEPT, CASES))
+    PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), {"batteries": table(kept, cases)}), encoding="utf-8")
+
+
+def tests() -> list[str]:
+    """Return the files of the tests that count what they do."""
+    files = sorted((ROOT / "tests").rglob("test_*.py"))
+    return [str(file) for file in files if "    counted(" in file.read_text(encoding="utf-8")]
+
+
+def main(words: list[str]) -> int:
+    """Run the batteries, unless only the table is asked for, and write it."""
+    code = 0
+    if "--table" not in words:
+        environment = os.environ | {"SUCHUS_BATTERIES": "write"}
+        command = [sys.executable, "-m", "pytest", "-n0", "-m", "slow or not slow", "-k", "not validate", *tests()]
+        code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+    write()
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
