@@ -64,7 +64,7 @@ def test_the_page_counts_what_the_batteries_did():
     """Renew with ``make reliability``, or with ``python tools/reliability.py --table`` what is kept."""
     kept, cases = (json.loads(file.read_text("utf-8")) for file in (reliability.KEPT, reliability.CASES))
     assert put(PAGE, {"batteries": reliability.table(kept, cases)}) == PAGE
-    assert {one["battery"] for one in kept.values()} == reliability.BATTERIES.keys()
+    assert {one["battery"] for one in kept.values()} <= reliability.BATTERIES.keys()
     files = {test.partition("::")[0] for test in kept}
     assert files <= {str(Path(file).relative_to(ROOT)) for file in reliability.tests()}
 
