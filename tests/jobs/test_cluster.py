@@ -15,7 +15,7 @@ import xarray as xr
 
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.swim_3d.experiment import _swum_here, swum_in_space
+from suchus.experiments.swim_3d.experiment import Item, _swum_here, swum_in_space
 from suchus.fingerprint import fingerprint
 from suchus.jobs import NoCluster, conduct_sweep, connected
 from suchus.land import Run
@@ -135,7 +135,7 @@ def swims(robot):
     return (
         "swims",
         partial(swum_in_space, robot),
-        [(wave, SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=2))],
+        [Item(wave, SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=2))],
     )
 
 
