@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from suchus.capture import ReadingOptions, UnusableTracks, film_animal, observe, read_tracks, write_table
+from suchus.capture.markers import upright
 from suchus.errors import SuchusError, UnknownName, UnreadableFile
 
 HEAD = "time [s],hip_x [mm],hip_y [mm]\n"
@@ -157,15 +158,85 @@ def test_poses_need_a_rate_and_a_choice(deeplabcut, movement):
         read_tracks(deeplabcut, ReadingOptions(rate=10.0, individual="three"))
 
 
-def test_the_real_library_reads_what_it_writes(lizard, noisy, tmp_path):
+def test_what_is_up_does_not_depend_on_where_the_animal_goes(lizard, noisy):
+    for heading in (0.0, 1.57, 2.1, -2.5):
+        camera = replace(noisy, heading=heading, heights=True, noise=0.0)
+        tracks = film_animal(lizard, camera, cycles=4)
+        np.testing.assert_array_equal(upright(tracks.position, tracks.points, "it"), tracks.position)
+
+
+KINDS = ("DeepLabCut.h5", "DeepLabCut.csv", "SLEAP.analysis.h5", "SLEAP.slp", "Anipose.csv")
+
+
+def poses(kind, tracks, path):
+    """Write tracks as a file of a pose estimator; ``movement`` and the libraries that come with it do."""
+    position = tracks.position if tracks.upright else tracks.position * [1.0, -1.0]  # images have y down
+    if kind == "SLEAP.slp":
+        sio = pytest.importorskip("sleap_io")
+        skeleton, track = sio.Skeleton(list(tracks.points)), sio.Track("it")
+        video = sio.Video(filename="film.mp4", backend=None, open_backend=False)
+        frames = [
+            sio.LabeledFrame(
+                video=video,
+                frame_idx=i,
+                instances=[
+                    sio.PredictedInstance.from_numpy(
+                        points, point_scores=np.ones(len(points)), score=1.0, skeleton=skeleton, track=track
+                    )
+                ],
+            )
+            for i, points in enumerate(position)
+        ]
+        labels = sio.Labels(labeled_frames=frames, videos=[video], skeletons=[skeleton], tracks=[track])
+        sio.save_file(labels, str(path), embed=False)
+        return
+    if kind == "Anipose.csv":
+        columns = {}
+        for name, place in zip(tracks.points, position.transpose(1, 2, 0), strict=True):
+            columns |= {f"{name}_{axis}": row for axis, row in zip("xyz", place, strict=True)}
+            columns |= {f"{name}_error": 0.0, f"{name}_score": 1.0, f"{name}_ncams": 2.0}
+        columns |= {f"M_{i}{j}": float(i == j) for i in range(3) for j in range(3)}
+        columns |= {f"center_{i}": 0.0 for i in range(3)} | {"fnum": np.arange(len(tracks.time))}
+        rows = np.column_stack([np.broadcast_to(one, len(tracks.time)) for one in columns.values()])
+        np.savetxt(path, rows, delimiter=",", header=",".join(columns), comments="", fmt="%.6g")
+        return
     load = pytest.importorskip("movement.io.load_poses")
     save_poses = pytest.importorskip("movement.io.save_poses")
+    flat = position.transpose(0, 2, 1)[..., None]
+    data = load.from_numpy(flat, keypoint_names=list(tracks.points), individual_names=["it"], fps=100)
+    if kind.startswith("SLEAP"):
+        save_poses.to_sleap_analysis_file(data, path)
+    else:
+        save_poses.to_dlc_file(data, path, split_individuals=False)
 
-    tracks = film_animal(lizard, replace(noisy, rate=100.0, noise=0.0005), cycles=4)
-    position = (tracks.position * [1.0, -1.0]).transpose(0, 2, 1)[..., None]
-    data = load.from_numpy(position, keypoint_names=list(tracks.points), individual_names=["it"], fps=100)
-    save_poses.to_dlc_file(data, tmp_path / "dlc.h5", split_individuals=False)
-    save_poses.to_sleap_analysis_file(data, tmp_path / "sleap.h5")
-    for name in ("dlc.h5", "sleap.h5"):
-        back = read_tracks(tmp_path / name, ReadingOptions(rate=100.0))
-        assert observe(back).value("duty_LF") == pytest.approx(observe(tracks).value("duty_LF"), abs=1e-3)
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_real_library_reads_files_of_every_kind(kind, lizard, noisy, tmp_path):
+    """Files of DeepLabCut and SLEAP as their own libraries write them, of Anipose as its manual has them."""
+    pytest.importorskip("movement.io")
+    camera = replace(noisy, rate=100.0, noise=0.0005, heights=kind.startswith("Anipose"), lost=0.01)
+    tracks = film_animal(lizard, camera, cycles=4)
+    poses(kind, tracks, tmp_path / kind)
+    back = read_tracks(tmp_path / kind, ReadingOptions(rate=100.0))
+    assert set(back.points) == set(tracks.points)
+    assert back.unit == "px"
+    np.testing.assert_allclose(back.time, tracks.time, atol=1e-9)
+    for point in tracks.points:
+        assert (np.isfinite(back.at(point)) == np.isfinite(tracks.at(point))).all()
+    apart = [np.linalg.norm(one.at("hip") - one.at("LF"), axis=-1) for one in (back, tracks)]
+    np.testing.assert_allclose(*apart, rtol=1e-4, atol=1e-2)
+    assert observe(back).value("duty_LF") == pytest.approx(observe(tracks).value("duty_LF"), abs=1e-3)
+
+
+def test_one_animal_of_several_in_a_real_file_is_chosen_by_its_name(lizard, noisy, tmp_path):
+    load = pytest.importorskip("movement.io.load_poses")
+    save_poses = pytest.importorskip("movement.io.save_poses")
+    tracks = film_animal(lizard, replace(noisy, rate=100.0, lost=0.0), cycles=2)
+    one = (tracks.position * [1.0, -1.0]).transpose(0, 2, 1)[..., None]
+    both = np.concatenate([one, one + 500.0], axis=-1)
+    data = load.from_numpy(both, keypoint_names=list(tracks.points), individual_names=["first", "other"], fps=100)
+    save_poses.to_dlc_file(data, tmp_path / "two.h5", split_individuals=False)
+    with pytest.raises(UnusableTracks, match="choose one with --individual: first, other"):
+        read_tracks(tmp_path / "two.h5", ReadingOptions(rate=100.0))
+    other = read_tracks(tmp_path / "two.h5", ReadingOptions(rate=100.0, individual="other"))
+    np.testing.assert_allclose(other.position, tracks.position + np.array([500.0, -500.0]))

@@ -57,7 +57,9 @@ def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray
     feet = [points.index(leg) for leg in LEGS if leg in points]
     if not trunk or not feet:
         return place
-    above = np.nanmedian(place[:, trunk], axis=(0, 1)) - np.nanmedian(place[:, feet], axis=(0, 1))
+    seen = np.ma.masked_invalid(place)
+    middles = seen[:, trunk].mean(axis=1) - seen[:, feet].mean(axis=1)  # frame by frame: the animal goes on
+    above = np.nanmedian(middles.filled(np.nan), axis=0)
     up = 1 if abs(above[1]) > abs(above[2]) else 2
     if not above[up] > 0.0:
         raise UnusableTracks(
