@@ -238,6 +238,8 @@ def test_power_and_force_of_the_water_come_back(swim, tmp_path):
     numbers = {name: float(data.value.sel(quantity=name)) for name in ("reynolds", "strouhal", "froude")}
     assert numbers["reynolds"] == pytest.approx(float(data.speed) * 1.045 / 1e-6, rel=0.02)
     assert 0.2 < numbers["strouhal"] < 1.0
+    sizes = float(data.value.sel(quantity="swimming_number")) / numbers["strouhal"] / numbers["reynolds"]
+    assert sizes == pytest.approx(2 * np.pi)
 
 
 @pytest.mark.slow("a slice and a flow in space are computed")

@@ -46,6 +46,7 @@ from suchus.progress import Progress, portion, silent
 from suchus.water import Outline, cycle, displaced, recoil, undulation
 from suchus.water.setting import SwimSetting
 from suchus.water.swim_setup import ResolvedSwim
+from suchus.water.swimming import SIMILARITY, similarity
 
 THICK = "sections, thick water"
 """Name of the sections in water as thick as that of the flows, beside which these stand."""
@@ -369,16 +370,13 @@ def _told(walk: Walk, body: Robot, gait: Gait, found: Mapping[str, Sequence[_Swu
 
 def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> Quantities:
     """Add the numbers by which swims of other sizes are compared, in real water by the first rung."""
-    viscosity, length = Water().viscosity, body.length
-    outline = Outline(body, 65)
+    outline, water = Outline(body, 65), Water()
     motion = undulation(outline, gait)
-    swing = float(np.ptp(cycle(outline, motion, *recoil(outline, motion, 0.0, Water())).y[:, -1]))
-    rate = 2 * np.pi * gait.frequency
-    table.add("reynolds", list(speeds * length / viscosity), "-", "speed times length over viscosity, fresh water")
-    table.add("froude", list(speeds / np.sqrt(9.81 * length)), "-", "speed over the root of gravity times length")
-    table.add("strouhal", list(gait.frequency * swing / speeds), "-", "frequency times the tail's swing over the speed")
-    table.add("swimming_number", [rate * swing / 2 * length / viscosity], "-",
-              "angular frequency times the tail's amplitude times length over viscosity, fresh water")  # fmt: skip
+    swing = float(np.ptp(cycle(outline, motion, *recoil(outline, motion, 0.0, water)).y[:, -1]))
+    each = [similarity(body.length, gait.frequency, swing, float(speed), water) for speed in speeds]
+    for name in each[0]:
+        meaning = f"{SIMILARITY[name]}, in fresh water by the first model"
+        table.add(name, sorted({one[name] for one in each}, key=[one[name] for one in each].index), "-", meaning)
     return table
 
 

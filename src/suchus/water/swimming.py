@@ -61,21 +61,23 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
     return _record(outline, motion, around, curves, per_model)
 
 
+SIMILARITY = {
+    "reynolds": "speed times length over the viscosity",
+    "froude": "speed over the root of gravity times length",
+    "strouhal": "frequency times the peak-to-peak amplitude of the tail's tip, over speed",
+    "swimming_number": "angular frequency times the tail's way from side to side times length over the viscosity",
+}
+"""Numbers by which swims of other sizes are compared, and what each is."""
 _PER_MODEL = {
     "thrust_held": ("N", "mean force forward, kept from moving on"),
     "speed": ("m/s", "free swimming, forward"),
     "speed_lengths": ("1/s", "free swimming, in body lengths"),
     "power": ("W", "of the joints on the water"),
     "slip": ("1", "speed over that of the body wave"),
-    "strouhal": ("1", "frequency times the peak-to-peak amplitude of the tail's tip, over speed"),
+    "strouhal": ("1", SIMILARITY["strouhal"]),
     "cost_of_transport": ("1", "power over displaced weight and speed"),
     "head_yaw": ("rad", "amplitude of the head's direction"),
-    "reynolds": ("1", "speed times length over the viscosity"),
-    "froude": ("1", "speed over the root of gravity times length"),
-    "swimming_number": (
-        "1",
-        "angular frequency times the tail's way from side to side times length over the viscosity",
-    ),
+    **{name: ("1", SIMILARITY[name]) for name in ("reynolds", "froude", "swimming_number")},
 }
 
 
@@ -90,12 +92,27 @@ def _numbers(
         "speed_lengths": speed / robot.length,
         "power": power,
         "slip": speed / wave_speed(outline, motion, curve),
-        "strouhal": motion.frequency * swing / abs(speed) if moving else float("nan"),
+        **similarity(robot.length, motion.frequency, swing, speed, water),
         "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
         "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
-        "reynolds": abs(speed) * robot.length / water.viscosity,
-        "froude": abs(speed) / (GRAVITY * robot.length) ** 0.5,
-        "swimming_number": 2.0 * np.pi * motion.frequency * swing * robot.length / water.viscosity,
+    }
+
+
+def similarity(length: float, frequency: float, swing: float, speed: float, water: Water) -> dict[str, float]:
+    """Return the numbers by which swims of other sizes are compared; see ``SIMILARITY`` for what each is [-].
+
+    Args:
+        length: of the body [m].
+        frequency: of the beat [Hz].
+        swing: of the tail's tip from side to side [m].
+        speed: of the swim [m/s].
+        water: its medium.
+    """
+    return {
+        "reynolds": abs(speed) * length / water.viscosity,
+        "froude": abs(speed) / (GRAVITY * length) ** 0.5,
+        "strouhal": frequency * swing / abs(speed) if speed else float("nan"),
+        "swimming_number": 2.0 * np.pi * frequency * swing * length / water.viscosity,
     }
 
 
