@@ -49,7 +49,7 @@ def table(kept: Mapping[str, Mapping[str, Any]], cases: Mapping[str, Any]) -> st
 
     Args:
         kept: what each test did, see ``tests/batteries.py``.
-        cases: what came of the fuzzer's cases, see ``tests/fuzz/long_form.py``.
+        cases: results of the fuzzer's cases, see ``tests/fuzz/long_form.py``.
     """
     rows = ["| battery | what is done | how many | failed | last run | found, and mended since |"]
     rows.append("|---|---|---:|---:|---|---|")

@@ -17,7 +17,7 @@ from suchus.progress import silent
 from suchus.water import Outline
 
 _ENDS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
-"""What ends an episode: robot and flow come apart, the body leaves its plane or its box, or moves too fast for it."""
+"""What ends an episode: robot and flow diverge, the body leaves its plane or its box, or moves too fast for it."""
 
 
 class Tanks:
