@@ -1,0 +1,102 @@
+"""Whether guidance by coverage finds more: lines of the importer that equally many cases reach, each way.
+
+``python tests/fuzz/guided.py blind|targets|atheris [COUNT]``. The cases are those of ``doors.altered`` over three small
+robots; ``targets`` lets hypothesis look for cases that reach new lines, ``atheris`` lets libFuzzer, with the same
+changes as its mutations (it is in no extra: ``pip install atheris``). The results stand in docs/reliability.md.
+"""
+
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+from types import FrameType
+from typing import Any
+
+from doors import altered, pendulum, quadruped
+
+from suchus.errors import SuchusError
+from suchus.model.importing import Words, import_robot
+
+ROOM = str(Path(sys.modules[import_robot.__module__].__file__ or "").parent)
+SEEDS = [text.encode() for text in (quadruped(), pendulum(), pendulum(3, axis="0 1 0"))]
+
+
+class Reached:
+    """The lines of the importer that cases reached so far."""
+
+    def __init__(self, count: int) -> None:
+        self.file, self.left, self.lines = Path(tempfile.mkdtemp()) / "it.urdf", count, set[tuple[str, int]]()
+        self.passed = 0
+
+    def case(self, data: bytes) -> int:
+        """Read a robot, and return how many lines nobody had reached before."""
+        before, self.left = len(self.lines), self.left - 1
+        self.file.write_bytes(data)
+        sys.settrace(self._trace)
+        try:
+            import_robot(self.file, name="it", words=Words())
+            self.passed += 1
+        except SuchusError:
+            pass
+        finally:
+            sys.settrace(None)
+        if self.left % 100 == 0:
+            print(f"{self.left} left: {len(self.lines)} lines, {self.passed} robots", flush=True)
+        return len(self.lines) - before
+
+    def _trace(self, frame: FrameType, event: str, _: Any) -> Callable[..., Any] | None:
+        return self._line if frame.f_code.co_filename.startswith(ROOM) else None
+
+    def _line(self, frame: FrameType, event: str, _: Any) -> Callable[..., Any]:
+        if event == "line":
+            self.lines.add((frame.f_code.co_filename, frame.f_lineno))
+        return self._line
+
+
+def blind(reached: Reached, count: int) -> None:
+    for number in range(count):
+        dice = Random(number)
+        reached.case(altered(dice.choice(SEEDS).decode(), dice).encode())
+
+
+def targets(reached: Reached, count: int) -> None:
+    from hypothesis import HealthCheck, given, settings, target  # noqa: PLC0415  where it is asked for
+    from hypothesis import strategies as st  # noqa: PLC0415
+
+    @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @given(st.randoms(use_true_random=False), st.sampled_from(SEEDS))
+    def examples(dice: Random, seed: bytes) -> None:
+        if reached.left:
+            target(float(reached.case(altered(seed.decode(), dice).encode())))
+
+    examples()
+
+
+def atheris(reached: Reached, count: int) -> None:
+    import atheris as fuzzer  # noqa: PLC0415
+
+    def change(data: bytes, size: int, seed: int) -> bytes:
+        try:
+            return altered(data.decode(), Random(seed)).encode()[:size]
+        except (ValueError, LookupError):
+            return bytes(fuzzer.Mutate(data, size))
+
+    def one(data: bytes) -> None:
+        if not reached.left:
+            os._exit(0)
+        reached.case(data)
+
+    corpus = Path(tempfile.mkdtemp())
+    for number, seed in enumerate(SEEDS):
+        (corpus / str(number)).write_bytes(seed)
+    fuzzer.instrument_all()
+    words = [sys.argv[0], str(corpus), f"-runs={2 * count}", "-max_len=20000", "-seed=1", "-verbosity=0"]
+    fuzzer.Setup(words, one, custom_mutator=change)
+    fuzzer.Fuzz()
+
+
+if __name__ == "__main__":
+    number_of_cases = int(sys.argv[2]) if len(sys.argv) > 2 else 500
+    {"blind": blind, "targets": targets, "atheris": atheris}[sys.argv[1]](Reached(number_of_cases), number_of_cases)
