@@ -405,7 +405,7 @@ def searches(self: Doors, dice: Random) -> None:
         path = self.place / "searched.toml"
         text = self.sound["search.toml"].decode()
         bounds = [f"{bound:.3g}" for bound in sorted((dice.uniform(0.0, 0.1), dice.uniform(0.1, 0.4)))]
-        path.write_text(text.replace("low = 0.0", f"low = {bounds[0]}").replace("high = 0.06", f"high = {bounds[1]}"))
+        path.write_text(text.replace("low = 0.0", f"low = {bounds[0]}").replace("high = 0.3", f"high = {bounds[1]}"))
         spec = read_optimisation(path)
     shares = [dice.choice((0.0, 1.0, dice.random())) for _ in spec.vary]
     run = spec.candidate(dict(zip((vary.field for vary in spec.vary), shares, strict=True)))

@@ -121,7 +121,7 @@ limits = [{name = "torque", value = 2.0}]
 [[vary]]
 field = "gait.stroke"
 low = 0.0
-high = 0.06
+high = 0.3
 """
 
 
