@@ -85,15 +85,17 @@ def test_all_lessons_play_offline_on_a_phone_and_their_explanations_hold(tmp_pat
 
 
 def plays(opened, address):
+    from tests.replay.test_player import until  # noqa: PLC0415  the rest of this file needs no browser
+
     page, asked, said = opened.new_page(viewport={"width": 390, "height": 844}), [], []
     page.on("request", lambda request: asked.append(request.url))
     page.on("console", lambda message: said.append(message.text))
     page.goto(address + "#t=5")
-    page.wait_for_function("window.suchus && window.suchus.mass() !== null")
+    until(page, "window.suchus && window.suchus.mass() !== null")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     first = page.locator("#told").inner_text()
     page.locator("#chosen").fill("1")
-    page.wait_for_function(f"document.getElementById('told').textContent !== {first!r}")
+    until(page, f"document.getElementById('told').textContent !== {first!r}")
     right = page.evaluate("document.querySelector('#answer strong').textContent").removesuffix(".")
     page.get_by_role("radio", name=right, exact=True).check()
     assert page.locator("#answer").get_attribute("open") is not None

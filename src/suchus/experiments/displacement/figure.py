@@ -34,7 +34,8 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
     size = robot.length / _USUAL
-    apart = 0.42 * size
+    wide = _width(record.sel(time=times, method="nearest"), size)
+    apart = 2 * wide + 0.04 * size
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=5.2)
         ax = axes[0, 0]
@@ -43,10 +44,11 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
             run, aside = record.isel(run=i), -apart * i
             draw_strip(ax, robot, run, times, role=role, aside=aside)
             start, stop = (float(ahead.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
-            dim = aside - 0.21 * size
+            dim = aside - wide - 0.02 * size
             ax.annotate(
                 "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}
             )
+            ax.update_datalim([(start, dim - 0.06 * size)])
             ax.text(
                 max(stop, start + 0.02 * size) + 0.03 * size,
                 dim,
@@ -55,6 +57,7 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
                 va="center",
                 fontsize=13,
             )
+        ax.autoscale_view()
         ax.set_axis_off()
     return captioned(
         figure,
@@ -62,6 +65,12 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
         "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet "
         "stand.",
     )
+
+
+def _width(shown: xr.Dataset, size: float) -> float:
+    """Return how far a strip reaches to either side: to the farthest foot with its toes, at least to the usual [m]."""
+    feet = np.abs(shown.foot_position.sel(xyz="y").values).max(initial=0.0)
+    return max(0.19 * size, float(feet) + 0.06 * size)
 
 
 def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed: Mapping[str, float]) -> Figure:
