@@ -325,6 +325,7 @@ def test_another_robot_has_a_page_of_its_own_without_the_claims_of_the_article(r
     for said in gone:
         assert said not in own
     assert "none of them is judged here" in own
+    assert "<code>suchus size strider</code>" in own
     caiman = of_another_robot(result, tmp_path / "article", "caiman")
     assert "same sense" in caiman
     assert "measured</title>" not in caiman

@@ -111,6 +111,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "metres": metres({result.name: result for result in results}),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
+        "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
         "others": others,
         "drawing": _drawing(robot),
         "parts": parts(tables_of(robot) or robot),
