@@ -11,7 +11,6 @@ import suchus
 from suchus.control import Swimming
 from suchus.control.holding import HeadingHold
 from suchus.coupling import Swim, simulate
-from suchus.coupling.swim import AGAIN
 from suchus.errors import Doubtful, InvalidDesign, UnknownName, UnreadableFile
 from suchus.fingerprint import fingerprint
 from suchus.land import Ground, Lake, Push, Run
@@ -72,8 +71,7 @@ def test_a_run_in_a_flow_keeps_to_its_rung():
         Slice(cells=8)
 
 
-def test_a_joint_that_comes_to_its_stop_is_said_once_and_what_is_left_over_renews_the_added_mass():
-    """On both sides of each: a joint in the middle of its range, and a step that left over little."""
+def test_a_joint_that_comes_to_its_stop_is_said_once():
     swim = Swim(disturbed(), 0.1)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", Doubtful)
@@ -87,15 +85,6 @@ def test_a_joint_that_comes_to_its_stop_is_said_once_and_what_is_left_over_renew
     said = [str(one.message) for one in told if "range" in str(one.message)]
     assert len(said) == 1
     assert "joint spine_yaw_1 of robot 'swimmer' is driven to the end of its range" in said[0]
-    computed = len(swim.series.radius)
-    swim._since, swim._left = AGAIN, 0.5 * swim.water.tolerance
-    swim._renew()
-    assert len(swim.series.radius) == computed
-    swim._left = 2.0 * swim.water.tolerance
-    swim._renew()
-    assert len(swim.series.radius) == computed + 1
-    swim._renew()  # not again at once
-    assert len(swim.series.radius) == computed + 1
 
 
 def test_a_robot_that_sinks_is_refused():

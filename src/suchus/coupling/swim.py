@@ -54,8 +54,6 @@ LONGEST = 1.25
 own, and while the robot swims it takes some 0.9."""
 FINER = 5
 """Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
-AGAIN = 8
-"""Steps after which the added mass may be computed anew where corrections left over too much [-]."""
 _ROUNDS, _SETTLED = 10, 1e-4
 """Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
 and the change of the acceleration, over its size, at which they have [-]."""
@@ -67,8 +65,6 @@ _CHANGING = (
     "computed",
     "greatest",
     "strikes",
-    "left",
-    "since",
     "effort",
     "start_added",
 )
@@ -129,8 +125,7 @@ class Swim:
         self._added = np.zeros((self.chain.size, self.chain.size))
         self._kept = self._added
         self._computed: np.ndarray | None = None
-        self._greatest, self._strikes, self._left = 0.0, 0, 0.0
-        self._since = 0  # steps since the added mass was computed
+        self._greatest, self._strikes = 0.0, 0
         self._stopped: set[str] = set()
         self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
         self.samples = Samples()
@@ -265,19 +260,14 @@ class Swim:
         return self._effort
 
     def _renew(self) -> None:
-        """Compute the added mass anew if it is no longer right, and when the wall first has its skin.
-
-        It is not where the body has turned or bent enough, or where corrections leave over more than they may.
-        """
-        self._since += 1
+        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin."""
         posture = self.path.at(self.time)
         settled = len(self.series.time) == 1
         if self._computed is not None and not settled:
             bent = np.abs(posture.place[2:] - self._computed[2:]).max()
-            missed = self._left > self.water.tolerance and self._since >= AGAIN
-            if bent < self.water.renewed and not missed:
+            if bent < self.water.renewed:
                 return
-        self._computed, self._since = posture.place, 0
+        self._computed = posture.place
         before = self._added
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         found = self.sim.added_mass(self.run.robot.name, modes)
@@ -358,7 +348,7 @@ class Swim:
             left, made = self._size(found - told) / self._greatest, made + 1
         self._effort += stretch.effort
         self._note(stretch, found, began, posture, (first, left), made)
-        self._force, self._push, self._left = found, push, left
+        self._force, self._push = found, push
         self._watch(left)
         self._renew()
 
