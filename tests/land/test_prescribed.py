@@ -15,6 +15,7 @@ from suchus.hydro import column
 from suchus.land import Lake
 from suchus.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 from suchus.motion import still
+from suchus.motion.axis import yaw_hinges
 from suchus.robots import ROBOTS
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
@@ -112,3 +113,14 @@ def test_a_free_body_is_as_heavy_as_the_water_that_it_displaces():
     body = _Submerged(ROBOT, Lake(level=0.0))
     body.fill(1000.0)
     assert body._model.body_mass.sum() == pytest.approx(1000.0 * column(TABLE, "volume").sum())
+
+
+@pytest.mark.parametrize("name", ["salamander", "pleurobot"])
+def test_a_robot_with_a_neck_is_towed_and_swims_without_its_limbs(name):
+    """Without girdles the neck's hinges are the trunk's: their names there do not matter to the water."""
+    robot = ROBOTS[name]
+    lake = Lake(level=3.0)
+    assert towed_sections(robot, 0.1, lake) > 0.0
+    joints = yaw_hinges(robot).names
+    assert any(joint.startswith("neck_yaw_") for joint in joints)
+    assert len(set(_Submerged(robot, lake, joints)._places)) == len(joints)

@@ -175,12 +175,32 @@ def sections_along(
     return SectionLoads(links, moments)
 
 
+def _limbless(robot: Robot) -> tuple[Robot, dict[str, str]]:
+    """Return a robot without limbs, and what its hinges that had another name are called there.
+
+    Without a girdle there is no neck: hinges ahead of the foremost girdle are some more of the trunk's.
+    """
+    own = [hinge.name for segment in robot.axis for hinge in segment.hinges]
+    called: dict[str, str] = {}
+    for neck, spine in (("neck_yaw_", "spine_yaw_"), ("neck_pitch_", "spine_pitch_")):
+        count = sum(name.startswith(spine) for name in own)
+        called |= {f"{neck}{k}": f"{spine}{count + k}" for k in range(1, sum(one.startswith(neck) for one in own) + 1)}
+    axis = tuple(
+        replace(
+            segment,
+            hinges=tuple(replace(hinge, name=called.get(hinge.name, hinge.name)) for hinge in segment.hinges),
+        )
+        for segment in robot.axis
+    )
+    return replace(robot, axis=axis, girdles=(), hull=None), called
+
+
 class _Submerged:
     """The model of a robot without limbs, wholly under water and without weight."""
 
     def __init__(self, robot: Robot, lake: Lake, joints: Sequence[str] | None = None) -> None:
         """Build it; ``joints`` are the lateral joints that move, from the head on, all driven ones if None."""
-        self._robot, bare = robot, replace(robot, girdles=(), hull=None)
+        self._robot, (bare, called) = robot, _limbless(robot)
         wetting.install()
         self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))
         self._model.opt.gravity[:] = 0.0
@@ -188,8 +208,8 @@ class _Submerged:
         self._lake = replace(lake, level=DEEPEST)
         self._hinges = yaw_hinges(robot)
         names = self._hinges.names if joints is None else joints
-        self._places = [int(self._model.joint(name).qposadr[0]) for name in names]
-        self._dofs = [int(self._model.joint(name).dofadr[0]) for name in names]
+        self._places = [int(self._model.joint(called.get(name, name)).qposadr[0]) for name in names]
+        self._dofs = [int(self._model.joint(called.get(name, name)).dofadr[0]) for name in names]
         self.joints = len(names)
         self.still = np.zeros(self._model.nv)
 
