@@ -155,8 +155,9 @@ def test_memory_that_runs_out_is_a_sentence(monkeypatch, capsys):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="address space is limited on Linux")
 def test_with_a_real_limit_nothing_spins(tmp_path):
-    line = f"ulimit -v 250000; exec {sys.executable} -m suchus run displacement --quick --out '{tmp_path}/made'"
-    done = subprocess.run(["sh", "-c", line], capture_output=True, text=True, timeout=60, check=False)
+    line = 'ulimit -v 250000; exec "$0" -m suchus run displacement --quick --out "$1"'
+    command = ["sh", "-c", line, sys.executable, str(tmp_path / "made")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "raise the limit" in done.stderr

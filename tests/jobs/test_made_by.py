@@ -10,13 +10,15 @@ from suchus.record.provenance import deciding_source
 
 HARMLESS = (
     "suchus.errors",
+    "suchus.large",
     "suchus.machine",
     "suchus.threads",
     "suchus.progress",
     "suchus.kernel_cache",
     "suchus.writing",
 )
-"""Words, how this machine computes, how many threads, how far something is, and where and how things are kept."""
+"""Words, what is too large to begin with, how this machine computes, how many threads, how far something is, and where
+and how things are kept."""
 
 
 @pytest.fixture(scope="module")

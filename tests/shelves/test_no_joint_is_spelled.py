@@ -45,6 +45,7 @@ WHERE = {
     "LH_pitch": {"experiments/joint_loops/experiment.py"},
 }
 COLUMNS = {
+    "coupling/simulation.py": "letters of a digest",
     "experiments/swim_3d/experiment.py": "letters of a digest",
     "experiments/swimming/ladder.py": "letters of a digest",
     "kernel_cache.py": "letters of a digest",

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.coupling import Swim
 from suchus.design import layout
 from suchus.envs.actor import Actor
 from suchus.errors import Diverged, InvalidDesign, NotConverged, OutsideLimits
@@ -15,6 +15,9 @@ from suchus.land import Push, Run
 from suchus.land.batch import Beginning, SimulationBatch
 from suchus.progress import silent
 from suchus.water import Outline
+
+if TYPE_CHECKING:
+    from suchus.coupling import Swim
 
 _ENDS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
 """What ends an episode: robot and flow diverge, the body leaves its plane or its box, or moves too fast for it."""
@@ -49,6 +52,8 @@ class Tanks:
             faults: what breaks, each at its time since this beginning.
             pushes: forces from outside, likewise.
         """
+        from suchus.coupling import Swim  # noqa: PLC0415  the solver of the flow is loaded by who swims in one alone
+
         actor = Actor(begin.commanded[None].copy(), self._periods, self._limbs)
         run = replace(self._run, faults=tuple(faults), pushes=tuple(pushes))
         self._swims[sim] = Swim(run, np.inf, controller=actor, begin=begin)
