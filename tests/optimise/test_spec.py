@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 
 from suchus.cli import main
+from suchus.control import Runs
 from suchus.design import value_at
+from suchus.design.scale import control_period
 from suchus.errors import SuchusError
 from suchus.optimise import AIMS, LIMITS, READY, Aim, Limit
 from suchus.study import Arm, Vary
@@ -122,3 +124,12 @@ def test_a_bad_file_is_one_sentence_and_leaves_nothing(change, tmp_path, monkeyp
 def test_a_search_that_is_not_there_is_one_sentence(capsys):
     assert main(["optimise", "crwal"]) == 2
     assert "Did you mean 'crawl'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", list(READY))
+def test_what_a_ready_made_search_begins_with_can_be_steered(name):
+    """Before a candidate is simulated its control plans a single tick."""
+    spec = READY[name]()
+    for arm in spec.arms:
+        run = spec.of(arm).run
+        run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))

@@ -157,12 +157,13 @@ class Standing:
         away = np.clip(np.minimum(time - self.at, end - time) / self.blend, 0.0, 1.0)
         share = (1.0 - np.cos(np.pi * away)) / 2.0
         phase, crawling = intended(robot, gait, np.where(time < end, np.minimum(time, self.at), time - (end - self.at)))
+        pitch = share * planned.pitch
         return Course(
             targets=crawling + share[:, None] * (planned.targets - crawling),
             phase=phase,
-            pitch=share * planned.pitch,
+            pitch=pitch,
             feet=planned.feet,
-            rate=np.gradient(share * planned.pitch, time),
+            rate=np.gradient(pitch, time) if time.size > 1 else np.zeros(time.size),
         )
 
 
