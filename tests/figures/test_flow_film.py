@@ -48,6 +48,8 @@ def test_what_is_no_film_is_refused(tmp_path):
         FieldFilm(every=0.0)
     with pytest.raises(InvalidDesign, match="speed of a film is nan"):
         FieldFilm(every=0.1, speed=float("nan"))
+    with pytest.raises(InvalidDesign, match="limit of a film is 0"):
+        FieldFilm(every=0.1, limit=0.0)
     with pytest.raises(UnknownName, match="vorticity"):
         FieldFilm(every=0.1, what="heat")
     with pytest.raises(InvalidDesign, match="holds no frame"):

@@ -89,13 +89,13 @@ def _of(sim: Simulation, what: FieldName) -> np.ndarray:
 def vorticity(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the vorticity, red counter-clockwise; ``limit`` is the end of the scale [1/s]."""
     values = sim.vorticity
-    return _Picture(sim, values, limit or span(values, 0.99), *_FIELDS["vorticity"]).figure
+    return _Picture(sim, values, span(values, 0.99) if limit is None else limit, *_FIELDS["vorticity"]).figure
 
 
 def pressure(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the pressure; ``limit`` is the end of the scale [Pa]."""
     values = sim.pressure
-    return _Picture(sim, values, limit or span(values, 0.99), *_FIELDS["pressure"]).figure
+    return _Picture(sim, values, span(values, 0.99) if limit is None else limit, *_FIELDS["pressure"]).figure
 
 
 @dataclass(slots=True)
@@ -118,8 +118,8 @@ class FieldFilm:
     _sim: Simulation | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("every", self.every), ("speed", self.speed)):
-            if not (isfinite(value) and value > 0):
+        for name, value in (("every", self.every), ("speed", self.speed), ("limit", self.limit)):
+            if value is not None and not (isfinite(value) and value > 0):
                 raise InvalidDesign(f"{name} of a film is {value}; a positive number is needed.")
         if self.what not in _FIELDS:
             raise UnknownName("field", str(self.what), tuple(_FIELDS))
@@ -148,7 +148,9 @@ class FieldFilm:
             raise InvalidDesign(f"a film is a GIF; give {where.name!r} the ending .gif.")
         if self._sim is None:
             raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
-        limit = self.limit or span(np.stack([values for _, values, _ in self._frames]), 0.99)
+        limit = (
+            self.limit if self.limit is not None else span(np.stack([values for _, values, _ in self._frames]), 0.99)
+        )
         shown = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
         shown.figure.set_dpi(_FILM_DPI)
         times = [time for time, _, _ in self._frames]

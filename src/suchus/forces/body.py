@@ -19,8 +19,8 @@ Rung = Literal["sections", "slice", "space"]
 RUNGS: tuple[Rung, ...] = get_args(Rung)
 """All of them."""
 DRAWS = 39
-"""Choices beside the most likely one [-]: the least and the greatest of 39 answers hold a fortieth in 95 of 100
-cases, whatever their distribution."""
+"""Choices beside the most likely one [-]: whatever their distribution, a fortieth answer lies between the least and the
+greatest of 39 in 95 of 100 cases."""
 _SURE = float(norm.ppf(0.975))  # standard errors in half a 95 % interval
 _POSITIVE = ("stride", "stride_length", "period", "trunk_length", "lift", "stroke", "spine_lateral", "tail_lateral")
 _SHARES = ("duty", "retraction")

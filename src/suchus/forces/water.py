@@ -376,7 +376,7 @@ def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> 
     each = [similarity(body.length, gait.frequency, swing, float(speed), water) for speed in speeds]
     for name in each[0]:
         meaning = f"{SIMILARITY[name]}, in fresh water by the first model"
-        table.add(name, sorted({one[name] for one in each}, key=[one[name] for one in each].index), "-", meaning)
+        table.add(name, list(dict.fromkeys(one[name] for one in each)), "-", meaning)
     return table
 
 

@@ -60,6 +60,8 @@ Kind = Literal["measured", "construction", "fitted", "animals"]
 count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was chosen so that
 it comes out. ``animals``: the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
 """
+BUILT = "robots built of the design, with the errors of their servos, masses and friction"
+"""What the intervals of most rules are of, for people."""
 Relation = Literal["<", "<=", ">", ">="]
 _RELATIONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
     {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}

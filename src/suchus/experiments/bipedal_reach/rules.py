@@ -1,9 +1,8 @@
 """When the claims on the heights that are reached count as what (section IV.D, Figs 22 to 24)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule, Varied, between
+from suchus.verdict.rule import BUILT, Clause, Rule, Varied, between
 
-_BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _ONE_ROBOT = "Lengths and torques of other robots are varied on the maps of the experiment, one or two at a time."
 
 
@@ -22,7 +21,7 @@ RULES = (
             Clause("distance_high_crawl", ">", 0.0, "a crawl that gets forward"),
         ),
         spread=("reach_crawl", "hips_at_printed_height"),
-        of=_BUILT,
+        of=BUILT,
         why="The top of the back, with the hips at {hip_height:mm.0f} mm. The article says neither which point it "
         "measured nor how high the hips are; hips at {hips_at_printed_height:mm.0f} mm give the printed height, and up "
         "to {hip_height_plausible:mm.0f} mm are plausible.",
@@ -39,7 +38,7 @@ RULES = (
             ),
         ),
         spread=("reach_standing", "reach_ratio", "held_share"),
-        of=_BUILT,
+        of=BUILT,
         why="The snout at its lowest while it stands, for {held:.0f} s. Hind leg, spine and head in one line are "
         "{stretched_length:.3f} m: the article does not give the head's length, and ours was chosen so that they make "
         "the printed height.",
@@ -51,7 +50,7 @@ RULES = (
         kind="fitted",
         holds=(Clause("reach_ratio", ">", 2.0, "several times as high is more than twice"),),
         spread=("reach_ratio",),
-        of=_BUILT,
+        of=BUILT,
         why="The height of the stand was fitted, and so is its ratio. The crawl reaches {reach_crawl:.3f} m; with the "
         "hips at {hips_at_printed_height:mm.0f} mm it would reach the printed height.",
     ),

@@ -3,9 +3,8 @@
 from math import nan, radians
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
+from suchus.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
 
-_BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _STEADIER = "steadier is a smaller fluctuation"
 _STEPS = Clause(
     "hind_duty_limbs_tail_lifted", "<=", 0.85, "feet that hardly leave the ground walk in no gait, and rise with none"
@@ -24,7 +23,7 @@ RULES = (
         holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADIER),),
         control=_IN_THE_AIR,
         spread=("com_height_pp_change_tail_lifted", "hind_duty_limbs_tail_lifted"),
-        of=_BUILT,
+        of=BUILT,
         why="Highest less lowest height: {com_height_pp_coordinated:mm.1f} mm with spine and tail, "
         "{com_height_pp_limbs_tail_lifted:mm.1f} mm with limbs only and the tail in the air, a change of "
         "{com_height_pp_change_tail_lifted:+.0%} ({com_height_pp_change_tail_lifted_low:+.0%} to "
@@ -44,7 +43,7 @@ RULES = (
         ),
         control=_IN_THE_AIR,
         spread=("line_distance_max_limbs_tail_lifted", "hind_duty_limbs_tail_lifted"),
-        of=_BUILT,
+        of=BUILT,
         why="The article speaks of two feet that carry alone. With limbs only and the tail in the air they do so for "
         "{two_feet_alone_share_limbs_tail_lifted:.0%} of the time; with the tail on the ground, which carries "
         "{tail_load_share_limbs_only:.0%} of the weight, for {two_feet_alone_share_limbs_only:.0%}.",
@@ -68,7 +67,7 @@ RULES = (
             "lean_coordinated_1200_ms",
             "line_distance_limbs_tail_lifted_1200_ms",
         ),
-        of=_BUILT,
+        of=BUILT,
         why="At 1.2 s {standing_feet_limbs_tail_lifted_1200_ms:.0f} feet stand with limbs only and the tail in the air "
         "and the pelvis leans by {lean_limbs_tail_lifted_1200_ms:deg.1f} degrees, against "
         "{lean_coordinated_1200_ms:deg.1f} with spine and tail and {lean_limbs_only_1200_ms:deg.1f} on "
@@ -93,7 +92,7 @@ RULES = (
             why="What lies on the ground supports: the same crawl with the tail in the air, unswung.",
         ),
         spread=("tail_contact_pp_change", "tail_load_share_coordinated"),
-        of=_BUILT,
+        of=BUILT,
         why="On the ground the tail carries {tail_load_share_coordinated:.1%} of the weight "
         "({tail_load_share_coordinated_low:.1%} to {tail_load_share_coordinated_high:.1%}) and changes the fluctuation "
         "by {tail_contact_pp_change:+.0%} against the same crawl with the tail in the air ("
@@ -109,7 +108,7 @@ RULES = (
             group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
         ),
         spread=("wagging_pp_change",),
-        of=_BUILT,
+        of=BUILT,
         why="Against a tail that is dragged without a swing wagging changes the fluctuation by "
         "{wagging_pp_change:+.0%} ({wagging_pp_change_low:+.0%} to {wagging_pp_change_high:+.0%}).",
     ),

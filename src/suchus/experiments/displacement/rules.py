@@ -1,9 +1,8 @@
 """When the claims on the displacement count as what (section IV.B, Fig. 16)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, ControlGroup, Rule, between
+from suchus.verdict.rule import BUILT, Clause, ControlGroup, Rule, between
 
-_BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _FREE = (
     "Leg stroke and trunk bend are free in the article and were chosen so that its two displacements come out; "
     "the tail's pitch is free too and moves this one from {forward_over_tail_pitch_low:.2f} to "
@@ -31,7 +30,7 @@ RULES = (
         kind="fitted",
         holds=(Clause("forward_coordinated", ">", 0.0, _FORWARD),),
         spread=("forward_coordinated",),
-        of=_BUILT,
+        of=BUILT,
         why=_FREE,
     ),
     Rule(
@@ -42,7 +41,7 @@ RULES = (
         holds=(Clause("forward_limbs_only", ">", 0.0, _FORWARD),),
         control=_LEGS_ALONE,
         spread=("forward_limbs_only", *_WALKS),
-        of=_BUILT,
+        of=BUILT,
         why="The same legs with the trunk straight and the tail lying still; hind feet stand "
         "{hind_duty_limbs_only:.0%} of the time ({hind_duty_limbs_only_low:.0%} to {hind_duty_limbs_only_high:.0%}), "
         "two feet for {two_feet_share_limbs_only:.0%} of it ({two_feet_share_limbs_only_low:.0%} to "
@@ -58,7 +57,7 @@ RULES = (
         holds=(Clause("forward_ratio", ">", 1.0, "farther with than without"),),
         control=_LEGS_ALONE,
         spread=("forward_ratio", *_WALKS),
-        of=_BUILT,
+        of=BUILT,
         why="Both displacements were fitted, and so is their ratio: other strokes and bends give "
         "{ratio_on_map_low:.1f} to {ratio_on_map_high:.1f}. Against the control group with its tail in the air it is "
         "{forward_ratio_tail_lifted:.2f}.",
@@ -70,7 +69,7 @@ RULES = (
         holds=(Clause("gain_spine_swing", ">", 0.0, _GAINS),),
         control=_UNSWUNG,
         spread=("gain_spine_swing",),
-        of=_BUILT,
+        of=BUILT,
         why="Against the same crawl with a straight trunk: the tail drags and swings in both. It changes the "
         "displacement by {gain_spine_swing_low:.2f} to {gain_spine_swing_high:.2f} m.",
     ),
@@ -83,7 +82,7 @@ RULES = (
             group="tail_still", why="What swings adds: the same crawl whose tail is dragged without a swing."
         ),
         spread=("gain_tail_swing",),
-        of=_BUILT,
+        of=BUILT,
         why="Against the same crawl whose tail drags without a swing the swing changes the displacement by "
         "{gain_tail_swing:mm+.0f} mm, {gain_tail_swing_low:mm+.0f} to {gain_tail_swing_high:mm+.0f} mm; "
         "lying on the ground instead of in the air changes it by {gain_tail_contact:mm+.0f} mm.",
@@ -96,7 +95,7 @@ RULES = (
         holds=(Clause("gain_spine_swing", ">", 0.0, _GAINS),),
         control=_UNSWUNG,
         spread=("gain_spine_swing",),
-        of=_BUILT,
+        of=BUILT,
         why="Said of crocodiles. The robot does the same: at equal strokes of the legs its bending trunk changes the "
         "displacement by {gain_spine_swing:+.2f} m.",
     ),

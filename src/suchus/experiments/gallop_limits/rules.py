@@ -1,7 +1,7 @@
 """When the claim on galloping counts as what (section II.A)."""
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, Rule, between
+from suchus.verdict.rule import BUILT, Clause, Rule, between
 
 RULES = (
     Rule(
@@ -14,7 +14,7 @@ RULES = (
             Clause("flight_bound", ">=", 0.1, "a gallop has phases of flight; less is a walk that stumbles"),
         ),
         spread=("bound_over_walk",),
-        of="robots built of the design, with the errors of their servos, masses and friction",
+        of=BUILT,
         why="Said of crocodiles. With servos like the robot's own a bound goes {speed_bound:.2f} m/s, "
         "{flight_bound:.0%} of the time in flight, and the fastest walk {speed_walk:.2f} m/s; with the best servos "
         "tried the bound goes {speed_bound_best:.2f} m/s.",

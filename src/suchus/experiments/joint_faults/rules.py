@@ -4,9 +4,8 @@ from itertools import product
 
 from suchus.paper import CLAIMS
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
+from suchus.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
 
-_BUILT = "robots built of the design, with the errors of their servos, masses and friction"
 _LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
 _MOST = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
 _ENDS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
@@ -54,7 +53,7 @@ def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
         holds=tuple(Clause(measure, one.relation, one.bound, one.why) for one in said),
         control=_INTACT,
         spread=(measure,),
-        of=_BUILT,
+        of=BUILT,
         why=(_bare(joint) if arm == "limbs_only" else "") + why,
     )
 
@@ -109,7 +108,7 @@ RULES = (
         "{com_rise_limp:mm+.1f} mm. The foot is off the ground for {foot_free_limp:.0%} of its swing (intact "
         "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
         spread=("support_share_limp", "com_rise_limp", "foot_free_limp"),
-        of=_BUILT,
+        of=BUILT,
     ),
     Rule(
         claim="fault_tolerance",
@@ -124,7 +123,7 @@ RULES = (
             why="Section IV.C: without trunk cooperative motion. It does not say where the tail is; ours lies still.",
         ),
         spread=tuple(f"gain_{joint}_limp_one" for joint in _BORNE),
-        of=_BUILT,
+        of=BUILT,
         why=_borne(),
     ),
 )

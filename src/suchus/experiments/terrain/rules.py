@@ -3,7 +3,7 @@
 from math import nan
 
 from suchus.verdict.judging import Examples
-from suchus.verdict.rule import Clause, ControlGroup, Rule, Varied, between
+from suchus.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
 
 RULES = (
     Rule(
@@ -13,7 +13,7 @@ RULES = (
         holds=(Clause("flat_cost_ratio", "<", 1.0, "the structure to adopt is the one that costs less"),),
         control=ControlGroup(group="high_walk", why="Section II.B: one structure or the other, on the same ground."),
         spread=("flat_cost_ratio",),
-        of="robots built of the design, with the errors of their servos, masses and friction",
+        of=BUILT,
         why="On even ground the low crawl costs {flat_cost_ratio:.2f} of the high walk's work over the same "
         "distance, and gets {flat_forward_low_crawl:.2f} m while the high walk gets {flat_forward_high_walk:.2f} m.",
     ),
