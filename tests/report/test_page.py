@@ -235,18 +235,20 @@ def test_a_page_without_results_is_still_a_page():
     assert "No claim was tested." in page.text
 
 
-def test_a_folder_that_holds_no_outcome_is_refused(tmp_path):
+def test_a_folder_that_holds_no_outcome_is_refused(result, tmp_path):
     with pytest.raises(UnreadableFile, match="there is no file"):
         load_result(tmp_path)
     (tmp_path / "outcome.json").write_text('{"figures": [], "tables": []}')
     with pytest.raises(IncompatibleRecord, match="lacks experiment"):
         load_result(tmp_path)
-    (tmp_path / "outcome.json").write_text('{"figures": [], "tables": ["../secret"]}')
+    (tmp_path / "outcome.json").write_text(json.dumps({**result.outcome, "figures": [], "tables": ["../secret"]}))
     with pytest.raises(IncompatibleRecord, match="no file of its folder"):
         load_result(tmp_path)
-    (tmp_path / "outcome.json").write_text("[]")
-    with pytest.raises(IncompatibleRecord, match="no outcome"):
-        load_result(tmp_path)
+    for text in ("[]", "1", '"x"'):
+        (tmp_path / "outcome.json").write_text(text)
+        with pytest.raises(IncompatibleRecord, match="no outcome") as refused:
+            load_result(tmp_path)
+        assert "indices" not in str(refused.value)
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,10 @@ def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
         wide = [row + [np.nan] * (3 * len(points) - len(row)) for row in cells]
         place = np.array(wide, dtype=float).reshape(len(wide), len(points), 3)
     except (KeyError, ValueError) as error:
-        raise UnreadableFile(f"{path} cannot be read as a TRC file: {error}.") from error
+        raise UnreadableFile(
+            f"{path} cannot be read as a TRC file: its second line is to name DataRate and Units, the line below is to "
+            f"give both, and what stands from line {_HEADER + 1} on is to be numbers."
+        ) from error
     if not points:
         raise UnreadableFile(f"{path} names no marker in its fourth line.")
     place[~np.isfinite(place).all(axis=-1)] = np.nan

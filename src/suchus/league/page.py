@@ -102,10 +102,8 @@ def standings_of(path: Path) -> list[LeagueEntry]:
     """
     try:
         return [_standing(data) for data in read_json(path)]
-    except (TypeError, KeyError) as error:
-        raise UnreadableFile(
-            f"{path} keeps no standings of the league: {error}; make it with suchus league."
-        ) from error
+    except (TypeError, KeyError, ValueError, AttributeError) as error:
+        raise UnreadableFile(f"{path} keeps no standings of the league; make it with suchus league.") from error
 
 
 def _standing(data: Any) -> LeagueEntry:

@@ -63,6 +63,11 @@ class _Provenance(_Described):
     seconds: FiniteFloat
 
 
+class _File(_Described):
+    name: str
+    caption: str
+
+
 class _Outcome(_Described):
     experiment: str
     title: str
@@ -72,6 +77,10 @@ class _Outcome(_Described):
     measures: dict[str, _Measure]
     verdicts: list[_Verdict]
     provenance: _Provenance
+    figures: list[_File]
+    tables: list[str]
+    films: list[_File] = []
+    replays: list[_File] = []
     unjudged: str = ""
 
 
@@ -175,6 +184,7 @@ def load_result(folder: Path) -> Result:
     file = folder / OUTCOME
     try:
         outcome = read_json(file)
+        check_described(outcome, file)
         pictures = tuple(
             Picture(
                 name=f["name"],
@@ -191,9 +201,6 @@ def load_result(folder: Path) -> Result:
         raise
     except OSError as error:
         raise UnreadableFile(f"{error.filename or file} cannot be read: {(error.strerror or '').lower()}.") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise IncompatibleRecord(f"{file} is no outcome of suchus: {error}.") from error
-    check_described(outcome, file)
     return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
 
 
@@ -217,5 +224,5 @@ def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving,
 def _inside(folder: Path, name: str) -> Path:
     """A file of the folder itself; a name that leads elsewhere is refused."""
     if Path(name).name != name:
-        raise ValueError(f"{name!r} is no file of its folder")
+        raise IncompatibleRecord(f"{folder / OUTCOME} is no outcome of suchus: {name!r} is no file of its folder.")
     return folder / name
