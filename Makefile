@@ -7,7 +7,7 @@ EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
-.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas bench docs
+.PHONY: reproduce test test-all check single double space lint types contract tests costs mutate validate atlas bench docs
 .PHONY: release reliability version pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
@@ -39,6 +39,9 @@ single double space: .venv/.dev # the flow's kernels, compiled once; else every 
 
 tests: .venv/.dev
 	$(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
+
+costs: .venv/.dev # measures every test; what costs too much for make test is listed in tests/costly.json
+	SUCHUS_COSTS=write $(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
 
 mutate: .venv/.dev # every rule of a verdict and every measure broken in every way; also a part of the tests
 	$(PY) -m pytest tests/shelves/test_every_rule.py tests/shelves/test_every_measure.py -k break -m "slow or not slow" -v -n0

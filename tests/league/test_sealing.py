@@ -13,6 +13,7 @@ from suchus.errors import InvalidDesign, NotConverged, UnreadableFile
 from suchus.league import Predictor, SingleContestant, every, find, sealing
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
 from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
+from suchus.record import package_digest
 
 _TRUTH = {"speed": {"value": 4.4, "low": 4.3, "high": 4.5, "unit": "m/s", "source": "a gun"}}
 _OPENED: list[Path] = []
@@ -52,7 +53,8 @@ def test_a_prediction_has_its_form_and_its_seal(tmp_path):
 
 
 def test_nothing_that_was_measured_is_read_before_the_seal(tmp_path, monkeypatch):
-    """By an audit hook, which sees every file that this process opens."""
+    """By an audit hook, which sees every file that this process opens; digests of the code are made anew."""
+    package_digest.cache_clear()
     measured = _truth(tmp_path)
     for one in (stone(), *(_cheap(find(CONTESTANTS, name)) for name in ("catshark_2", "amphibot"))):
         there = measured if one.name == "stone" else measured_file(one.name)

@@ -52,6 +52,10 @@ def versions() -> dict[str, str]:
     return found
 
 
+MEASURED = "measured"
+"""Folders of what was measured of contestants, which the league compares predictions with."""
+
+
 @cache
 def code_digest(*rooms: str) -> str:
     """Return the SHA-256 of the source of some rooms or modules of suchus without their docstrings, and of their data.
@@ -90,10 +94,13 @@ def _docstrings(place: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFu
 
 @cache
 def package_digest() -> str:
-    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results."""
+    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results.
+
+    Files of ``MEASURED`` are left out: no result may depend on them, and nothing opens them before it is sealed.
+    """
     text = hashlib.sha256()
     for file in sorted(_PACKAGE.rglob("*")):
-        if "__pycache__" not in file.parts and file.is_file():
+        if not {"__pycache__", MEASURED} & {*file.relative_to(_PACKAGE).parts} and file.is_file():
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     return text.hexdigest()[:12]
 
