@@ -8,7 +8,7 @@ import pytest
 from suchus import flow
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow.added import added_mass, generalised_added_mass
-from suchus.flow.twist import Twists
+from suchus.flow.twist import Twists, held_faces
 
 H = 0.01
 """Length of a step [s]."""
@@ -167,3 +167,18 @@ def test_a_slice_is_divided_at_its_cuts():
     assert sim.last("foil").forces.sum(axis=0) == pytest.approx(sim.last("foil").whole.force)
     with pytest.raises(InvalidDesign, match="cuts of a midline"):
         flow.Midline(spine=lambda _: spine, cuts=(0.4, 0.2))
+
+
+def test_the_middle_of_a_thick_slice_belongs_to_its_parts():
+    s = np.linspace(0.0, 1.0, 65)
+    zero, wide = 0 * s, np.minimum(0.25, np.sqrt(np.maximum(0.25**2 - (0.25 - np.minimum(s, 1 - s)) ** 2, 1e-6)))
+    spine = flow.MidlineState(x=s, y=zero, heading=zero, half_width=wide, x_rate=zero, y_rate=zero, heading_rate=zero)
+    shape = flow.Midline(spine=lambda _: spine, deforms=False, cuts=(0.3, 0.6))
+    grid = flow.Grid.covering((-0.5, 1.5), (-0.7, 0.7), cell=1 / 32)
+    body = flow.Body(shape=shape, motion=flow.Pose(), name="foil")
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=2e-3, bodies=(body,), coarse=True))
+    for faces in held_faces(sim.water):
+        inside = faces.held > 0.5
+        x, row = faces.points[0, inside], faces.row[inside]
+        assert x.size > 300
+        assert row.tolist() == np.searchsorted([0.3, 0.6], x, side="right").tolist()

@@ -169,11 +169,11 @@ class Midline(Shape):
         h = (x[-1] - x[0]) / (x.size - 1)
         field = Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
         if self.cuts:
-            field.part = self._nearest_parts(placed, x, y, np.abs(field.distance) < reach)
+            field.part = self._nearest_parts(placed, x, y, field.distance < reach)
         return field
 
     def _nearest_parts(self, placed: MidlineState, x: np.ndarray, y: np.ndarray, near: np.ndarray) -> np.ndarray:
-        """Return which part has the station that is nearest to each point of a window, where it is near the body."""
+        """Return which part has the station that is nearest to each point of a window, in the body and near it."""
         rows, columns = np.nonzero(near)
         nearest = KDTree(np.column_stack([placed.x, placed.y])).query(np.column_stack([x[columns], y[rows]]))[1]
         part = np.zeros(near.shape)
