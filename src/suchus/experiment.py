@@ -4,7 +4,7 @@ import re
 import sys
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
@@ -283,6 +283,18 @@ class Experiment(ABC):
     @abstractmethod
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, read from the record alone; ``Measures`` keep two from having one name."""
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least, as a run gives them.
+
+        By default all are simulated for; whoever has runs that some measures do not take leaves those runs out here.
+
+        Args:
+            wanted: names of measures.
+            progress: told the share that is done.
+        """
+        del wanted
+        return self.measure(self.simulate(progress).record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided the outcome, in a paragraph whose every statement follows from the measures.

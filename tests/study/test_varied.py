@@ -22,6 +22,16 @@ from suchus.verdict import RULES, Varied, varied_of
 from suchus.verdict.judging import digest
 
 CLAIM = "tail_quadratic_small"
+OF_A_PART = {
+    "crawl_stability": "com_height_pp_change_low",
+    "feedback": "kick_kept_open",
+    "joint_faults": "loss_front_yaw_limp_one_coordinated",
+    "pattern_generator": "lag_walk",
+    "speed_range": "unknown",
+    "swimming": "speed_free",
+    "terrain": "falls_switching",
+}
+"""Questions that are asked in part for their claims, and a measure that takes the whole."""
 DECLARED = {name: varied_of(name) for name in EXPERIMENTS if varied_of(name) is not None}
 
 
@@ -37,13 +47,11 @@ class Gap:
     def name():
         return "gap"
 
-    def simulate(self, progress=None):
+    def measured(self, wanted, progress=None):
         if self.robot.tables.tail.gap > self.refused:
             raise OutsideLimits("too wide a gap")
-        return SimpleNamespace(record=xr.Dataset({"error": 3.0 * self.robot.tables.tail.gap}))
-
-    def measure(self, record):
-        return {"error_of_eq_17_max": SimpleNamespace(value=float(record.error)), "beside": SimpleNamespace(value=0.0)}
+        error = 3.0 * self.robot.tables.tail.gap
+        return {"error_of_eq_17_max": SimpleNamespace(value=error), "beside": SimpleNamespace(value=0.0)}
 
 
 def study(**other):
@@ -134,6 +142,38 @@ def test_a_study_that_varies_nothing_is_refused():
         study(vary=())
 
 
+_SLOW = {name: pytest.mark.slow("a part of a quick form is simulated once more") for name in OF_A_PART}
+_FAST = ("crawl_stability", "speed_range")
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in _FAST else pytest.param(name, marks=_SLOW[name]) for name in OF_A_PART]
+)
+def test_what_is_measured_of_a_part_is_what_the_whole_measures(name, quick_outcome):
+    wanted = set().union(*(RULES[claim].needs for claim in DECLARED[name].claims))
+    part, whole = EXPERIMENTS[name].quick().measured(wanted), quick_outcome(name).measures
+    assert wanted <= part.keys() <= whole.keys()
+    np.testing.assert_array_equal([part[one].value for one in wanted], [whole[one].value for one in wanted])
+
+
+@pytest.mark.parametrize(("name", "measure"), OF_A_PART.items())
+def test_what_is_not_of_the_part_is_measured_of_the_whole(name, measure, monkeypatch):
+    question = EXPERIMENTS[name].quick()
+    monkeypatch.setattr(type(question), "simulate", lambda self, progress: SimpleNamespace(record=self))
+    monkeypatch.setattr(type(question), "measure", lambda self, record: {measure: record})
+    assert question.measured({measure})[measure] == question
+
+
+def test_no_other_gait_is_walked_than_those_that_are_asked_for(monkeypatch):
+    """And every question that is asked in part is among those that are tried above."""
+    question = EXPERIMENTS["speed_range"]
+    monkeypatch.setattr(type(question), "simulate", lambda self, progress: SimpleNamespace(record=self))
+    monkeypatch.setattr(type(question), "measure", lambda self, record: [gait.name for gait in record.gaits])
+    assert question.measured({"speed_high_walk_slowest_low", "tail_on_ground_high_walk"}) == ["high_walk"]
+    assert question.measured({"cost_semi_erect", "speed_high_walk"}) == ["semi_erect", "high_walk"]
+    assert {name for name in DECLARED if "measured" in vars(type(EXPERIMENTS[name]))} == set(OF_A_PART)
+
+
 @pytest.mark.parametrize("name", DECLARED)
 def test_what_is_declared_can_be_asked_and_meets_what_is_judged(name):
     declared, shelf = DECLARED[name], EXPERIMENTS[name]
@@ -143,6 +183,7 @@ def test_what_is_declared_can_be_asked_and_meets_what_is_judged(name):
     asked = varied_study(shelf)
     assert asked.samples & (asked.samples - 1) == 0
     for one in asked.vary:
+        assert "range[" not in one.field  # a limit of a joint only forbids
         assert one.low <= value_at(asked.experiment, one.field) <= one.high, one.field
     assert all(len(why) > 20 for _, _, why in declared.over.values())
 

@@ -171,3 +171,12 @@ def evenly(design: str, count: int, fields: int, seed: int) -> np.ndarray:
         return np.asarray(qmc.LatinHypercube(fields, rng=np.random.default_rng(seed)).random(count))
     sobol = qmc.Sobol(fields, rng=np.random.default_rng(seed))
     return np.asarray(sobol.random_base2(max(count - 1, 0).bit_length())[:count])
+
+
+def only_forbids(path: str) -> bool:
+    """Return whether a field is a limit of a joint: it changes no motion, and whether it forbids one is counted apart.
+
+    Args:
+        path: of the field, from the run or the experiment.
+    """
+    return "range[" in path

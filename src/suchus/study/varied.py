@@ -1,7 +1,7 @@
 """An experiment asked again with other plausible designs and settings: what its walks of the claims cannot answer."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,7 +20,7 @@ from suchus.progress import Progress, silent
 from suchus.robots import ROBOTS
 from suchus.study.answers import answered
 from suchus.study.claim_measures import held
-from suchus.study.plan import evenly, value_of
+from suchus.study.plan import evenly, only_forbids, value_of
 from suchus.study.study import Vary
 from suchus.verdict import RULES, Rule, listed, varied_of
 
@@ -34,11 +34,8 @@ class Question(Protocol):
     def name(self) -> str:
         """Return its name on the shelf."""
 
-    def simulate(self, progress: Progress = silent) -> Any:
-        """Do what is to be measured; ``record`` of the result is what happened."""
-
-    def measure(self, record: xr.Dataset) -> Mapping[str, Any]:
-        """Return every number, each with its ``value``."""
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
+        """Return the numbers that are wanted at least, each with its ``value``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +98,7 @@ def varied_study(question: Question, samples: int | None = None) -> VariedStudy 
         thing = getattr(experiment, held_in)
         shelves: Any = ROBOTS if isinstance(thing, Robot) else GAITS
         chosen = shelves.beside(thing.name, "chosen", ())
-        rows += [(f"{held_in}.{one.field}", one.low, one.high) for one in chosen if "_range[" not in one.field]
+        rows += [(f"{held_in}.{one.field}", one.low, one.high) for one in chosen if not only_forbids(one.field)]
     return VariedStudy(
         name=question.name(),
         experiment=experiment,
@@ -176,8 +173,7 @@ def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Data
     needed = sorted(set().union(*(rule.needs for rule in study.rules)))
     numbers, error = dict.fromkeys(needed, np.nan), ""
     try:
-        asked = study.asked(sample)
-        measures = asked.measure(asked.simulate(progress).record)
+        measures = study.asked(sample).measured(needed, progress)
         numbers = {name: float(measures[name].value) for name in needed}
     except SuchusError as refused:
         error = f"{type(refused).__name__}: {' '.join(str(refused).split())}"

@@ -88,7 +88,8 @@ RULES = (
 VARIED = Varied(
     claims=("height_crawl", "height_standing", "height_ratio", "height_from_spine_head_legs"),
     designs=("robot",),
-    samples=16,
+    settings={"hold": 10.0, "torques": (3.0,), "forebodies": (0.6,), "leads": (), "pushes": (1.0,), "finer": 0},
+    samples=32,
 )
 
 _CRAWL = {

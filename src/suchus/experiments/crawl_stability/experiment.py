@@ -1,6 +1,6 @@
 """Does it crawl more steadily with spine and tail than without?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -47,6 +47,8 @@ _CHANGES = (
     ("roll_pp_change", "roll_pp", "coordinated", "limbs_only"),
 )
 """Relative changes: name, of which number, condition, what it is compared with."""
+_OF_ALL = (*(name for name, *_ in _CHANGES), "stroke_equal_displacement", "spine_sine_r2")
+"""Measures that are not of the robots as built in one condition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +91,17 @@ class CrawlStability(TwoGroups):
         record.attrs["equal_stroke"] = share * self._stroke()
         return Simulated(record=record, replays=self._replays(record))
 
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; of single conditions no other condition walks."""
+        if any(name.startswith(_OF_ALL) or _EQUAL in name for name in wanted):
+            return super(CrawlStability, self).measured(wanted, progress)
+        arms = conditions_of(self.robot, self.gait, self.control_group)
+        named = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in wanted)}
+        runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in named.items()]
+        end = START + self.cycles * self.gait.period
+        record = self.repeated(runs, _numbers, _UNITS | _looked_at(), end, progress)
+        return of_repeats(record, _UNITS) | self._snapshots(record)
+
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         return replayed(
             "stability_replay.html",
@@ -129,6 +142,11 @@ class CrawlStability(TwoGroups):
             "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
             "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
         }
+        return measures | self._snapshots(record)
+
+    def _snapshots(self, record: xr.Dataset) -> Measures:
+        """Return what the snapshots of the conditions show that are looked at."""
+        measures = Measures()
         for name in self._shown(list(record.condition.values)):
             looked = {number: record[f"repeated_{number}"].sel(condition=name) for number in _looked_at()}
             for number, unit in _looked_at().items():

@@ -1,6 +1,6 @@
 """How far does the robot still get when joints of its legs fail?"""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import Any
@@ -46,6 +46,8 @@ from suchus.metrics import (
 from suchus.motion import START, Gait
 from suchus.paper import CLAIMS
 
+_OF_SUPPORT = ("support_share_", "tail_load_", "foot_", "com_")
+"""How the names of the measures begin that are of what carries the body."""
 _OF_A_LIMB = 2  # hinges of a limb, from the hip on, that are steered and locked in places; the article's yaw and pitch
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
@@ -120,6 +122,12 @@ class JointFaults(TwoGroups):
         record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
         return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; for what carries the body nothing else need fail."""
+        if not all(name.startswith(_OF_SUPPORT) for name in wanted):
+            return super(JointFaults, self).measured(wanted, progress)
+        return _support_measures(self._support(progress))
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return what every cell costs against both intact robots, and what carries the body."""

@@ -1,6 +1,6 @@
 """What do coupled oscillators make of a single drive: walking, swimming, turning, and order from any start?"""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from math import radians
 from typing import Any, ClassVar
@@ -29,6 +29,8 @@ _NUMBERS = Oscillators()
 _EDGE = 0.01  # above the limbs' highest drive, where they have just fallen silent
 STRAIGHT = ("drive_low", "straight", "drive_high")
 """Walks by an even drive: the lowest that moves the limbs, the one for walking, the highest."""
+_TURNS = {"turn_gained": ("straight", "asymmetry")}
+"""Measures that are of some walks alone, and of which."""
 _EVERY = 4  # control periods between the samples kept of the oscillators
 _LEAST_TIME = START + 1.5  # of the runs from the water, beyond the time in which the felt load settles [s]
 _SETTLED = 0.25  # the last part of a sweep's time, over which frequencies are taken
@@ -144,18 +146,21 @@ class PatternGeneratorExperiment(Experiment):
         )
         return Simulated(record=record, replays=self._replays(ramped))
 
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; turns alone need no drive but the walks'."""
+        if not set(wanted) <= _TURNS.keys():
+            return super(PatternGeneratorExperiment, self).measured(wanted, progress)
+        arms = dict.fromkeys(arm for name in wanted for arm in _TURNS[name])
+        return _turned(self._walked({name: arm for name, arm in self._arms.items() if name in arms}, progress))
+
     def measure(self, record: xr.Dataset) -> Measures:
         """Return frequencies, lags and indices over the drive, locks, strides and turns."""
-        measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim")
-        for arm in record.arm.values:
-            turning, unit = record.sel(arm=arm), "rad/cycle"
-            measures[f"turn_{arm}"] = Measure(float(turning.turned / turning.walked), unit)
-            if arm in STRAIGHT:
-                measures[f"stride_{arm}"] = Measure(
-                    float(turning.forward / turning.walked / record.attrs["length"]), "L/cycle"
-                )
-        gained = abs(measures["turn_asymmetry"].value - measures["turn_straight"].value)
-        return measures | {"turn_gained": Measure(gained, "rad/cycle")} | one_drive.measures(record)
+        measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim") | _turned(record)
+        for arm in STRAIGHT:
+            walk = record.sel(arm=arm)
+            stride = float(walk.forward / walk.walked / record.attrs["length"])
+            measures[f"stride_{arm}"] = Measure(stride, "L/cycle")
+        return measures | one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the drive does, what steers, and how order comes about."""
@@ -251,10 +256,11 @@ class PatternGeneratorExperiment(Experiment):
             },
         )
 
-    def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return how far and in which direction it walks under each control, and the run under the ramp."""
+    @property
+    def _arms(self) -> dict[str, PatternGenerator]:
+        """Under what it walks on land."""
         low, high = _NUMBERS.limb_drives
-        arms = {
+        return {
             "drive_low": PatternGenerator(drive=low),
             "straight": PatternGenerator(drive=self.walk),
             "drive_high": PatternGenerator(drive=high),
@@ -262,10 +268,12 @@ class PatternGeneratorExperiment(Experiment):
             "steering": PatternGenerator(drive=self.walk, steering=1.0),
             "steering_right": PatternGenerator(drive=self.walk, steering=-1.0),
         }
+
+    def _walked(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:
+        """Return how far and in which direction it walks under each control."""
         runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
         duration = START + self.cycles * self.gait.period
-        stage = staged(progress, "walks", 0.45, 0.65)
-        record = simulate(runs, duration=duration, every=_EVERY, progress=stage)
+        record = simulate(runs, duration=duration, every=_EVERY, progress=progress)
         walked = record.limb_phase.isel(leg=0)
         begun = walked.sel(time=START, method="nearest")
         units = {"forward": "m", "turned": "rad", "walked": "1"}
@@ -274,10 +282,14 @@ class PatternGeneratorExperiment(Experiment):
             "turned": heading_change(record).values,
             "walked": (walked.isel(time=-1) - begun).values,
         }
-        found = xr.Dataset(
+        return xr.Dataset(
             {name: ("arm", value, {"units": units[name]}) for name, value in values.items()},
             coords={"arm": list(arms)},
         )
+
+    def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
+        """Return what it walks under each control, and the run under the ramp."""
+        found = self._walked(self._arms, staged(progress, "walks", 0.45, 0.65))
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
         stage = staged(progress, "drive ramp", 0.65, 0.85)
@@ -326,6 +338,14 @@ def _swept(record: xr.Dataset) -> Measures:
             found[f"amplitude_limbs_{name}"] = Measure(float(one.amplitude_limbs), "-")
     jump = found["frequency_above"].value / found["frequency_below"].value
     return found | {"frequency_jump": Measure(jump, "-")}
+
+
+def _turned(record: xr.Dataset) -> Measures:
+    """Return by how much each walk turns in a cycle, and what unequal drives add."""
+    turns, unit = record.turned / record.walked, "rad/cycle"
+    found = Measures((f"turn_{arm}", Measure(float(turns.sel(arm=arm)), unit)) for arm in record.arm.values)
+    gained = abs(found["turn_asymmetry"].value - found["turn_straight"].value)
+    return found | {"turn_gained": Measure(gained, unit)}
 
 
 def _lags(phase: np.ndarray) -> np.ndarray:

@@ -36,7 +36,7 @@ VARIED = Varied(
     claims=("oscillators_direction",),
     designs=("robot", "gait"),
     settings={"drives": (1.0, 2.0, 4.0), "starts": 1, "shore_time": 3.0, "ramp": 1.0},
-    samples=16,
+    samples=32,
 )
 
 _SWITCH = {"standing_index_walk": 0.9, "standing_index_swim": 0.2, "amplitude_limbs_walk": 0.4,

@@ -19,7 +19,7 @@ RULES = (
     ),
 )
 
-VARIED = Varied(claims=("salamander_swim_stride",), settings={"factors": (), "settle": 6, "cycles": 4}, samples=16)
+VARIED = Varied(claims=("salamander_swim_stride",), settings={"factors": (), "settle": 6, "cycles": 4}, samples=32)
 
 EXAMPLES: Examples = {
     "salamander_swim_stride": [

@@ -1,6 +1,6 @@
 """How fast is each gait, and what does speed cost?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -212,6 +212,13 @@ class SpeedRange(Experiment):
             measures["tail_touches_high_walk"] = Measure(float(high.tail_touches.mean()), "-")
             measures |= ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
         return measures
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; of single gaits no other gait is walked."""
+        named = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
+        whole = not named or not all(any(f"_{gait.name}" in name for gait in named) for name in wanted)
+        asked = self if whole else replace(self, gaits=named)
+        return super(SpeedRange, asked).measured(wanted, progress)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""

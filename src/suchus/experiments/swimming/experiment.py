@@ -1,7 +1,7 @@
 """How does it swim: the pressure around the waving body, and the speed it reaches on its own?"""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -22,7 +22,7 @@ from suchus.experiments.swimming.figure import (
 )
 from suchus.experiments.swimming.ladder import MOTIONS, Climb, Swims, climbed, measures, motions, swims
 from suchus.experiments.swimming.ladder import table as ladder_table
-from suchus.experiments.swimming.rules import RULES
+from suchus.experiments.swimming.rules import LADDER, RULES
 from suchus.kinematics.wave import READINGS
 from suchus.progress import portion
 from suchus.robots import ROBOTS
@@ -47,6 +47,8 @@ from suchus.water.samples import all_kept, kept_in
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
+_OF_RUNGS = tuple(f"_{rung}{end}" for rung in LADDER for end in ("", "_low", "_high", "_apart"))
+"""How the names of the ladder's measures end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,6 +170,14 @@ class PlaneSwims(Experiment):
         swam = [f"{rung} {name}" for rung in ("slice", "slice_taken", "space") for name in (*MOTIONS, "held")]
         names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
         return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; for those of the ladder nothing else swims."""
+        if not all(name.endswith(_OF_RUNGS) for name in wanted):
+            return super(PlaneSwims, self).measured(wanted, progress)
+        climb = self.climb()
+        slices = swims(climb, "slice", motions(climb.fitted.gait), staged(progress, "slice", 0.0, 0.3))
+        return Measures(measures(climbed(climb, slices, staged(progress, "", 0.3, 1.0)), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return why rungs of the ladder could not be run, in a sentence, by name."""

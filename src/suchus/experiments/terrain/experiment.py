@@ -1,6 +1,6 @@
 """Which posture for which ground, and can the robot choose by what it feels?"""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import permutations
 from math import isfinite, nan
@@ -51,6 +51,13 @@ _EVEN = 1e-9  # [m]; heights that differ by less are equal
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED = ("low_crawl", "high_walk_level")
+_TWO = ("low_crawl", "high_walk", "high_walk_level")
+"""Arms of the two structures that the article compares."""
+_OF_TWO = (
+    "flat_cost_ratio", "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
+    *(f"falls_rough_{name}" for name in _TWO),
+)  # fmt: skip
+"""Measures of these alone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,8 +67,8 @@ class Terrain(Experiment):
     ``low_crawl`` and ``high_walk`` walk open loop, ``semi_erect`` and ``high_walk_level`` answer the IMU. ``switching``
     begins semi-erect and returns to it, ``thrifty``, where it walks too, begins crawling and returns to that; both go
     up when the belly touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step
-    or stone; on even ground all seeds but the first have noise on the servos instead. A run has fallen once it rolled
-    or pitched by more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
+    or stone, and a robot and a floor of its own, see ``land.Tolerances``. A run has fallen once it rolled or pitched by
+    more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
     step, or the chest to the stone. Another body walks its own gait at three heights in the place of the three gaits.
     """
 
@@ -149,9 +156,19 @@ class Terrain(Experiment):
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
         return Simulated(record=record, replays=self._replays(record))
 
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+        """Return measures, those that are wanted at least; for those of crawl and high walk nobody else walks."""
+        names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
+        if not all(name in _OF_TWO or name.startswith("transition") for name in names):
+            return super(Terrain, self).measured(wanted, progress)
+        walked = self._rough(staged(progress, "grounds", 0.0, 0.9), _TWO)
+        changed = self._changes(staged(progress, "transitions", 0.9, 1.0))
+        rough = _from_rough(walked)
+        return _flat(walked) | _rough(rough) | _falls(rough) | _transitions(changed)
+
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
-        rough = record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
+        rough = _from_rough(record)
         measures = Measures()
         for arm in record.arm.values:
             of_arm = record.sel(arm=arm)
@@ -160,7 +177,6 @@ class Terrain(Experiment):
                 f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
                 f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
                 f"falls_{arm}": Measure(float(of_arm.fell.sum()), "-"),
-                f"falls_rough_{arm}": Measure(float(rough.fell.sel(arm=arm).sum()), "-"),
                 f"belly_{arm}": Measure(float(of_arm.belly.mean()), "-"),
                 f"aside_{arm}": Measure(float(abs(of_arm.aside).mean()), "m"),
             }
@@ -173,6 +189,7 @@ class Terrain(Experiment):
         return measures | {
             **_flat(record),
             **_rough(rough),
+            **_falls(rough),
             "switching_share_of_best_worst": Measure(float(share.min()), "-"),
             "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
             "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
@@ -254,8 +271,9 @@ class Terrain(Experiment):
             rows.append(("stone", height, list(stones)))
         return rows
 
-    def _rough(self, progress: Progress) -> xr.Dataset:
-        grounds, arms = self.grounds(), self.arms()
+    def _rough(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
+        """Return how all conditions, or those that are named, fare on every ground."""
+        grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
         runs = [
             self.tolerances.built(
                 Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm, seed=seed),
@@ -395,12 +413,17 @@ def _rough(rough: xr.Dataset) -> Measures:
     Each seed of each kind and height is a ground of its own, and a robot of its own.
     """
     met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
-    crawl, semi, erect, level = (rough.forward.sel(arm=arm, drop=True).stack(one=("ground", "seed")) for arm in SINGLE)
+    walked = rough.forward.stack(one=("ground", "seed"))
+    crawl, erect, level = (walked.sel(arm=arm, drop=True) for arm in _TWO)
     met_enough = met >= 1.0
+    ahead_of_both = Measures()
 
     def share(name: str, ahead: xr.DataArray) -> Measures:
         return estimated(name, ahead.astype(float) if met_enough else [float("nan")], "-", middle=np.mean)
 
+    if "semi_erect" in rough.arm.values:
+        semi = walked.sel(arm="semi_erect", drop=True)
+        ahead_of_both = share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl))
     return Measures(
         {
             "met_judged": Measure(met, "-"),
@@ -408,8 +431,19 @@ def _rough(rough: xr.Dataset) -> Measures:
         },
         share("erect_open_loop_ahead_share", erect > crawl),
         share("erect_ahead_share", level > crawl),
-        share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl)),
+        ahead_of_both,
     )
+
+
+def _from_rough(record: xr.Dataset) -> xr.Dataset:
+    """Return what happened on rough grounds."""
+    return record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
+
+
+def _falls(rough: xr.Dataset) -> Measures:
+    """Return how often each condition fell on rough grounds."""
+    fell = rough.fell.sum(("ground", "seed"))
+    return Measures((f"falls_rough_{arm}", Measure(float(fell.sel(arm=arm)), "-")) for arm in rough.arm.values)
 
 
 def _transitions(record: xr.Dataset) -> Measures:
