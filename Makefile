@@ -8,7 +8,7 @@ export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
 .PHONY: reproduce test test-all check single double space lint types contract tests costs mutate validate atlas bench docs
-.PHONY: release reliability version pins licences matrix sizes clean
+.PHONY: release reliability version tag pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
 	$(PY) -m suchus reproduce --out out
@@ -93,6 +93,9 @@ reliability: .venv/.dev # the batteries again, and their table in docs/reliabili
 
 version: .venv/.dev # whether all places and the tag of this commit say the same version
 	$(PY) tools/make_release.py --check
+
+tag: .venv/.dev # an annotated tag of the version, for a commit that is to be released; nothing is pushed
+	$(PY) tools/make_release.py --tag
 
 pins: .venv/.dev # pins.txt anew, after a version in constraints.txt has changed
 	$(PY) tools/pins.py

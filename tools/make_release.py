@@ -3,8 +3,8 @@
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
 ``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
 steps. It is built twice, to the same bytes, with the versions of ``release/pins.txt``, and a bill of materials
-stands beside it. A commit whose files or tag say another version is refused first, and with ``--check`` nothing else is
-done. Nothing is published; docs/publishing.md says how that is done.
+stands beside it. A commit whose files or tag say another version is refused first; with ``--check`` nothing else is
+done, and with ``--tag`` the commit is tagged. Nothing is published; docs/publishing.md says how that is done.
 """
 
 import shutil
@@ -25,7 +25,7 @@ def main(words: Sequence[str] = ()) -> int:
     """Build, try, and return 0, or 1 where something is wrong.
 
     Args:
-        words: ``--check`` if only the version is to be looked at.
+        words: ``--check`` if only the version is to be looked at, ``--tag`` if the commit is to be tagged with it.
     """
     began = time.monotonic()
     tags, versions = distributions.tags(), distributions.versions()
@@ -36,7 +36,14 @@ def main(words: Sequence[str] = ()) -> int:
     if "--check" in words:
         print(f"{', '.join(versions)}{' and the tag' * bool(tags)} say version {version}.")
         if not tags:
-            print(f"This commit has no tag; where it is to be released: git tag v{version}")
+            print(f"This commit has no tag; where it is to be released, make tag gives it v{version}.")
+        return 0
+    if "--tag" in words:
+        try:
+            print(f"this commit has the tag {tags[0] if tags else distributions.tag(version)}")
+        except Failed as error:
+            print(error, file=sys.stderr)
+            return 1
         return 0
     place = Path(tempfile.mkdtemp(prefix="suchus release "))
     try:

@@ -354,6 +354,9 @@ def _taken_along(path: Path, draft: Path) -> bool:
     for file in own:
         (draft / file).parent.mkdir(parents=True, exist_ok=True)
         _copy(path / file, draft / file)
+        manifest = file.parent / MANIFEST  # whose the folder is stays known, though nothing of ours may be left in it
+        if (path / manifest).is_file() and not (draft / manifest).exists():
+            _copy(path / manifest, draft / manifest)
     return True
 
 

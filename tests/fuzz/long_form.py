@@ -2,6 +2,7 @@
 
 ``python tests/fuzz/long_form.py [COUNT]``; stopped early, what was run until then counts, and the next call goes on
 behind it if neither suchus nor the cases have changed. The cases run in processes of their own, see ``farm.py``.
+``python tests/fuzz/long_form.py --again`` runs those that failed once more, after they were mended.
 """
 
 import hashlib
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from doors import Doors
-from farm import alone, carried_out
+from farm import alone, carried_out, kind_of
 
 from suchus.record import code_digest, versions
 
@@ -60,6 +61,23 @@ def run(place: Path, count: int = COUNT, *, keep: bool = False, so_far: dict[str
         if keep:
             write(_rounded(found))
     return _rounded(found)
+
+
+def again(place: Path, found: dict[str, Any]) -> dict[str, Any]:
+    """Run the cases again that failed, and return what was found with those that pass now among the mended ones.
+
+    Args:
+        place: an empty folder.
+        found: what ``run`` found; its cases are those of today, since a number means nothing else.
+    """
+    failed = {one["case"]: one for one in found["failures"]}
+    other = [number for number, one in failed.items() if kind_of(number).__name__ != one["kind"]]
+    if other:
+        raise ValueError(f"cases {other} are others than those that failed")
+    came = {one.number: one.error for one in carried_out(Doors(place), list(failed))}
+    mended = [{**one, "source": _about()["source"]} for number, one in failed.items() if not came[number]]
+    left = [{**one, "error": came[number]} for number, one in failed.items() if came[number]]
+    return {**found, "failures": left, "mended": [*found.get("mended", []), *mended]}
 
 
 def kept() -> dict[str, Any] | None:
@@ -111,18 +129,27 @@ def passage(found: dict[str, Any]) -> str:
     refused, numbers = found["refused"], f"{found['cases']:,} of the {found['asked']:,}".replace(",", " ")
     rows = "\n".join(f"| {name.replace('_', ' ')} | {count} | {count - refused[name]} |" for name, count in kinds)
     passed = found["cases"] - sum(refused.values())
+    mended = [f"case {one['case']} ({one['kind'].replace('_', ' ')})" for one in found.get("mended", [])]
+    told = ""
+    if mended:
+        source = found["mended"][-1]["source"]
+        told = f"{len(mended)} more had failed, were mended and pass (source {source}): {', '.join(mended)}.\n"
     return (
         f"Of the long form {numbers} cases have run, on {found['date']} with\n{made_by} (source {found['source']}).\n"
         f"{passed} of them got through the door and did what they asked for, the others ended in a sentence.\n"
-        f"**{len(found['failures'])}** of them failed. They took {found['processor_seconds']} s of a processor, the\n"
-        f"longest {found['longest_seconds']} s.\n\n| kind | cases | through the door |\n|---|---|---|\n{rows}"
+        f"**{len(found['failures'])}** of them failed. {told}They took {found['processor_seconds']} s of a processor, "
+        f"the\nlongest {found['longest_seconds']} s.\n\n| kind | cases | through the door |\n|---|---|---|\n{rows}"
     )
 
 
 if __name__ == "__main__":
     alone()
     with tempfile.TemporaryDirectory() as folder:
-        came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True, so_far=kept())
+        if "--again" in sys.argv:
+            came = again(Path(folder), json.loads(OUTCOME.read_text()))
+            write(came)
+        else:
+            came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True, so_far=kept())
     for failure in came["failures"]:
         print(failure)
     sys.exit(1 if came["failures"] else 0)

@@ -15,7 +15,7 @@ import pytest
 from doors import WEIGHTS
 from farm import Came
 from hostile import KINDS, Hang, Range
-from long_form import COUNT, OUTCOME, PAGE, passage, run
+from long_form import COUNT, OUTCOME, PAGE, again, passage, run
 
 SHORT, SAMPLE = 2_000, 1_000
 """Numbers of the cases of the short form, which run in this process, and of the sample of the long one."""
@@ -153,6 +153,22 @@ def test_the_long_form_goes_on_where_it_stopped_but_not_on_other_code(tmp_path, 
     assert "6 of them got through the door" in long_form.PAGE.read_text()
     monkeypatch.setattr(long_form, "code_digest", lambda room: "other")
     assert long_form.kept() is None
+
+
+def test_what_was_mended_is_run_again_and_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(long_form, "Doors", lambda place: None)
+    errors = {3: "", 5: "IndexError: still"}
+    monkeypatch.setattr(
+        long_form, "carried_out", lambda place, asked: [Came(n, 1, False, "x", 0.1, errors[n]) for n in asked]
+    )
+    failed = [{"case": n, "kind": long_form.kind_of(n).__name__, "error": "IndexError: was"} for n in errors]
+    found = again(tmp_path, {**json.loads(OUTCOME.read_text()), "failures": failed, "mended": []})
+    assert [one["case"] for one in found["mended"]] == [3]
+    assert [(one["case"], one["error"]) for one in found["failures"]] == [(5, "IndexError: still")]
+    assert "**1** of them failed. 1 more had failed, were mended" in passage(found)
+    assert f"case 3 ({failed[0]['kind'].replace('_', ' ')})" in passage(found)
+    with pytest.raises(ValueError, match="are others"):
+        again(tmp_path, {**found, "failures": [{"case": 3, "kind": "another", "error": ""}]})
 
 
 @pytest.mark.validate

@@ -10,7 +10,7 @@ from packaging.requirements import Requirement
 
 import make_release
 from release import distributions
-from release.environment import PINNED, ROOT, Environment
+from release.environment import PINNED, ROOT, Environment, Failed, run
 
 SOURCES = {"src/suchus/__init__.py", "src/suchus/verdict/claims.json"}
 
@@ -115,6 +115,34 @@ def test_tags_are_those_of_what_is_checked_out(tmp_path):
     assert distributions.tags(tmp_path) == []
 
 
+def test_a_version_is_tagged_once_and_with_what_the_changelog_says(tmp_path, monkeypatch):
+    for who in ("AUTHOR", "COMMITTER"):
+        monkeypatch.setenv(f"GIT_{who}_NAME", "a")
+        monkeypatch.setenv(f"GIT_{who}_EMAIL", "a@b.c")
+    run(["git", "init", "--quiet"], cwd=tmp_path)
+    log = tmp_path / "CHANGELOG.md"
+
+    def refused(text):
+        log.write_text(text)
+        with pytest.raises(Failed) as caught:
+            distributions.tag("0.2.0", tmp_path)
+        return str(caught.value)
+
+    older = "## 0.2.0 (2026-11-22)\n\n* It swims.\n\n## 0.1.0 (2026-11-21)\n\n* It walks.\n"
+    assert "under Unreleased" in refused(f"# C\n\n## Unreleased\n\n* It flies.\n\n{older}")
+    assert "commit it first" in refused(f"# C\n\n## Unreleased\n\n{older}")
+    run(["git", "add", "."], cwd=tmp_path)
+    run(["git", "commit", "--quiet", "-m", "0.2.0"], cwd=tmp_path)
+    assert distributions.tag("0.2.0", tmp_path) == "v0.2.0"
+    assert distributions.tags(tmp_path) == ["v0.2.0"]
+    told = run(["git", "for-each-ref", "refs/tags", "--format=%(objecttype) %(contents)"], cwd=tmp_path)
+    assert told.startswith("tag suchus 0.2.0\n")
+    assert "It swims." in told
+    assert "It walks." not in told
+    run(["git", "commit", "--quiet", "--allow-empty", "-m", "after"], cwd=tmp_path)
+    assert "a version is released once" in refused(log.read_text())
+
+
 def test_nothing_is_built_from_a_commit_with_the_tag_of_another_version(monkeypatch, capsys):
     monkeypatch.setattr(distributions, "tags", lambda: ["v99.0.0"])
     assert make_release.main() == 1
@@ -129,7 +157,7 @@ def test_the_version_can_be_checked_alone(monkeypatch, capsys):
         monkeypatch.setattr(distributions, "tags", lambda tags=tags: tags)
         assert make_release.main(["--check"]) == 0
         out = capsys.readouterr().out
-        assert ("and the tag say version" in out, "git tag v" in out) == (bool(tags), not tags)
+        assert ("and the tag say version" in out, "make tag" in out) == (bool(tags), not tags)
 
 
 @pytest.mark.slow("two wheels are built in fresh environments")

@@ -256,7 +256,7 @@ def test_a_folder_that_holds_no_outcome_is_refused(result, tmp_path):
     [
         (("measures",), 3), (("measures", "way"), [1.0]), (("measures", "way", "value"), "long"),
         (("verdicts",), {}), (("verdicts", 0), 1), (("verdicts", 0, "measured"), [1]),
-        (("verdicts", 0, "share"), "all"), (("verdicts", 0, "rule"), 1),
+        (("verdicts", 0, "share"), "all"), (("verdicts", 0, "verdict"), "reproduceD"), (("verdicts", 0, "rule"), 1),
         (("provenance", "seconds"), None), (("provenance", "config_hash"), 7),
         (("title",), None), (("experiment",), ["x"]), (("figures",), 1), (("tables",), [1]), (("films",), "ab"),
     ],

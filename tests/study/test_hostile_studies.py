@@ -231,6 +231,11 @@ def test_a_class_where_a_word_belongs_is_told_in_plain_words():
     for make in (
         lambda: Vary(field=object, values=(1.0,)),
         lambda: Vary(field=object, values=-(2**63)),
+        lambda: Vary(field=object, values=()),
+        lambda: Vary(field=object, low=1.0, high=0.1),
+        lambda: Vary(field=object, low=-1.0, high=0.1, scale="log"),
+        lambda: Vary(field=object, low=0.0, high=1.0, mean=0.5, spread=-1.0),
+        lambda: Vary(field=object, low=0.0, high=1.0, each=True),
         lambda: Study(name="a", run=Run(robot="caiman", gait="belly_crawl"), vary=(), measure=(), design=object),
     ):
         with pytest.raises(InvalidDesign) as told:

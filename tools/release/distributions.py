@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from release.environment import PINNED, ROOT, Environment, clean, run
+from release.environment import PINNED, ROOT, Environment, Failed, clean, run
 
 PACKAGE = "src/suchus"
 _SAID = {
@@ -55,9 +55,37 @@ def disagreement(versions: Mapping[str, str], tags: Sequence[str]) -> str:
         return ""
     return (
         f"pyproject.toml says version {version}, but {', '.join(other)}: one commit has one version. Say the same in "
-        f"{', '.join(versions)}, and tag the commit with `git tag v{version}`, or remove a wrong tag with `git tag "
-        "--delete`."
+        f"{', '.join(versions)}, and tag the commit with `make tag`, or remove a wrong tag with `git tag --delete`."
     )
+
+
+def tag(version: str, checkout: Path = ROOT) -> str:
+    """Tag the commit that is checked out, with what the changelog says of the version, and return the tag.
+
+    Raises:
+        Failed: another commit has the tag, what is checked out is not what was committed, or the changelog has lines
+            that belong to no version yet.
+    """
+    name, parts = (
+        f"v{version}",
+        re.split(r"^## (.*)$", (checkout / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.M),
+    )
+    said = {title.split()[0]: text.strip() for title, text in zip(parts[1::2], parts[2::2], strict=True)}
+    if run(["git", "tag", "--list", name], cwd=checkout).strip():
+        where = run(["git", "rev-list", "-1", "--abbrev-commit", name], cwd=checkout).strip()
+        raise Failed(f"the tag {name} is that of commit {where}; a version is released once: say the next one.")
+    if said.get("Unreleased"):
+        raise Failed(
+            f"CHANGELOG.md has lines under Unreleased, which would belong to no version: put them into a section of "
+            f"{version}, or of the next one."
+        )
+    if run(["git", "status", "--porcelain"], cwd=checkout).strip():
+        raise Failed("what is checked out is not what was committed: commit it first.")
+    run(
+        ["git", "tag", "--annotate", "--cleanup=verbatim", "-m", f"suchus {version}\n\n{said[version]}\n", name],
+        cwd=checkout,
+    )
+    return name
 
 
 def build(tools: Environment, folder: Path, checkout: Path = ROOT) -> tuple[Path, Path | None]:

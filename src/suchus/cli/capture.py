@@ -35,7 +35,7 @@ from suchus.cli.options import parse
 from suchus.cli.run import run_it
 from suchus.cli.terminal import working
 from suchus.design import Robot, check_needs
-from suchus.figures import captioned, save
+from suchus.figures import captioned, places, save
 from suchus.figures.forces import ground_forces_figure, water_forces_figure
 from suchus.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.figures.measured import curvature_figure, strides_figure
@@ -45,7 +45,7 @@ from suchus.gaits import own_gait
 from suchus.motion import Gait, check_limits
 from suchus.progress import Progress
 from suchus.record import check_replaceable, check_writable, write
-from suchus.record import save as save_record
+from suchus.record.store import packed
 from suchus.record.tables import COLUMNS, write_tables
 from suchus.robots import ROBOTS
 
@@ -144,6 +144,8 @@ def capture(words: Sequence[str]) -> int:
         return _play(options, out, _asked(words), unknown)
     robot = options.robot
     if out:
+        for place in places(out.parent, out.stem):
+            check_replaceable(place)
         check_needs(robot, NEEDED, "a gait from tracked keypoints")
     with working() as bars:
         move = bars.task(options.tracks.name)
@@ -219,7 +221,7 @@ def _forces(walk: Walk, body: Robot, options: CaptureOptions, unknown: Unknown, 
 def _write_forces(data: xr.Dataset, folder: Path) -> list[str]:
     """Write forces as tables, NetCDF and a figure, and return what is said of them."""
     write_tables(data, folder)
-    save_record(data, folder / "forces.nc")
+    write(folder / "forces.nc", packed(data))
     save(ground_forces_figure(data) if data.attrs["medium"] == "land" else water_forces_figure(data), folder, "forces")
     open_ends = [f"note: {note}" for note in data.attrs["notes"].splitlines()]
     return [*said(data), *open_ends, f"forces: {folder}; what each column is stands in {folder / COLUMNS}"]
@@ -230,7 +232,7 @@ def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> l
     data = tables(walk)
     drawn = overlay(tracks, walk.strides, walk.wrong, video) if video else None
     write_tables(data, folder)
-    save_record(data, folder / "measured.nc")
+    write(folder / "measured.nc", packed(data))
     _draw(walk, folder, "cycle")
     save(strides_figure(data), folder, "strides")
     if "curvature" in data:
@@ -260,7 +262,7 @@ def _play(options: CaptureOptions, out: Path | None, asked: str, unknown: Unknow
     if options.tables:
         data = angle_tables(cycle)
         write_tables(data, options.tables)
-        save_record(data, options.tables / "measured.nc")
+        write(options.tables / "measured.nc", packed(data))
         print(f"tables: {options.tables}, {data.sizes['joint']} joints over one cycle")
     if options.forces:
         with working() as bars:

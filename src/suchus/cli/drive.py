@@ -9,6 +9,7 @@ import tty
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from itertools import chain, count
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -31,7 +32,7 @@ from suchus.figures import styled
 from suchus.gaits import gait_of, own_gait, suits
 from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
 from suchus.motion import START, Gait
-from suchus.record import check_writable, save
+from suchus.record import check_writable, save, there
 from suchus.report import PAGE, check_place, save_outcome
 from suchus.report.result import RECORD
 from suchus.robots import ROBOTS
@@ -230,9 +231,9 @@ def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence
 def _hurry(record: xr.Dataset | None, folder: Path) -> None:
     """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
     if record is not None and record.sizes["time"] > 0:
-        if folder.exists():  # figures of an earlier drive are not those of this log
-            folder = folder.with_name(f"{folder.name}_stopped")
-        folder.mkdir(parents=True, exist_ok=True)
+        others = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
+        folder = next(place for place in chain([folder], others) if not there(place))  # an earlier log stays
+        folder.mkdir(parents=True)
         kept = save(record, folder / RECORD)
         with suppress(OSError):  # a terminal that is gone
             print(f"the log: {kept}", flush=True)

@@ -20,7 +20,8 @@ from suchus.gaits import own_gait
 from suchus.hardware import read_wiring, write_wiring
 from suchus.land import Ground, Lake
 from suchus.motion import Gait
-from suchus.record import check_writable, save
+from suchus.record import check_replaceable, check_writable, write
+from suchus.record.store import packed
 from suchus.robots import ROBOTS
 
 _BAUD = {
@@ -77,6 +78,7 @@ def emulate(words: Sequence[str]) -> int:
     options = parse(EmulateOptions, "suchus emulate", _robot_first(words), about)
     if options.out is not None:
         check_writable(options.out.parent)
+        check_replaceable(options.out)
     trouble = options.trouble
     clocked = options.clock == "bus"
     body = EmulatedBody(
@@ -114,7 +116,7 @@ def emulate(words: Sequence[str]) -> int:
         if viewer is not None:
             viewer.stop()
         if options.out is not None and body.tick > 0:
-            print(f"what truly happened: {save(body.record(), options.out)}")
+            print(f"what truly happened: {write(options.out, packed(body.record()))}")
     print("ended.")
     return 0
 

@@ -13,9 +13,9 @@ from suchus.atlas import CASES, LONGEST, FlowOutcome, chosen, compute_all
 from suchus.cli.entry import BadCommand
 from suchus.cli.options import SCHEDULER, parse
 from suchus.cli.terminal import working
-from suchus.figures.atlas import entries, summary, write_atlas
+from suchus.figures.atlas import atlas_files, entries, summary, write_atlas
 from suchus.jobs import at_scheduler
-from suchus.record import check_writable
+from suchus.record import check_replaceable, check_writable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +52,8 @@ def flow_atlas(words: Sequence[str]) -> int:
         raise BadCommand(f"--jobs is {options.jobs}; at least 1 flow at a time is needed.")
     jobs = options.jobs or (threads.count() if options.scheduler is None else 1)
     check_writable(options.out)
+    for file in atlas_files(options.out, rows):
+        check_replaceable(file)
     wanted = {row.case for row in rows}
     cases = [CASES[name] for name in dict.fromkeys((*LONGEST, *CASES)) if name in wanted]
     number = count(1)

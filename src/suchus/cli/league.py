@@ -14,9 +14,9 @@ from suchus.cli.terminal import working
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.errors import UnreadableFile
 from suchus.league import every, find
-from suchus.league.page import LeagueEntry, all_standings, shown, standing, write_page
+from suchus.league.page import FIGURE, OUTCOMES, PAGE, LeagueEntry, all_standings, shown, standing, write_page
 from suchus.league.sealing import sealed_prediction
-from suchus.record import check_writable, there
+from suchus.record import check_replaceable, check_writable, there
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,6 +55,8 @@ def league(words: Sequence[str]) -> int:
     if options.measured is not None and not there(options.measured):
         raise UnreadableFile(f"{options.measured} is not there; --measured names what was measured.")
     check_writable(options.out)
+    for name in (PAGE, FIGURE, OUTCOMES):
+        check_replaceable(options.out / name)
     measured = {name: options.measured or measured_file(name) for name in names}
     with working() as bars:
         for number, one in enumerate(contestants, start=1):

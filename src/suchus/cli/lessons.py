@@ -9,8 +9,8 @@ import tyro
 
 from suchus.cli.options import parse
 from suchus.cli.terminal import working
-from suchus.record import check_writable
-from suchus.report.lessons import write_lessons
+from suchus.record import check_replaceable, check_writable
+from suchus.report.lessons import lesson_files, write_lessons
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +29,8 @@ def lessons(words: Sequence[str]) -> int:
     about = "Five lessons of ten minutes: each a page with a replay, a slider and a question, which plays offline."
     options = parse(LessonsOptions, "suchus lessons", words, about)
     check_writable(options.out)
+    for file in lesson_files(options.out):
+        check_replaceable(file)
     with working() as bars:
         first, *pages = write_lessons(options.out, progress=bars.reporter("lessons"))
     for path in pages:

@@ -15,7 +15,7 @@ from suchus.errors import UnreadableFile
 from suchus.experiments import EXPERIMENTS
 from suchus.jobs import at_scheduler
 from suchus.jobs.store import RESULTS, TABLE
-from suchus.record import check_name, there, write_tables
+from suchus.record import check_name, check_replaceable, there, write_tables
 from suchus.study import Claims, answer_finished, conduct, conduct_claims, read_study
 from suchus.study.claims_page import SHARES, write_claims, write_renewed
 from suchus.study.varied import conduct_varied, varied_finished, varied_study
@@ -71,6 +71,8 @@ def study(words: Sequence[str]) -> int:
     if options.out is None:
         check_name(spec.name, "study")
     folder = options.out or Path("out") / "studies" / spec.name
+    for name in (RESULTS, TABLE, *[TABLES] * options.csv):
+        check_replaceable(folder / name)
     with at_scheduler(options.scheduler) as client, working() as bars:
         results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client, jobs=options.jobs)
     failed = {sample: str(error) for sample, error in enumerate(results.error.values) if error}
@@ -91,6 +93,8 @@ def _claims(options: StudyOptions) -> int:
     if unknown:
         able = listed([one.name for one in asked])
         raise BadCommand(f"--only {', '.join(unknown)} cannot be asked again; those that can are {able}.")
+    for name in ("result", "renewed"):
+        check_replaceable(folder / name)
     asked = [one for one in asked if not options.only or one.name in options.only]
     if options.finished:
         record = None if options.only else answer_finished(claims, folder)

@@ -129,14 +129,15 @@ class Server:
 
     def _link(self, path: Path, name: str) -> None:
         try:
-            if path.is_symlink() and not path.exists():
+            if path.is_symlink() and not path.exists() and str(path.readlink()).startswith("/dev/"):
                 path.unlink()  # of an emulator that was killed
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.symlink_to(name)
         except OSError as error:
             self.close()
             raise Unwritable(
                 f"the port cannot be linked as {path} ({error.strerror or error}): end the emulator that serves it, "
-                "take away what is there, or say --link PATH."
+                "take away what is there, or let --hardware name another port."
             ) from error
         self._linked.append(path)
 

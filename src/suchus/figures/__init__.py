@@ -14,6 +14,7 @@ from suchus.figures.style import (
     limb_colours,
     new,
     panels,
+    places,
     save,
     styled,
 )
@@ -33,6 +34,7 @@ __all__ = [
     "limb_colours",
     "new",
     "panels",
+    "places",
     "save",
     "styled",
 ]

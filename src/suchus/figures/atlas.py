@@ -198,6 +198,12 @@ def _words(entry: Entry) -> list[str]:
     return [" ".join(sentences)]
 
 
+def atlas_files(folder: Path, rows: Sequence[AtlasRow]) -> list[Path]:
+    """Return where ``write_atlas`` writes: the page, and the pictures of rows."""
+    groups = [group for group, members in GROUPS.items() if any(row in members for row in rows)]
+    return [folder / "atlas.md", *(folder / picture(name) for name in ("parity", *groups))]
+
+
 def write_atlas(
     outcomes: Mapping[str, FlowOutcome], folder: Path, rows: Sequence[AtlasRow] = tuple(ROWS.values())
 ) -> Path:

@@ -170,6 +170,11 @@ def caption(figure: Figure) -> str:
     return str(getattr(figure, "suchus_caption", ""))
 
 
+def places(folder: Path, stem: str) -> tuple[Path, Path, Path]:
+    """Return where ``save`` writes a figure: as SVG, as PNG, and its numbers."""
+    return folder / f"{stem}.svg", folder / f"{stem}.png", folder / f"{stem}{DATA}"
+
+
 def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     """Write a figure as SVG and as PNG and return both paths; equal figures give equal bytes.
 
@@ -178,7 +183,7 @@ def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     Raises:
         Unwritable: the place cannot be written to.
     """
-    svg, png = folder / f"{stem}.svg", folder / f"{stem}.png"
+    svg, png, data = places(folder, stem)
     about = {"Date": None, "Creator": None, "Description": caption(figure)}
     layout = figure.get_layout_engine()
     with styled(svg__hashsalt=stem, figure__constrained_layout__use=False):
@@ -189,5 +194,5 @@ def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
             write(path, drawn.getvalue())
     figure.set_layout_engine(layout)
     if numbers := table(figure):
-        write(folder / f"{stem}{DATA}", numbers)
+        write(data, numbers)
     return svg, png

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -16,7 +17,7 @@ from suchus.league.contestant import Contestant, Interval, Value
 from suchus.league.judging import WIDEST, WORDS, Judgement, Word, judged
 from suchus.league.sealing import SEAL, Measured, Prediction, Seal, opened, read_prediction, read_seal
 from suchus.league.spread import COVERED
-from suchus.record import new_file, read_json, there, write
+from suchus.record import read_json, there, write
 from suchus.record.provenance import plain
 
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
@@ -300,7 +301,7 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
                 )
                 ax.plot([value], [height], "o", color=palette[k], markersize=4.0, label=label)
         ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
-        ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(len(rows) - 0.5, -0.5))
+        ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(max(len(rows), 1) - 0.5, -0.5))
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
     captioned(
@@ -309,9 +310,9 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
         "numbers, bars "
         "the intervals; the broad grey bar is the measurement's own spread.",
     )
-    with new_file(path) as draft:
-        figure.savefig(draft, format="png")
-    return path
+    drawn = BytesIO()
+    figure.savefig(drawn, format="png")
+    return write(path, drawn.getvalue())
 
 
 def _first(value: Value) -> float:

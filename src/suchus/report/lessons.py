@@ -72,10 +72,12 @@ def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progres
     for i, (lesson, following) in enumerate(zip(chosen, [*chosen[1:], None], strict=True)):
         part = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
         pages[lesson.name] = page(lesson, following, part)
-    paths = []
-    for name, text in pages.items():
-        paths.append(write(folder / f"{name}.html", text))
-    return paths
+    return [write(file, pages[file.stem]) for file in lesson_files(folder, chosen)]
+
+
+def lesson_files(folder: Path, chosen: Sequence[Lesson] = ()) -> list[Path]:
+    """Return where ``write_lessons`` writes, in the order in which it does."""
+    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in chosen or lessons()))]
 
 
 def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:

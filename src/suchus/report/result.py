@@ -13,6 +13,7 @@ from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures import WIDTH
 from suchus.record import read_json, read_text
 from suchus.report.rendering import embedded
+from suchus.verdict import Word
 
 OUTCOME = "outcome.json"
 RECORD = "record.nc"
@@ -45,7 +46,7 @@ class _Verdict(_Described):
     printed: FiniteFloat | None
     measured: FiniteFloat | None
     unit: str
-    verdict: str
+    verdict: Word
     why: str
     low: FiniteFloat | None = None
     high: FiniteFloat | None = None

@@ -56,23 +56,21 @@ class Vary:
         called = field if isinstance(field, str) else "a field that varies"
         check.that(sum(given) == 1, f"{called} needs either values, or low and high, or mean and spread")
         if self.values is not None:
-            check.that(len(self.values) > 0, f"{self.field} has no values; at least one is needed")
+            check.that(len(self.values) > 0, f"{called} has no values; at least one is needed")
         for name in ("low", "high", "mean", "spread"):
             if getattr(self, name) is not None:
                 check.number(name, -1e12, 1e12, "")
         if self.low is not None and self.high is not None and isfinite(self.low) and isfinite(self.high):
-            check.that(
-                self.low < self.high, f"{self.field} has low {self.low:g} and high {self.high:g}; low must be less"
-            )
+            check.that(self.low < self.high, f"{called} has low {self.low:g} and high {self.high:g}; low must be less")
             positive = self.scale == "linear" or self.low > 0
-            check.that(positive, f"{self.field} has low {self.low:g}; a logarithm needs more than 0")
+            check.that(positive, f"{called} has low {self.low:g}; a logarithm needs more than 0")
         if normal:
             both = self.mean is not None and self.spread is not None and self.spread > 0
-            check.that(both, f"{self.field} needs a mean and a spread of more than 0")
+            check.that(both, f"{called} needs a mean and a spread of more than 0")
         if self.steps is not None:
             check.whole("steps", 2, 100_000)
         listed = self.values is not None or self.steps is not None
-        check.that(listed or not self.each, f"{self.field} is taken with each of its values; give values or steps")
+        check.that(listed or not self.each, f"{called} is taken with each of its values; give values or steps")
 
     @property
     def ends(self) -> tuple[Any, ...]:
