@@ -166,7 +166,7 @@ def test_an_emulator_that_ends_ends_the_bus():
 
 
 def test_a_link_of_an_emulator_that_was_killed_is_taken_over_and_a_file_is_not(tmp_path):
-    (tmp_path / "bus").symlink_to(tmp_path / "gone")
+    (tmp_path / "bus").symlink_to("/dev/pts/99999")
     with served([tmp_path / "bus"]) as server:
         bus = bus_to(server)
         assert bus.ping(3) is not None
@@ -175,3 +175,7 @@ def test_a_link_of_an_emulator_that_was_killed_is_taken_over_and_a_file_is_not(t
     with pytest.raises(Unwritable, match="cannot be linked"), served([tmp_path / "bus"]):
         pass
     assert (tmp_path / "bus").read_text() == "mine"
+    (tmp_path / "mine").symlink_to(tmp_path / "a disk that is not there now")
+    with pytest.raises(Unwritable, match="cannot be linked"), served([tmp_path / "mine"]):
+        pass
+    assert (tmp_path / "mine").is_symlink()
