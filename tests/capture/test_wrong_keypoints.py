@@ -7,7 +7,9 @@ import pytest
 from changed import changes, delayed, put, shaken, swapped, told, walker
 
 from suchus.capture import Tracks, UnusableTracks, observe
-from suchus.capture.screen import late, screened
+from suchus.capture.late import late
+from suchus.capture.screen import screened
+from suchus.capture.swings import Clock
 from suchus.capture.walk import _timed
 
 NEVER_SEEN_LATE = 3  # of the keypoints; frames by which some of them may run late without being found
@@ -78,12 +80,43 @@ def test_frames_that_come_late_are_found_on_the_midline_and_at_the_feet(filmed):
     assert "behind" in found.said
 
 
-def test_three_frames_late_show_in_both_links_of_a_point_that_goes_straight(filmed):
-    """The hip of these animals does not sway, so that neither of its links shows it alone."""
-    for tracks, names in ((filmed.tracks, set()), (delayed(filmed.tracks, "hip", 3), {"hip"})):
-        seen = screened(tracks)
-        timed, clock, _ = _timed(seen.tracks)
-        assert set(late(timed, clock, seen.tracks.time)) == names
+def test_three_frames_late_show_in_all_that_the_links_of_a_point_do(filmed):
+    """The hip does not sway and the root of the tail hardly does: turns and pace together show that they are late."""
+    seen = screened(filmed.tracks)
+    timed, clock, _ = _timed(seen.tracks)
+    for point in ("", "hip", "tail_base"):
+        tracks = delayed(timed, point, 3) if point else timed
+        assert set(late(tracks, clock, seen.tracks.time)) == {point} - {""}
+
+
+def straight(point="", lag=0.0, varies=0.2):
+    """Return a stiff body that goes straight ahead at a pace that varies, one of its points seen late."""
+    time, names = np.arange(0.0, 12.0, 0.02), ("snout", "shoulder", "hip", "tail_base", "tail_tip")
+    when = time[:, None] - lag * np.array([name == point for name in names])
+    ahead = when - varies * np.cos(0.7 * when) / 0.7 - 0.3 * np.arange(len(names))
+    place = np.stack([ahead, np.zeros_like(ahead)], axis=-1)
+    place += 1e-3 * np.random.default_rng(7).standard_normal(place.shape)
+    return Tracks(time=time, points=names, position=place, unit="m", source="a stick")
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ({}, set()),
+        ({"point": "hip", "lag": 0.06}, {"hip"}),
+        ({"point": "hip", "lag": -0.06}, {"hip"}),
+        ({"point": "snout", "lag": 0.06}, {"snout"}),
+        ({"point": "hip", "lag": 0.06, "varies": 0.0}, set()),  # at an even pace nothing shows it
+        ({"point": "hip", "lag": 0.006}, set()),  # less than half a frame
+    ],
+)
+def test_a_lag_shows_by_the_pace_alone(asked, found):
+    tracks, clock = straight(**asked), Clock(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 1.0)
+    told = late(tracks, clock, tracks.time)
+    assert set(told) == found
+    for why in told.values():
+        assert why.startswith("runs 0.06")
+        assert ("behind" in why) == (asked["lag"] > 0)
 
 
 def test_a_chord_of_a_body_that_bends_between_keypoints_is_not_seen_late():

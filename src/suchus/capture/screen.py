@@ -14,9 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.capture.angles import joint_bends
-from suchus.capture.cycle import fit, harmonics_for
-from suchus.capture.swings import Clock
 from suchus.capture.tracks import LOST, Tracks, UnusableTracks
 
 _SWAY = 0.1  # share of its length by which a link between neighbours may vary: skin slides over bones
@@ -33,14 +30,6 @@ _LONGER = 1.3  # times the midline without two points; with points that belong t
 _NEARER = 0.25  # [trunk]; how much nearer feet must be to their girdles if they do
 _REACH = 2.0  # [trunk]; no foot is usually farther from its girdle
 _STRETCHED = 2.0  # times its usual distance from its girdle; a foot that is farther off is elsewhere
-_LATE, _LATEST = 0.015, 0.3  # [cycle]; least and most by which a keypoint may be found to run late
-_GAIN, _FRAMES = 18.0, 30  # twice the likelihood gained that makes it sure; frames that it takes
-_EXPLAINS = 0.5  # share of how the distance varies that may be left
-_GAIN_OF_TWO, _EXPLAINS_OF_TWO = 10.0, 0.75  # the same of two links that must agree on the lag of the point between
-_NEARLY = 0.08  # [cycle]; that lag at most: a longer one shows in one link alone, or is noise
-_BENDS = 5  # powers of time that a path is drawn with at most
-_HARMONICS = 4  # of its mean cycle at most
-_SKIN = 0.01  # [link]; its least standard deviation
 _STANDS = 0.15  # [trunk]; a body that goes and comes by less, over a whole film, stands
 
 
@@ -227,12 +216,13 @@ def _unsteady(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[
             )
         found[worst] = (
             "does not move with its neighbours: its distance from "
-            f"{' and '.join(_beside(chain, worst))} does not stay; track it again"
+            f"{' and '.join(beside(chain, worst))} does not stay; track it again"
         )
         chain.remove(worst)
 
 
-def _beside(chain: Sequence[str], name: str) -> list[str]:
+def beside(chain: Sequence[str], name: str) -> list[str]:
+    """Return the neighbours of a keypoint on the midline, the front one first."""
     at = chain.index(name)
     return [chain[i] for i in (at - 1, at + 1) if 0 <= i < len(chain)]
 
@@ -410,141 +400,6 @@ def _check_moves(tracks: Tracks, noise: Mapping[str, float], scale: float) -> No
             f"the trunk moves by more than {max(most.values()) / scale:.2f} trunk lengths; cut out the part in which "
             "it walks, with --start and --end."
         )
-
-
-def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
-    """Return the midline points that run behind or ahead of the others.
-
-    The distance of neighbours stays. If one of them is seen late it does not, as the link turns and the pace changes;
-    the lag with which it stays most nearly the same is that of one behind the other.
-
-    Args:
-        tracks: the keypoints, by the clock.
-        clock: on which strides last equally long.
-        time: of the film, in each frame [s].
-    """
-    chain, found = list(tracks.midline), dict[str, str]()
-    lags = _Lags(tracks, clock, time)
-    while len(chain) >= 3:
-        links = lags.links(list(pairwise(chain)))
-        seen = {pair: link.lag for pair, link in links.items()}
-        sure = [pair for pair in seen if seen[pair]]
-        if sure:
-            mine = {
-                name: [(1 if pair[1] == name else -1) * seen[pair] for pair in seen if name in pair] for name in chain
-            }
-            within = [name for name in chain if len(mine[name]) == 2 and mine[name][0] * mine[name][1] > 0]
-            alone = [name for name in (chain[0], chain[-1]) if mine[name][0]]
-            least = min(sure, key=lambda pair: abs(seen[pair]))
-            either = within[:1] or alone[:1] or [name for name in lags.inner(chain, links) if name in least] or least
-            late_by = {name: max(mine[name], key=abs) for name in either}
-        else:
-            late_by = lags.inner(chain, links)
-        if not late_by:
-            break
-        for name, lag in late_by.items():
-            beside = " and ".join(_beside(chain, name))
-            found[name] = (
-                f"runs {abs(lag):.3f} s {'behind' if lag > 0 else 'ahead of'} {beside}: its frames are not theirs"
-            )
-            chain.remove(name)
-    return found
-
-
-class _LaggedLink(NamedTuple):
-    """How the distance of two neighbours varies if one of them is seen otherwise late."""
-
-    varies: Float[np.ndarray, " lag"]
-    """Variance of their distance over that of noise, by how much later the second one is seen [-]."""
-    chord: float
-    """What of that a body that bends between the two may add [-]: there the line between them is shorter."""
-    lag: float
-    """By how much the second one runs behind the first, 0 where that is not sure [s]."""
-
-
-class _Lags:
-    """By how much one point of a link runs behind the other, by their courses over the mean cycle."""
-
-    def __init__(self, tracks: Tracks, clock: Clock, time: np.ndarray) -> None:
-        self._tracks, period = tracks, clock.period
-        cycles = (tracks.time[-1] - tracks.time[0]) / period
-        turns = min(_BENDS, 1 + int(cycles / 2))  # of the path
-        self._courses = {}
-        for name in tracks.midline:
-            seen = int(np.isfinite(tracks.at(name)[:, 0]).sum())
-            count = harmonics_for(seen, tracks.rate * period, most=_HARMONICS)
-            rows = tracks.at(name)[:, :2].T
-            self._courses[name] = [fit(tracks.time, row, period, harmonics=count, drift=turns) for row in rows]
-        step = max(1.0 / tracks.rate, 0.01 * period)
-        self.lags = step * np.arange(-int(_LATEST * period / step), int(_LATEST * period / step) + 1)
-        self._now = len(self.lags) // 2
-        inside = (time > time[0] + _LATEST * period) & (time < time[-1] - _LATEST * period)
-        self._time, self._clock = time[inside], clock
-        chain = tracks.midline
-        bends = np.nanmean(joint_bends(tracks, chain) ** 2, axis=1) if len(chain) > 2 else np.zeros(0)
-        self._bent = dict(zip(chain[1:-1], bends, strict=True))
-
-    def _places(self, names: Collection[str], lag: float) -> dict[str, np.ndarray]:
-        """Return where points are so much later than the frames say, shape (frame, 2) each."""
-        when = self._clock.read(self._time + lag)
-        turn = np.exp(2j * np.pi * np.multiply.outer(when, np.arange(1, _HARMONICS + 1)) / self._clock.period)
-        found = {}
-        for name in names:
-            courses = self._courses[name]
-            harmonics = np.stack([one.harmonics for one in courses], axis=-1)
-            swings = (turn[:, : len(harmonics)] @ harmonics).real
-            found[name] = np.stack([one.trend(when) for one in courses], axis=-1) + swings
-        return found
-
-    def links(self, pairs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], _LaggedLink]:
-        """Return how the distance of each pair varies with the lag of its second point; none in too short a film."""
-        if len(self._time) < _FRAMES:
-            return {}
-        first = self._places({one for one, _ in pairs}, 0.0)
-        mean, varies = np.empty((2, len(pairs), len(self.lags)))
-        for i, lag in enumerate(self.lags):  # the turns of the mean cycle are those of all points
-            second = self._places({other for _, other in pairs}, lag)
-            for j, (one, other) in enumerate(pairs):
-                long = np.linalg.norm(second[other] - first[one], axis=-1)
-                mean[j, i], varies[j, i] = np.mean(long), np.var(long)
-        return {pair: self._link(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
-
-    def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _LaggedLink:
-        residual = [one.residual for name in pair for one in self._courses[name]]
-        bent = np.mean([self._bent[name] for name in pair if name in self._bent] or [0.0])  # a chord of what bends
-        sways = float(mean[self._now]) * np.hypot(_SKIN, bent / 8)
-        noise = sum(float(np.nanvar(one)) for one in residual) / 2 + sways**2
-        chord = float((mean[self._now] * bent / 16) ** 2 / noise)
-        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, _GAIN, _EXPLAINS)[0])
-
-    def _surely(self, varies: np.ndarray, chord: float, gain: float, explains: float) -> tuple[float, float]:
-        """Return the lag with which a distance varies least, 0 where that is not sure [s], and what is gained."""
-        best = int(np.argmin(varies))
-        less = float(varies[self._now] - varies[best])
-        gained = len(self._tracks.time) * less
-        sure = gained > gain and less > chord and varies[best] < explains * varies[self._now]
-        lag = float(self.lags[best])
-        return (lag if sure and abs(lag) > _LATE * self._clock.period else 0.0), gained
-
-    def inner(self, chain: Sequence[str], links: Mapping[tuple[str, str], _LaggedLink]) -> dict[str, float]:
-        """Return the point within a chain whose lag is sure by both of its links together, if there is one [s].
-
-        A point that is late is as far behind the one as behind the other, so that each link alone may leave open what
-        both show.
-        """
-        found: dict[str, tuple[float, float]] = {}
-        for ahead, name, behind in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
-            one, other = links[ahead, name], links[name, behind]
-            both = one.varies, other.varies[::-1]
-            lag, gained = self._surely(both[0] + both[1], one.chord + other.chord, _GAIN_OF_TWO, _EXPLAINS_OF_TWO)
-            at = int(np.argmin(both[0] + both[1]))
-            near = abs(lag) < _NEARLY * self._clock.period
-            if lag and near and all(varies[at] < varies[self._now] for varies in both):
-                found[name] = lag, gained
-        if not found:
-            return {}
-        name = max(found, key=lambda one: found[one][1])
-        return {name: found[name][0]}
 
 
 _BESIDE = 0.1  # [trunk]; so far on the wrong side of the midline a foot is wrong

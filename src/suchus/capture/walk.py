@@ -10,7 +10,8 @@ import xarray as xr
 from suchus.capture.angles import azimuth, bend_angles, joint_bends, standing_index, wrapped
 from suchus.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
 from suchus.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
-from suchus.capture.screen import late, screened
+from suchus.capture.late import late
+from suchus.capture.screen import screened
 from suchus.capture.strides import half_width, over_phase, per_stride, times
 from suchus.capture.swings import Clock, paced
 from suchus.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking

@@ -39,6 +39,7 @@ from suchus.forces.body import (
 )
 from suchus.land.lake import Lake
 from suchus.land.prescribed import free_sections
+from suchus.metrics import SIMILARITY, swim_numbers
 from suchus.motion import Gait, swimming_gait
 from suchus.motion.axis import yaw_hinges
 from suchus.motion.swim import lateral_servos
@@ -46,7 +47,6 @@ from suchus.progress import Progress, portion, silent
 from suchus.water import Outline, cycle, displaced, recoil, undulation
 from suchus.water.setting import SwimSetting
 from suchus.water.swim_setup import ResolvedSwim
-from suchus.water.swimming import SIMILARITY, similarity
 
 THICK = "sections, thick water"
 """Name of the sections in water as thick as that of the flows, beside which these stand."""
@@ -373,10 +373,15 @@ def _numbers(body: Robot, gait: Gait, speeds: np.ndarray, table: Quantities) -> 
     outline, water = Outline(body, 65), Water()
     motion = undulation(outline, gait)
     swing = float(np.ptp(cycle(outline, motion, *recoil(outline, motion, 0.0, water)).y[:, -1]))
-    each = [similarity(body.length, gait.frequency, swing, float(speed), water) for speed in speeds]
-    for name in each[0]:
-        meaning = f"{SIMILARITY[name]}, in fresh water by the first model"
-        table.add(name, list(dict.fromkeys(one[name] for one in each)), "-", meaning)
+    each = [
+        swim_numbers(
+            speed=float(speed), length=body.length, frequency=gait.frequency, swing=swing, viscosity=water.viscosity
+        )
+        for speed in speeds
+    ]
+    for name, what in SIMILARITY.items():
+        answers = list(dict.fromkeys(getattr(one, name) for one in each))
+        table.add(name, answers, "-", f"{what}, in fresh water by the first model")
     return table
 
 

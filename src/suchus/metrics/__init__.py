@@ -30,6 +30,7 @@ from suchus.metrics.loads import swing_height, swing_lift, swing_loads, swing_un
 from suchus.metrics.progress import displacement, heading, heading_change, loss, path_length, path_speed, slip, speed
 from suchus.metrics.reach import held, lead, reach, static_margin
 from suchus.metrics.rolling import roll_angle, roll_rate
+from suchus.metrics.similarity import SIMILARITY, SwimNumbers, swim_numbers
 from suchus.metrics.stability import (
     height_peak_to_peak,
     height_std,
@@ -44,6 +45,8 @@ from suchus.metrics.stability import (
 from suchus.metrics.window import between, each_cycle, first_harmonic, mean_cycle, whole
 
 __all__ = [
+    "SIMILARITY",
+    "SwimNumbers",
     "bend_swings",
     "between",
     "cost_of_transport",
@@ -82,6 +85,7 @@ __all__ = [
     "static_margin",
     "support_distance",
     "support_polygon",
+    "swim_numbers",
     "swing_height",
     "swing_lift",
     "swing_loads",

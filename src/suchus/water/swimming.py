@@ -8,6 +8,7 @@ import xarray as xr
 from suchus.design import GRAVITY, WATER_DENSITY, Robot
 from suchus.design.water import Water
 from suchus.errors import OutsideLimits
+from suchus.metrics import SIMILARITY, swim_numbers
 from suchus.motion import Gait, check_limits, check_speeds
 from suchus.robots import ROBOTS
 from suchus.water.measures import efficiency
@@ -61,13 +62,6 @@ def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stat
     return _record(outline, motion, around, curves, per_model)
 
 
-SIMILARITY = {
-    "reynolds": "speed times length over the viscosity",
-    "froude": "speed over the root of gravity times length",
-    "strouhal": "frequency times the peak-to-peak amplitude of the tail's tip, over speed",
-    "swimming_number": "angular frequency times the tail's way from side to side times length over the viscosity",
-}
-"""Numbers by which swims of other sizes are compared, and what each is."""
 _PER_MODEL = {
     "thrust_held": ("N", "mean force forward, kept from moving on"),
     "speed": ("m/s", "free swimming, forward"),
@@ -92,27 +86,11 @@ def _numbers(
         "speed_lengths": speed / robot.length,
         "power": power,
         "slip": speed / wave_speed(outline, motion, curve),
-        **similarity(robot.length, motion.frequency, swing, speed, water),
+        **swim_numbers(
+            speed=speed, length=robot.length, frequency=motion.frequency, swing=swing, viscosity=water.viscosity
+        )._asdict(),
         "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
         "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
-    }
-
-
-def similarity(length: float, frequency: float, swing: float, speed: float, water: Water) -> dict[str, float]:
-    """Return the numbers by which swims of other sizes are compared; see ``SIMILARITY`` for what each is [-].
-
-    Args:
-        length: of the body [m].
-        frequency: of the beat [Hz].
-        swing: of the tail's tip from side to side [m].
-        speed: of the swim [m/s].
-        water: its medium.
-    """
-    return {
-        "reynolds": abs(speed) * length / water.viscosity,
-        "froude": abs(speed) / (GRAVITY * length) ** 0.5,
-        "strouhal": frequency * swing / abs(speed) if speed else float("nan"),
-        "swimming_number": 2.0 * np.pi * frequency * swing * length / water.viscosity,
     }
 
 

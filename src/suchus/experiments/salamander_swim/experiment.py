@@ -14,9 +14,11 @@ from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
+from suchus.experiments._similar import similar
 from suchus.experiments.salamander_swim import animal_swim as animal
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.land import Lake, Run, simulate
+from suchus.metrics import SwimNumbers, swim_numbers
 from suchus.robots import ROBOTS
 
 
@@ -137,16 +139,18 @@ class SalamanderSwim(Experiment):
         for i, frequency in enumerate(record.frequency.values):
             name = f"{frequency:g}".replace(".", "_")
             found[f"stride_swim_{name}"] = Measure(float(strides[i]), "body length")
-            found[f"strouhal_{name}"] = Measure(float(record.swing[i, -1] / strides[i]), "-")
+            found |= similar(self._numbers(frequency, strides[i], float(record.swing[i, -1])), f"_{name}")
         other, mean = record.stride_other.values, float(strides.mean())
         middle = record.swing.mean("swim").values
+        swims = zip(record.frequency.values, strides, record.swing.values[:, -1], strict=True)
+        whole = SwimNumbers(*np.mean([self._numbers(*one) for one in swims], axis=0).tolist())
         least = int(middle.argmin())
         return found | {
             "stride_swim": Measure(mean, "body length"),
             "stride_off": Measure(mean / animal.STRIDE - 1.0, "-"),
             "stride_low": Measure(float(other.min()), "body length"),
             "stride_high": Measure(float(other.max()), "body length"),
-            "strouhal": Measure(float((record.swing[:, -1] / record.stride).mean()), "-"),
+            **similar(whole),
             "swing_snout": Measure(float(middle[0]), "body length"),
             "swing_least": Measure(float(middle[least]), "body length"),
             "swing_least_at": Measure(float(record.place[least]), "body length"),
@@ -155,6 +159,14 @@ class SalamanderSwim(Experiment):
             "heel": Measure(float(record.heel.max()), "rad"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
         }
+
+    def _numbers(self, frequency: float, stride: float, swing: float) -> SwimNumbers:
+        """Return the numbers of a swim whose stride and way of the tail are in body lengths."""
+        long = self.robot.length
+        return swim_numbers(
+            speed=stride * long * frequency, length=long, frequency=frequency, swing=swing * long,
+            viscosity=Water().viscosity,
+        )  # fmt: skip
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set the stride beside the animal's."""

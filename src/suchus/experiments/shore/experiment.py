@@ -14,14 +14,17 @@ from suchus.control import Amphibious, Control, DepthHold, HeadingHold, HeadingR
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.scale import control_period
+from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
+from suchus.experiments._similar import similar
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
 from suchus.gaits import DRAFTED, GAITS, own_gait, suits
 from suchus.gaits.belly_crawl import LIMBS
 from suchus.land import Ground, Lake, Run, simulate
 from suchus.land.afloat import check_floats, hovers
 from suchus.land.lake import up
+from suchus.metrics import swim_numbers
 from suchus.metrics.energy import METRES
 from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
@@ -189,7 +192,7 @@ class Shore(Experiment):
         whole.attrs.update(
             record.attrs, beyond=self.beyond, shown=shown, line=water_line(runs[shown]),
             air_released=self.air_released, depth=self.depth, approach=self.approach,
-            metacentric_height=floating.metacentric_height,
+            metacentric_height=floating.metacentric_height, length=self.robot.length, beat=self.frequency,
         )  # fmt: skip
         return Simulated(record=whole, replays=self._replays(whole))
 
@@ -444,12 +447,16 @@ def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
     """
     part = record.sel(time=slice(float(record.time[-1]) - last - 1e-9, None))
     moved = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
+    way = moved.transpose("run", "xyz").values
+    left = np.stack([-way[:, 1], way[:, 0]], axis=-1) / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-12)
+    tip = (part.tail_tip - part.centre_of_mass).sel(xyz=["x", "y"]).transpose("run", "time", "xyz").values
     deep = (part.water_level - part.position.sel(xyz="z")).mean("time")
     return xr.Dataset(
         {
             "metre_speed": ("where", np.hypot(*moved.transpose("xyz", "run").values) / last, {"units": "m/s"}),
             "metre_power": ("where", part.servo_power.mean("time").values, {"units": "W"}),
             "metre_depth": ("where", deep.values, {"units": "m"}),
+            "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, left), axis=1), {"units": "m"}),
             "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
         },
         coords={"where": list(names)},
@@ -465,6 +472,12 @@ def _metre_costs(record: xr.Dataset) -> Measures:
         found[f"speed_{where}"] = Measure(speed, "m/s")
         found[f"work_per_metre_{where}"] = Measure(work, "J/m")
         found[f"cost_of_transport_{where}"] = Measure(work / float(one.metre_weight), "-")
+        if where != "land":
+            numbers = swim_numbers(
+                speed=speed, length=record.attrs["length"], frequency=record.attrs["beat"],
+                swing=float(one.metre_swing), viscosity=Water().viscosity,
+            )  # fmt: skip
+            found |= similar(numbers, f"_{where}")
     if "deep" not in record["where"].values:
         return found
     error = abs(float(record.metre_depth.sel(where="deep")) - record.attrs["depth"])

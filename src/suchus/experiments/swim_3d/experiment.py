@@ -16,12 +16,14 @@ from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments._similar import similar
 from suchus.experiments._taken import TAKEN, TakenMidline, midlines
 from suchus.experiments.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake, how
 from suchus.figures.vortices import draw_vortices, film_vortices
 from suchus.fingerprint import fingerprint
 from suchus.jobs import at_scheduler, conduct_sweep
 from suchus.kinematics.wave import READINGS
+from suchus.metrics import swim_numbers
 from suchus.motion import Gait
 from suchus.replay import wake_replay
 from suchus.robots import ROBOTS
@@ -362,7 +364,6 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
     yield "reynolds", Measure(float(record.reynolds), "-")
     real = frequency * robot.length**2 / Water().viscosity
     yield "reynolds_real_water", Measure(real, "-")
-    yield "reynolds_of_speed", Measure(float(record.reynolds) * abs(speed) / (frequency * robot.length), "-")
     yield "cells_per_length", Measure(float(record.cells[-1]), "-")
     yield "cycles", Measure(float(record.sizes["cycle"]), "-")
     yield "mass", Measure(weight / GRAVITY, "kg")
@@ -371,7 +372,12 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
     yield "speed_gain", Measure(_gain(speeds), "-")
     yield "power", Measure(power, "W")
     yield "cost_of_transport", Measure(power / (weight * abs(speed)), "-")
-    yield "strouhal", Measure(frequency * float(record["swing"]) / abs(speed), "-")
+    numbers = swim_numbers(
+        speed=speed, length=robot.length, frequency=frequency, swing=float(record["swing"]),
+        viscosity=frequency * robot.length**2 / float(record.reynolds),
+    )  # fmt: skip
+    yield "reynolds_of_speed", Measure(numbers.reynolds, "-")
+    yield from similar(numbers, but=("reynolds",)).items()
     yield "slip", Measure(speed / float(record.wave_speed), "-")
     yield "head_yaw", Measure(float(record.head_yaw), "rad")
     yield "thrust_held", Measure(float(record.held_thrust), "N")

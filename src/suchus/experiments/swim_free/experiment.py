@@ -15,6 +15,7 @@ from suchus.design.checks import Checks
 from suchus.design.water import Water
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
+from suchus.experiments._similar import similar
 from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.experiments.swim_free.flow_figure import draw_in_flow, film_slice
@@ -30,6 +31,7 @@ from suchus.figures.vortices import film_vortices
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
 from suchus.land.waters import Form
+from suchus.metrics import swim_numbers
 from suchus.motion import LIMBS_BACK, Gait, suits
 from suchus.record import WATER
 from suchus.robots import ROBOTS
@@ -323,7 +325,6 @@ class SwimFree(Experiment):
                 "pitch": Measure(float(rotation.pitch(whole.orientation.values).mean()), "rad"),
                 "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
                 "share_above": Measure(float(1.0 - whole.share_under.mean()), "-"),
-                "strouhal": Measure(record.attrs["frequency"] * swing / ahead, "-"),
                 "slip": Measure(speed["whole"] / float(record.wave_speed), "-"),
                 "servo_power": Measure(float(whole.servo_power.mean()), "W"),
                 "water_power": Measure(-float(whole.water_power.mean()), "W"),
@@ -331,6 +332,15 @@ class SwimFree(Experiment):
                 "cost_of_transport_water": Measure(-float(whole.water_power.mean()) / (weight * ahead), "-"),
                 "turn_radius": Measure(_radius(part.isel(run=labels.index("steered")), record.attrs["frequency"]), "m"),
             }
+            | similar(
+                swim_numbers(
+                    speed=ahead,
+                    length=self.robot.length,
+                    frequency=record.attrs["frequency"],
+                    swing=swing,
+                    viscosity=Water().viscosity,
+                )
+            )
             | _shares(part, labels)
             | flow_measures(record)
         )

@@ -14,8 +14,10 @@ import xarray as xr
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments._similar import similar
 from suchus.experiments.swim_sweep.figure import draw_check, draw_maps
 from suchus.jobs import at_scheduler, conduct_sweep
+from suchus.metrics import swim_numbers
 from suchus.motion import Gait, movement
 from suchus.robots import ROBOTS
 from suchus.water import MODELS, Swum, fit, greatest, printed_wave, survey
@@ -29,6 +31,7 @@ _PEERS = (
     ("Pleurobot", "0.8 rad per joint, a tenth of a cycle later each: one wave per body", "its published configuration"),
 )  # fmt: skip
 
+_HERTZ = 1.0  # [Hz]; frequency of the points
 _SWUM = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
 """What is kept of a swim by CFD, with units; see ``water.Swum``."""
 
@@ -196,7 +199,14 @@ class SwimSweep(Experiment):
             found[f"order_agrees_{model}"] = Measure(_order(record, str(model)), "-")
         for i, (amplitude, waves) in enumerate(self.points):
             name = f"{amplitude:.1f}_waves_{waves:.1f}".replace(".", "_")
-            found[f"speed_amplitude_{name}"] = Measure(float(record.point_speed[i]), "m/s")
+            speed = float(record.point_speed[i])
+            found[f"speed_amplitude_{name}"] = Measure(speed, "m/s")
+            numbers = swim_numbers(
+                speed=speed, length=self.robot.length, frequency=_HERTZ,
+                swing=float(record.point_strouhal[i]) * abs(speed) / _HERTZ,
+                viscosity=_HERTZ * self.robot.length**2 / self.reynolds,
+            )  # fmt: skip
+            found |= similar(numbers, f"_amplitude_{name}")
         return found
 
     def explain(self, measures: Mapping[str, float]) -> str:

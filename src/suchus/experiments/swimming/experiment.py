@@ -11,6 +11,7 @@ import xarray as xr
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments._similar import similar
 from suchus.experiments.swimming.figure import (
     draw_forces,
     draw_free,
@@ -24,6 +25,7 @@ from suchus.experiments.swimming.ladder import MOTIONS, Climb, Swims, climbed, m
 from suchus.experiments.swimming.ladder import table as ladder_table
 from suchus.experiments.swimming.rules import LADDER, RULES
 from suchus.kinematics.wave import READINGS
+from suchus.metrics import swim_numbers
 from suchus.progress import portion
 from suchus.robots import ROBOTS
 from suchus.verdict import Rule
@@ -191,7 +193,7 @@ class PlaneSwims(Experiment):
             {"misfit": Measure(float(record.attrs["misfit"]), "-")},
             _thrusts(record, held, self.reading),
             _tethered(held),
-            _free_swim(record, free, self.robot, self.frequency),
+            _free_swim(record, free, self.robot, self.frequency, self.reynolds),
             _envelope(free, self.robot),
             _compared(record),
             measures(record, self.robot.length),
@@ -319,13 +321,19 @@ def _tethered(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     yield from _ranged("pressure_moves", [one.moves for one in each], "-")
 
 
-def _free_swim(record: xr.Dataset, free: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
+def _free_swim(
+    record: xr.Dataset, free: xr.Dataset, robot: Robot, frequency: float, reynolds: float
+) -> Iterator[tuple[str, Measure]]:
     swum = Swum.of(free, frequency)
     yield "speed_free", Measure(swum.speed, "m/s")
     yield "speed_free_lengths", Measure(swum.speed / robot.length, "1/s")
     yield "speed_free_gain_last_cycle", Measure(swum.gain, "-")
     yield "slip", Measure(swum.slip, "-")
-    yield "strouhal", Measure(swum.strouhal, "-")
+    numbers = swim_numbers(
+        speed=swum.speed, length=robot.length, frequency=frequency, swing=swum.strouhal * abs(swum.speed) / frequency,
+        viscosity=frequency * robot.length**2 / reynolds,
+    )  # fmt: skip
+    yield from similar(numbers).items()
     yield "efficiency", Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-")
     yield "cost_of_transport", Measure(swum.cost_of_transport, "-")
     yield "head_yaw", Measure(swum.head_yaw, "rad")
