@@ -1,7 +1,8 @@
+import numpy as np
 import pytest
 
 from suchus import blueprint
-from suchus.capture import film, film_animal, write_table
+from suchus.capture import Tracks, film, film_animal, write_table
 from suchus.cli import main
 from suchus.gaits import GAITS
 from suchus.motion import Gait
@@ -55,3 +56,24 @@ def test_lizards_own_names(lizard, clean, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["capture", "lizard.csv", "--names", "left fore paw=LF"]) == 0
     assert (tmp_path / "captured.toml").exists()
+
+
+def test_a_body_without_limbs_is_measured_and_no_foot_is_missed(tmp_path, capsys):
+    """Keypoints from snout to tail tip, none called hip: no bend of a trunk, no foot, and nothing is drawn of them."""
+    time, along = np.arange(0.0, 4.0, 0.02), np.linspace(0.0, 1.0, 200)
+    heading = 0.8 * along * np.sin(2 * np.pi * (along - 1.5 * time[:, None]))
+    place = 0.3 * np.stack([-np.cos(heading), np.sin(heading)], axis=-1).cumsum(axis=1) / 200
+    place[..., 0] += 0.15 * time[:, None]
+    names = ("snout", "shoulder", "spine_2", "spine_1", "tail_base", "tail_1", "tail_2", "tail_tip")
+    at = place[:, np.linspace(0, 199, len(names)).astype(int)]
+    at = at + 5e-4 * np.random.default_rng(3).standard_normal(at.shape)
+    eel = Tracks(time=time, points=names, position=at, unit="m", source="an eel")
+    write_table(eel, tmp_path / "eel.csv")
+    assert main(["capture", str(tmp_path / "eel.csv"), "--tables", str(tmp_path / "eel")]) == 0
+    said = capsys.readouterr().out
+    assert "no foot is tracked" in said
+    assert not any(word in said for word in ("without LF", "stance share", "limb phase"))
+    assert "m per cycle" in said.splitlines()[0]
+    made = {file.name for file in (tmp_path / "eel").iterdir()}
+    assert {"curvature.svg", "strides.svg", "quantity.csv"} <= made
+    assert "cycle.svg" not in made

@@ -1,19 +1,26 @@
 """The animal's swim on its model: what is played, and what the measures mean."""
 
+import inspect
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.design import layout
+import suchus.contestants
+from suchus.design import WATER_DENSITY, layout
+from suchus.design.pieces import volumes
 from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
+from suchus.experiments.salamander_swim import own_size
 from suchus.experiments.salamander_swim.animal_swim import FREQUENCIES, STRIDE, envelope, played
 from suchus.kinematics.tree import landmarks
+from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import check_limits, cycle_targets
 from suchus.robots import ROBOTS
 
+CATSHARK = Path(suchus.contestants.__file__).parent / "data" / "catshark_midlines.csv"
 ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]
 
 
@@ -105,7 +112,51 @@ def test_it_says_on_which_side_of_the_animal_it_is(record):
         assert "which is outside" in SWIM.explain(m | {"stride_low": 0.3})
 
 
+@pytest.mark.parametrize("name", [name for name in own_size.ANIMALS if name != "alligator_1"])  # another in size
+def test_an_animal_has_its_own_length_mass_and_volume(name):
+    one = own_size.ANIMALS[name]
+    robot = one.body(one)
+    assert one.source
+    assert robot.length == pytest.approx(one.length)
+    assert robot.mass == pytest.approx(one.mass)
+    assert one.mass / sum(volumes(robot).values()) == pytest.approx(one.density, rel=1e-6)
+    check_limits(robot, one.swim(one, robot))
+    afloat = hydrostatics(robot, heels=3)
+    assert afloat.floats == (one.density < WATER_DENSITY)
+    assert afloat.metacentric_height > 0.0  # the centre of buoyancy is above that of mass
+
+
+def test_the_wave_of_the_catshark_is_that_of_the_table_that_the_league_reads():
+    rows = [row.split(",") for row in CATSHARK.read_text().splitlines() if not row.startswith("#")]
+    two = next(dict(zip(rows[0], row, strict=True)) for row in rows[1:] if float(row[0]) == 2.0)
+    one = own_size.ANIMALS["catshark"]
+    wave = inspect.getclosurevars(one.swim).nonlocals
+    assert wave["tail"] == pytest.approx(float(two["tailAmplitude_mean"]) / 2, rel=0.01)
+    assert wave["head"] == pytest.approx(float(two["headAmplitude_mean"]) / 2, rel=0.01)
+    assert wave["wavelength"] == pytest.approx(1.5 * float(two["wavelength_mean"]), rel=0.01)
+
+
+def test_it_says_who_sinks_and_who_rolls_over(record):
+    names = ["salamander", "eel"]
+    rows = {key: [0.2, 0.2] for key in own_size._KEPT} | {"surplus": [-0.02, 0.02], "heel": [2.0, 1.0]}
+    animals = xr.Dataset({f"own_{key}": ("animal", row) for key, row in rows.items()}, coords={"animal": names})
+    measures = SWIM.measure(record.merge(animals))
+    m = {name: one.value for name, one in measures.items()}
+    assert m["density_eel"] == pytest.approx(1.0)
+    assert m["too_heavy_eel"] == pytest.approx(0.1)
+    assert m["stride_eel"] == pytest.approx(0.2 / 0.2 / 0.2)
+    assert m["strouhal_eel"] == pytest.approx(0.2)
+    said = SWIM.explain(m)
+    lizard, fish = said[said.index("At their own size") :].split("The eel")
+    assert all(words in lizard for words in ("20% of it under water", "rolls over", "more than was filmed"))
+    assert all(words in fish for words in ("10.0% heavier than its water", "heels by 57 degrees"))
+    assert "filmed" not in fish
+    assert own_size.draw(record.merge(animals), STRIDE).axes
+
+
 def test_other_robots_and_settings_are_refused():
+    with pytest.raises(InvalidDesign, match="own_size names unicorn; there is salamander"):
+        replace(SWIM, own_size=("unicorn",))
     assert SWIM.frequencies == FREQUENCIES
     with pytest.raises(UnsuitedRobot, match="needs the joints of the robot 'salamander'"):
         replace(SWIM.quick(), robot=ROBOTS["strider"]).run()

@@ -4,7 +4,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, salamander, swimming_law
+from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, swimming_law
 from suchus.control import Swimming
 from suchus.design.drawing import Drawing
 from suchus.design.pieces import masses, volumes
@@ -15,6 +15,7 @@ from suchus.land import Run, simulate
 from suchus.league import find, swims
 from suchus.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.motion.swim import still, swimming_gait
+from suchus.robots._animals import pleurodeles
 from suchus.water import Outline, reactive, resistive, undulation
 from suchus.water.slender import Effort
 
@@ -117,7 +118,7 @@ def test_a_frequency_is_found_that_holds_a_speed():
 
 
 def test_a_salamander_has_its_own_length_mass_and_volume_and_its_parts_float_alike():
-    robot = salamander.animal(0.176, 0.0163, 900.0, 0.25)
+    robot = pleurodeles(0.176, 0.0163, 900.0, 0.25, beat=3.8)
     assert robot.length == pytest.approx(0.176)
     assert robot.mass == pytest.approx(0.0163)
     volume, weight = volumes(robot), masses(robot)

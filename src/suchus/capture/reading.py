@@ -230,10 +230,16 @@ def summary(walk: Walk) -> list[str]:
 
     turn = degrees(1.0)
     legs = [leg for leg in LEGS if f"duty_{leg}" in walk.numbers]
-    return [
-        f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {one('stride')} trunk lengths per cycle",
+    feet = [
         "stance share: " + ", ".join(f"{leg} {one(f'duty_{leg}')}" for leg in legs),
         "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in legs),
+    ]
+    gone = f"{one('stride')} trunk lengths"
+    if "stride" not in walk.numbers and "stride_length" in walk.numbers:
+        gone = f"{one('stride_length', 3)} {walk.numbers['stride_length'].unit}"
+    return [
+        f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {gone} per cycle",
+        *(feet if legs else ()),
         f"spine: {one('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
         f"{one('spine_rightmost', 3)}",
         f"tail: {one('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its length, "

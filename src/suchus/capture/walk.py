@@ -203,13 +203,17 @@ def _unseen(tracks: Tracks) -> list[str]:
     """Say what keypoints that are not there leave unknown."""
     missing = set(lacking(tracks.points))
     missing |= {"neck or snout"} if "neck (or snout)" in missing else set()
-    notes = []
+    notes, footless = [], not tracks.legs
     for what, points in _SHOWN.items():
         gone = [name for name in points if name in missing]
-        if gone:
+        if gone and not (footless and gone == ["LF"]):
             notes.append(f"without {' and '.join(gone)}, unknown: {what}")
+    if footless:
+        notes.append(
+            "no foot is tracked, as of a body without limbs or one that swims: phases count from the film's beginning"
+        )
     for leg in LEGS:
-        if leg in missing:
+        if leg in missing and not footless:
             notes.append(f"without {leg}, unknown: when it stands, its duty factor and its phase")
     if tracks.view == "side":
         notes.append("seen from the side, unknown: bends to the sides, and how far the body turns")

@@ -233,7 +233,8 @@ def _measured(walk: Walk, tracks: Tracks, folder: Path, video: Path | None) -> l
     drawn = overlay(tracks, walk.strides, walk.wrong, video) if video else None
     write_tables(data, folder)
     write(folder / "measured.nc", packed(data))
-    _draw(walk, folder, "cycle")
+    if walk.cycle.sizes["leg"] or "spine_lateral" in walk.cycle or "tail_lateral" in walk.cycle:
+        _draw(walk, folder, "cycle")
     save(strides_figure(data), folder, "strides")
     if "curvature" in data:
         save(curvature_figure(data), folder, "curvature")

@@ -10,12 +10,11 @@ import numpy as np
 
 from suchus.contestants._water import fresh
 from suchus.design import Robot
-from suchus.design.drawing import Drawing
-from suchus.design.scale import swim_servo_for
 from suchus.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.motion import Gait
 from suchus.progress import Progress
+from suchus.robots._animals import catshark
 from suchus.water import FilmedWave, fit
 
 _FILM = "catshark_midlines.csv"
@@ -27,7 +26,6 @@ _FAO = (
     "proportions of Scyliorhinus canicula, from memory of the drawing in Compagno 1984, FAO Species Catalogue 4: not "
     "measured here, so that the range is wide"
 )
-_JOINTS = tuple(float(place) for place in np.linspace(0.14, 0.93, 12))
 _BEAT = 6.0  # [Hz]; for which the joints are stiff enough to follow the film
 
 
@@ -46,23 +44,7 @@ def _read(film: dict[str, np.ndarray], name: str, speed: float, factor: float, s
     )
 
 
-@lru_cache(maxsize=256)
-def _body(length: float, mass: float, density: float, wide: float, tail: float) -> Robot:
-    places = (0.0, 0.03, 0.10, 0.20, 0.32, 0.45, 0.60, 0.75, 0.85, 0.95, 1.0)
-    half_width = (0.012, 0.035, 0.052, 0.055, 0.048, 0.036, 0.024, 0.014, 0.008, 0.006, 0.005)
-    half_height = (0.010, 0.022, 0.036, 0.044, 0.042, 0.040, 0.034, 0.026, 0.036, 0.042, 0.036)
-    high = [value * (tail if place > 0.8 else 1.0) for place, value in zip(places, half_height, strict=True)]
-    drawing = Drawing(
-        name="catshark",
-        length=length,
-        mass=mass,
-        density=density,
-        places=places,
-        half_width=tuple(wide * value for value in half_width),
-        half_height=tuple(high),
-        joints=_JOINTS,
-    )
-    return drawing.robot(swim_servo_for(mass, length, _BEAT))
+_body = lru_cache(maxsize=256)(partial(catshark, beat=_BEAT))
 
 
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:

@@ -3,21 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
-from math import pi, sqrt
 
 import numpy as np
 
 from suchus.contestants._water import fresh
-from suchus.design import Robot, Rod, Segment, Servo
-from suchus.design.pieces import volumes
-from suchus.design.scale import scaled, swim_servo_for
 from suchus.errors import NotConverged
 from suchus.gaits import ANIMAL_SWIM
 from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, sections, theory, waters
 from suchus.motion import Curve, Gait, servo_parts
 from suchus.progress import Progress
-from suchus.robots import ROBOTS
+from suchus.robots._animals import pleurodeles
 from suchus.water import resistive
 from suchus.water.slender import Model
 
@@ -30,54 +26,7 @@ _FILMED = (
 _FOLDED = float(np.radians(-85.0))
 
 
-def animal(length: float, mass: float, density: float, keel: float) -> Robot:
-    """Return the salamander of the shelf at an animal's length, mass and volume.
-
-    Each part of the axis has the volume of its mass, so that each floats as the whole does; limbs keep their
-    proportions. A part of the mass lies low, as that of flesh and bones below the lungs does.
-
-    Args:
-        length: from the snout to the tip of the tail [m].
-        mass: [kg].
-        density: mass over volume, lungs filled [kg/m3].
-        keel: share of the mass of each part of the axis that lies low [-].
-    """
-    model = ROBOTS["salamander"]
-    grown = scaled(model, length_factor=length / model.length, mass_factor=mass / model.mass)
-    grown = replace(grown, axis=tuple(_held(one, swim_servo_for(mass, length, FREQUENCIES[-1])) for one in grown.axis))
-    factor = 1.0
-    for _ in range(12):
-        robot = replace(grown, name="pleurodeles", axis=tuple(_part(one, density, keel, factor) for one in grown.axis))
-        volume = sum(volumes(robot).values())
-        if abs(volume * density / mass - 1.0) < 1e-9:
-            break
-        factor *= sqrt(mass / density / volume)
-    return robot
-
-
-def _held(segment: Segment, servo: Servo) -> Segment:
-    """Return a segment behind which a servo that holds the water turns the lateral hinges."""
-    hinges = tuple(replace(one, drive=servo) if one.turn == "yaw" else one for one in segment.hinges)
-    return replace(segment, hinges=hinges)
-
-
-def _part(segment: Segment, density: float, keel: float, factor: float) -> Segment:
-    (rod,) = (shape for shape in segment.shapes if isinstance(shape, Rod))
-    long = segment.front + segment.rear
-    radius = factor * sqrt(rod.mass / (density * pi * long))
-    start, end = min(rod.start[0] + rod.radius, 0.0), -long
-    start = -min(radius, 0.4 * long) if rod.start[0] < 0.0 else start
-    end += min(radius, 0.4 * long) if rod.end[0] > -long else 0.0
-    thin, low = 0.2 * radius, -0.6 * radius
-    flesh = replace(rod, start=(start, 0.0, 0.0), end=(end, 0.0, 0.0), radius=radius, mass=(1.0 - keel) * rod.mass)
-    belly = Rod(
-        name=f"{rod.name}_belly", start=(0.4 * end, 0.0, low), end=(0.6 * end, 0.0, low), radius=thin,
-        mass=keel * rod.mass,
-    )  # fmt: skip
-    return replace(segment, shapes=(flesh, belly))
-
-
-_animal = lru_cache(maxsize=128)(animal)
+_animal = lru_cache(maxsize=128)(partial(pleurodeles, beat=FREQUENCIES[-1]))
 
 
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:

@@ -16,6 +16,7 @@ from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, 
 from suchus.experiments._replayed import replayed
 from suchus.experiments._similar import similar
 from suchus.experiments.salamander_swim import animal_swim as animal
+from suchus.experiments.salamander_swim import own_size
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.land import Lake, Run, simulate
 from suchus.metrics import SwimNumbers, swim_numbers
@@ -28,7 +29,8 @@ class SalamanderSwim(Experiment):
 
     The robot floats in fresh water, its limbs folded back; as it is lighter than the animal, part of it is above the
     surface, and nothing holds it upright but the water. Beside the coefficients as they are, the swim at the highest
-    frequency is repeated with factors on each of them.
+    frequency is repeated with factors on each of them. Beside the model, which is 0.1 m long and lighter than the
+    animal, swim the animal and others at their own length, mass and volume, each with its own wave.
     """
 
     title = "How does a salamander's own swim, played joint by joint on its model, swim?"
@@ -49,6 +51,8 @@ class SalamanderSwim(Experiment):
     factors: tuple[float, ...] = (0.5, 2.0)
     """Factors on cross drag, friction, added mass and shed momentum, one of which is changed at a time, at the
     highest frequency [-]."""
+    own_size: tuple[str, ...] = tuple(own_size.ANIMALS)
+    """Animals that swim at their own length, mass and volume, see ``own_size.ANIMALS``."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -57,10 +61,14 @@ class SalamanderSwim(Experiment):
             check.whole("cycles", 1, 1000)
             if self.factors:
                 check.rising("factors", 0.05, 20.0, "")
+            unknown = [name for name in self.own_size if name not in own_size.ANIMALS]
+            check.that(not unknown, f"own_size names {', '.join(unknown)}; there is {', '.join(own_size.ANIMALS)}")
 
     def quick(self) -> "SalamanderSwim":
-        """Return one frequency, two cycles after the first one, coefficients as they are."""
-        return replace(self, frequencies=self.frequencies[:1], settle=1, cycles=2, factors=())
+        """Return one frequency, two cycles after the first one, coefficients as they are, and one other animal."""
+        return replace(
+            self, frequencies=self.frequencies[:1], settle=1, cycles=2, factors=(), own_size=self.own_size[:1]
+        )
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim at every frequency, and in other waters at the highest."""
@@ -80,11 +88,17 @@ class SalamanderSwim(Experiment):
             gait = animal.played(self.robot, frequency)
             tried = waters if i == len(self.frequencies) - 1 else waters[:1]
             runs = [Run(robot=self.robot, gait=gait, lake=one, label=f"{frequency:g} Hz") for one in tried]
-            part = (i / len(self.frequencies), (i + 1) / len(self.frequencies))
+            part = (0.7 * i / len(self.frequencies), 0.7 * (i + 1) / len(self.frequencies))
             stage = staged(progress, f"swim at {frequency:g} Hz", *part)
             records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
         last = records[-1].isel(run=[0])
-        whole = last.merge(self._swims(records), combine_attrs="override", compat="no_conflicts")
+        animals = own_size.swum(
+            self.own_size, settle=self.settle, cycles=self.cycles,
+            progress=staged(progress, "animals of their own size", 0.7, 1.0),
+        )  # fmt: skip
+        whole = last.merge(self._swims(records), combine_attrs="override", compat="no_conflicts").merge(
+            animals, combine_attrs="override", compat="no_conflicts"
+        )
         return Simulated(record=whole, replays=self._replays(whole))
 
     def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
@@ -158,6 +172,7 @@ class SalamanderSwim(Experiment):
             "share_under": Measure(float(record.under.mean()), "-"),
             "heel": Measure(float(record.heel.max()), "rad"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
+            **own_size.measures(record),
         }
 
     def _numbers(self, frequency: float, stride: float, swing: float) -> SwimNumbers:
@@ -170,12 +185,13 @@ class SalamanderSwim(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Set the stride beside the animal's."""
-        return self.told(measures, stride=animal.STRIDE)
+        return self.told(measures, stride=animal.STRIDE, animals=own_size.CALLED, rolled=own_size.ASTRAY)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the strides over the frequency, and how far the body swings along its length."""
         record = outcome.record
-        return {"strides": draw_strides(record, animal.STRIDE), "envelope": draw_envelope(record)}
+        figures = {"strides": draw_strides(record, animal.STRIDE), "envelope": draw_envelope(record)}
+        return figures | ({"own_size": own_size.draw(record, animal.STRIDE)} if "animal" in record.dims else {})
 
 
 def draw_strides(record: xr.Dataset, animal: float) -> Figure:
