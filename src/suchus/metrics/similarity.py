@@ -26,7 +26,7 @@ class SwimNumbers(NamedTuple):
     strouhal: float
     """f A / U, A the way of the tail's tip from side to side: how fast it beats for what it gains; NaN at rest [-]."""
     swimming_number: float
-    """Sw = 2 pi f A L / nu, what the swimmer does, without the speed that comes of it [-].
+    """Sw = 2 pi f A L / nu, what the swimmer does, without the speed that results [-].
 
     Source: Gazzola, Argentina and Mahadevan 2014, Nature Physics 10, 758, whose A is the same way.
     """
