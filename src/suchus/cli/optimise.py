@@ -14,6 +14,7 @@ from suchus.errors import UnknownName
 from suchus.jobs import at_scheduler
 from suchus.optimise import AIMS, READY, Optimisation, read_optimisation, write_results
 from suchus.optimise import optimise as conduct
+from suchus.optimise.conduct import run_files
 from suchus.optimise.results import RESULT
 from suchus.record import check_name, check_replaceable, check_writable, there
 
@@ -45,7 +46,8 @@ def optimise(words: Sequence[str]) -> int:
     spec = _asked(options)
     folder = options.out or Path("out") / "optimise" / spec.name
     check_writable(folder)
-    check_replaceable(folder / RESULT)
+    for place in (RESULT, *(file for arm in spec.arms for file in run_files(spec, arm.name))):
+        check_replaceable(folder / place)
     cpu = time.process_time()
     with at_scheduler(options.scheduler) as client, working() as bars:
         results = conduct(spec, folder, progress=bars.reporter(spec.name), client=client)

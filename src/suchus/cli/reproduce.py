@@ -22,7 +22,7 @@ from suchus.experiment import Experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.jobs import Job, finish, place_for
 from suchus.progress import Progress
-from suchus.record import check_writable, made_alike, sweep
+from suchus.record import check_replaceable, check_writable, made_alike, sweep
 from suchus.report import Failure, Result, check_place, load_result, whole, write_page
 from suchus.writing import asked_to_replace, replacing
 
@@ -118,6 +118,8 @@ def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
     return Reproduced(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")
 
 
+REPORT = "report.html"
+"""Name of the page of all experiments."""
 _MOST = 4
 """Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
 _LONG = (
@@ -172,12 +174,13 @@ def reproduce(words: Sequence[str]) -> int:
     check_writable(options.out)
     for task in tasks:
         check_place(options.out / task.name)
+    check_replaceable(options.out / REPORT)
     jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
     with working() as bars:
         outcomes = [done.result for done in _reproduced(tasks, bars, jobs=jobs, anew=options.anew)]
         results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
         failures = [outcome for outcome in outcomes if isinstance(outcome, Failure)]
-        page = write_page(results, failures, options.out / "report.html")
+        page = write_page(results, failures, options.out / REPORT)
     print(page)
     return 1 if failures else 0
 

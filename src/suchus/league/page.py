@@ -303,7 +303,8 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
         ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
         ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(max(len(rows), 1) - 0.5, -0.5))
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
+        if rows:
+            ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
     captioned(
         figure,
         "Every prediction of which a measurement is public, over that measurement: dots with the most likely "

@@ -20,7 +20,7 @@ from suchus.jobs import conduct_sweep
 from suchus.league.contestant import Contestant, Found, Interval, Quantity, Value
 from suchus.league.spread import drawn, of_answers, of_draws, widest
 from suchus.progress import Progress, silent
-from suchus.record import package_digest, read_json, there, versions, write
+from suchus.record import check_replaceable, package_digest, read_json, there, versions, write
 from suchus.record.provenance import plain
 
 PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
@@ -101,6 +101,7 @@ def sealed_prediction(
                 "prediction is never replaced; choose another --out."
             )
         return seal
+    check_replaceable(folder / PREDICTION)
     names = list(contestant.rungs)
     answers = conduct_sweep(
         f"league_{contestant.name}", _answers, [(contestant, name) for name in names], folder / _ANSWERS,

@@ -175,9 +175,14 @@ def _kept(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Datas
 def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
     """Write each run's gait as ``LABEL.toml``, and the robot where it varies as ``LABEL_robot.toml``."""
     for run in runs:
-        blueprint.write(run.gait, folder / f"{run.label}.toml")
-        if any(v.field.startswith("robot.") for v in spec.vary):
-            blueprint.write(run.robot, folder / f"{run.label}_robot.toml")
+        for name, value in zip(run_files(spec, run.label), (run.gait, run.robot), strict=False):
+            blueprint.write(value, folder / name)
+
+
+def run_files(spec: Optimisation, label: str) -> list[str]:
+    """Return which files ``write_runs`` writes for a run: of its gait, and of its robot if that varies."""
+    varies = any(vary.field.startswith("robot.") for vary in spec.vary)
+    return [f"{label}.toml", *[f"{label}_robot.toml"] * varies]
 
 
 Evaluate = Callable[..., xr.Dataset]
