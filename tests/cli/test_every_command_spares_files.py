@@ -142,7 +142,9 @@ CASES = {
     "flow-atlas": [
         Case(words=("flow-atlas", "ghia_u_re100", "--quick", "--jobs", "1", "--out", "made"), own=("flows/*",))
     ],
-    "league": [Case(words=("league", "stone", "--jobs", "1", "--out", "made"), doubles=toys, own=("*/answers/*", "*/answers/parts/*"))],
+    "league": [
+        Case(words=("league", "stone", "--jobs", "1", "--out", "made"), doubles=toys, own=("*/answers/**/*",))
+    ],
     "doctor": [],
     "list": [],
 }  # fmt: skip
