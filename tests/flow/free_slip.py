@@ -24,7 +24,7 @@ from suchus.flow.body import measure_all
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import LEAST_SHARE, fill_source, immerse
 from suchus.flow.momentum import collect, dilatation_work
-from suchus.flow.water import MOST_ROUNDS, Fluid, HeunStage
+from suchus.flow.water import MOST_ROUNDS, Fluid, Taken
 
 OUT = 1.5
 """Distance from the wall from which the velocity is carried into the body: all its neighbours are wet [cells]."""
@@ -157,40 +157,42 @@ class SlipWater(Fluid):
             _extend(w, wet, b, distance, self._in_space(self._normal, 2), self._first)
             self.border.fill(u)
 
-    def step(self, dt, stream, push, limits):
+    def step(self, dt, stream, push, limits, time=0.0):
         real, h = self.dtype, self.grid.cell
         step, force = real(dt / h), tuple(real(part * h) for part in push)
         first = self.border.steps == 0 and self.border.water is not None
         start = self.p.copy()
         if self._blended is None:
             self._blended = self.velocity.copy()
-        self.border.prepare(self._blended, self.window, float(step), stream)
-        self._heun(step, force, limits)
+        self.border.prepare(self._blended, self.window, float(step), stream, time)
+        self._stages(step, force, limits)
         rounds = 0
         while first and rounds < MOST_ROUNDS and self.border.update_induced(self._corrected, self.window) > limits[1]:
             self.p[:] = start
-            self._heun(step, force, limits)
+            self._stages(step, force, limits)
             rounds += 1
         self._blended = self._corrected.copy()
         self._unblended(self._corrected)
         self.velocity, self._corrected = self._corrected, self.velocity
 
-    def _heun(self, step, push, limits):
+    def _stages(self, step, push, limits):
         self.solves, half, now = [], self.dtype(0.5), self.velocity
         self.given[:] = 0
-        stage = self._advance(HeunStage(self._predicted, now, now, now, self.dtype(0)), step, push)
+        stage = Taken(self._predicted, now, now, now, self.dtype(0), step)
+        self._advance(stage, push)
         self._project(self._predicted, step, limits)
-        self._collect(stage, step)
+        self._collect(stage, 0.5)
         self.border.update_induced(self._predicted, self.window)
         predicted = self._predicted.copy()
         self._unblended(self._predicted)
-        stage = self._advance(HeunStage(self._corrected, predicted, now, self._predicted, half), step, push)
+        stage = Taken(self._corrected, predicted, now, self._predicted, half, step)
+        self._advance(stage, push)
         self._project(self._corrected, half * step, limits)
-        self._collect(stage, step)
+        self._collect(stage, 0.5)
 
-    def _advance(self, stage, step, push):
+    def _advance(self, stage, push):
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
-        place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
+        place, raw, p, step = self._layout[0], self._flat(self._raw), self._flat(self.p), stage.dt
         advance(
             out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, step, self.nu, push, stage.keep
         )  # fmt: skip
@@ -206,13 +208,12 @@ class SlipWater(Fluid):
                     stage.keep,
                 )  # fmt: skip
         self.border.fill(stage.out)
-        return stage
 
-    def _collect(self, stage, step):
+    def _collect(self, stage, weight):
         """Add up all that the window's momentum gains otherwise than by fluxes through its sides."""
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, near, inner = float(step), float(stage.keep), self._near, self.inner
+        dt, keep, near, inner = float(stage.dt), float(stage.keep), self._near, self.inner
         sums, p, everywhere = np.zeros_like(self.given), self._flat(self.p), np.zeros_like(self._flat(self.mu0))
         out, blend, bare, mu1 = (self._flat(a) for a in (stage.out, stage.blend, self._bare, self.mu1))
         owners = [self._flat(owner) for owner in self.owners]
@@ -222,7 +223,7 @@ class SlipWater(Fluid):
                 dt, keep,
             )  # fmt: skip
         dilatation_work(sums, p, self._flat(self.source), owners[0], near, inner, dt)
-        self.given += 0.5 * sums
+        self.given += weight * sums
 
 
 class SlipSetup(flow.Setup):
@@ -237,7 +238,7 @@ class SlipSetup(flow.Setup):
 @contextmanager
 def slipping():
     """Let simulations that are made here slip along their bodies, whatever the layer that a grid would carry."""
-    with patch.object(simulation, "Water", SlipWater), patch.object(flow, "Setup", SlipSetup):
+    with patch.object(simulation, "Fluid", SlipWater), patch.object(flow, "Setup", SlipSetup):
         yield
 
 

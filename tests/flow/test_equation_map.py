@@ -43,6 +43,6 @@ def test_a_name_that_is_gone_would_be_noticed():
     assert there("nowhere.nothing") is None
 
 
-def test_the_step_predicts_projects_corrects_and_projects():
-    told = re.findall(r"self\._(predict|project|correct)\(", inspect.getsource(Fluid._heun))
-    assert told == ["predict", "project", "correct", "project"]
+def test_a_stage_advances_projects_and_collects_in_this_order():
+    told = re.findall(r"self\._(advance|project|collect)\(", inspect.getsource(Fluid._stages))
+    assert told == ["advance", "project", "collect"]

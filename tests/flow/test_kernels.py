@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.flow import advect, immerse, multigrid, patch, poisson, stencil
+from suchus.flow import immerse, multigrid, patch, poisson, scheme, stencil
 from suchus.flow.compiled import PAD, compiled
 from suchus.flow.immerse import close
 from suchus.flow.slab import inner_strides
@@ -11,8 +11,8 @@ from suchus.flow.slab import inner_strides
 median, limited_quick, moment0, moment1, apply_slabs, seal_slab = (
     compiled(part.py_func)
     for part in (
-        advect.median,
-        advect.limited_quick,
+        scheme.median,
+        scheme.limited_quick,
         immerse.moment0,
         immerse.moment1,
         stencil.apply_slabs,

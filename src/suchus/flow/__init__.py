@@ -7,6 +7,7 @@ from suchus.flow.eel import eel, eel_in_space
 from suchus.flow.force import Load, Surface
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
+from suchus.flow.integrator import EULER, HEUN, SHU_OSHER, Integrator, Stage
 from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.log import FlowLoads
 from suchus.flow.markers import Markers
@@ -19,6 +20,7 @@ from suchus.flow.pose import Glide, Motion, Oscillation, Pose
 from suchus.flow.rake import Rake, Sample, line
 from suchus.flow.record import Coefficients, Record
 from suchus.flow.resolution import ALONG_THE_SKIN
+from suchus.flow.scheme import CENTRAL, QUICK, UPWIND, Scheme
 from suchus.flow.setup import Setup
 from suchus.flow.shape import Cylinder, Ellipse, Field, Plate, Shape, Solid
 from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
@@ -32,6 +34,12 @@ from suchus.isosurface import IsoSurface, isosurface
 
 __all__ = [
     "ALONG_THE_SKIN",
+    "CENTRAL",
+    "EULER",
+    "HEUN",
+    "QUICK",
+    "SHU_OSHER",
+    "UPWIND",
     "Body",
     "BodyContact",
     "Capsule",
@@ -47,6 +55,7 @@ __all__ = [
     "Grid",
     "Implicit",
     "Inflow",
+    "Integrator",
     "IsoSurface",
     "Limbed",
     "Load",
@@ -65,6 +74,7 @@ __all__ = [
     "Rake",
     "Record",
     "Sample",
+    "Scheme",
     "Setup",
     "Shape",
     "Side",
@@ -76,6 +86,7 @@ __all__ = [
     "SpaceMass",
     "SpaceShape",
     "Sphere",
+    "Stage",
     "Stream",
     "Surface",
     "TriangleMesh",

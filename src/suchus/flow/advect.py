@@ -1,19 +1,20 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision and number of dimensions)
-"""Momentum on the staggered grid: limited QUICK advection and central diffusion, in cells and flow units.
+"""Momentum on the staggered grid: advection by any scheme and central diffusion, in cells and flow units.
 
 ``velocity[d]`` sits on the faces before the cells along axis d; ``PAD`` cells of boundary values surround the domain.
 Lengths are in cells and velocities in m/s, so times are in cells per (m/s) and the viscosity is divided by the cell
 size. How fields lie in memory: ``slab``.
-
-Sources: Leonard 1979, Comput. Methods Appl. Mech. Eng. 19, 59-98 (QUICK); Leonard 1991, ibid. 88, 17-74 (the
-universal limiter).
 """
+
+import sys
+from functools import cache
 
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, Part, part, part_with, signed, threaded, threaded_with, unsigned
+from suchus.flow.scheme import QUICK, Scheme, limited_quick
 from suchus.flow.slab import (
     EDGE,
     LEAST,
@@ -29,24 +30,6 @@ from suchus.flow.slab import (
 
 ROWS = 16
 """Rows of a slab in space that are advanced together: they and those around them stay in the nearest caches [-]."""
-
-
-@part
-def median(a, b, c):
-    """Return the middle one of three numbers."""
-    low = a if a < b else b
-    high = a if a > b else b
-    capped = high if high < c else c
-    return low if low > capped else capped
-
-
-@part
-def limited_quick(upstream, centre, downstream):
-    """Return the face value: QUICK, kept monotone between its neighbours."""
-    real = type(centre)
-    quick = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
-    steepest = real(10.0) * centre - real(9.0) * upstream
-    return median(quick, centre, median(steepest, centre, downstream))
 
 
 @part
@@ -151,3 +134,15 @@ def advance(out, blend, base, rate, p, raw, place, near, inner, repeats, dt, nu,
             _advance(
                 out, blend, base, rate, p, raw, place, near, inner, repeats, flux, slabs, part_of, dt, nu, push, keep
             )  # fmt: skip
+
+
+@cache
+def advance_by(scheme: Scheme):
+    """Return ``advance`` with another advection scheme; but for limited QUICK it is compiled in each process anew."""
+    if scheme == QUICK:
+        return advance
+    name = scheme.name
+    print(f"Compiling the flow solver with the advection scheme {name} ...", file=sys.stderr, flush=True)
+    face = scheme.face if isinstance(scheme.face, Part) else part(scheme.face)
+    fluxes = part_with(_fluxes, limited_quick=face)
+    return threaded_with(advance, _advance=part_with(_advance, _fluxes=fluxes))

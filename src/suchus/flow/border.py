@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window, compiled, part, unsigned
 from suchus.flow.farfield import Fading, FarField, OpenWater
 from suchus.flow.grid import Grid
 from suchus.flow.pose import length
-from suchus.flow.sides import NAMES, Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall, inflow
+from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
+from suchus.kinds import show
 
-_LEAVES = 0.2, 0.4
-"""Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
-
+LOST = 1e-6
+"""Share of the water that enters which may find no way out [-]: what rounding leaves in single precision."""
 
 _MIRRORED, _GIVEN, _FREE_OF_VORTICITY, _AS_INSIDE = range(4)
 """What the velocity along a side is beyond it: mirrored about a value, that value, and so on."""
@@ -105,6 +106,8 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
 class Edge:
     """One side of the domain at work."""
 
+    name: str
+    """Which side it is."""
     side: Side
     """What the side is."""
     axis: int
@@ -113,12 +116,16 @@ class Edge:
     """Whether the side is at the smallest coordinate."""
     cells: int
     """Cells along the normal [-]."""
+    places: list[np.ndarray]
+    """Coordinates of the side's faces along it, in the order of the axes, shapes of ``prescribed`` [m]."""
     prescribed: np.ndarray
     """Velocity into the domain on the side's faces, the last axis first [m/s]."""
     unbounded: bool
     """Whether the side is one of an unbounded domain."""
     leaves: float = 0.0
     """Share of this step in which water is carried out here instead of held to the far water [-]."""
+    slides: tuple[float, ...] | None = None
+    """Velocity of what the water sticks to there, along the other axes; None without friction [m/s]."""
     induced: np.ndarray = field(init=False)
     """Velocity into the domain that the flow in it induces, at the end of the last step [m/s]."""
     seen: np.ndarray = field(init=False)
@@ -151,6 +158,42 @@ class Edge:
         at = self.prescribed.ndim - self.axis
         return a.transpose(at, *(k for k in range(a.ndim) if k != at))  # np.moveaxis takes ten times as long
 
+    def impose(self, time: float, outward: float) -> None:
+        """Take what the side says of the water at a time.
+
+        Args:
+            time: when [s].
+            outward: what share of the far stream's speed is across the side, positive outward [-].
+
+        Raises:
+            InvalidDesign: it says something that is no velocity.
+        """
+        self.leaves = self.side.carries(outward)
+        self.slides = self.side.along(time, 1 + self.prescribed.ndim)
+        if self.slides is not None and not (
+            np.shape(self.slides) == (self.prescribed.ndim,) and np.isfinite(self.slides).all()
+        ):
+            raise InvalidDesign(
+                f"at t = {time:.4g} s the {self.name} side, a {type(self.side).__name__}, moves along itself at "
+                f"{show(self.slides)} m/s; along() gives one finite number for each other axis, or None."
+            )
+        if self.side.passes and not self.side.opens:
+            given = np.asarray(self.side.into(time, *self.places))
+            if given.shape not in ((), self.prescribed.shape) or not np.isfinite(given).all():
+                raise InvalidDesign(
+                    f"at t = {time:.4g} s velocities into the domain through the {self.name} side, a "
+                    f"{type(self.side).__name__}, are {show(given)}; into() gives one finite number [m/s], or as many "
+                    f"as there are places, shape {self.prescribed.shape}."
+                )
+            self.prescribed[:] = given
+
+    @property
+    def fastest(self) -> float:
+        """Fastest speed that the side itself imposes [m/s]."""
+        along = 0.0 if self.slides is None else length(self.slides)
+        through = float(np.abs(self.prescribed).max()) if self.side.passes and not self.side.opens else 0.0
+        return max(along, through)
+
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""
         n, f, step = self.normal(velocity), self.face, self.sign
@@ -163,7 +206,7 @@ class Edge:
                 for a in lines:
                     a[to] = a[source]
             return
-        straight = isinstance(self.side, Wall | Slip | Mirror) or (self.unbounded and not self.leaves)
+        straight = not self.side.passes or (self.unbounded and not self.leaves)
         beyond = [self._along(k, d, step, stream) for k, d in enumerate(others)]
         how = beyond[0][0]
         values = tuple(n.dtype.type(value) for _, value in beyond)
@@ -181,10 +224,8 @@ class Edge:
 
         What kind of value that is does not depend on the axis.
         """
-        if isinstance(self.side, Wall):
-            return _MIRRORED, self.side.along(len(stream))[k]
-        if isinstance(self.side, Inflow):
-            return _MIRRORED, 0.0
+        if self.slides is not None:
+            return _MIRRORED, self.slides[k]
         if self.unbounded and not self.leaves:
             return _FREE_OF_VORTICITY, 0.0
         if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
@@ -214,10 +255,11 @@ class Border:
         for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
             axis = k // 2
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
-            if isinstance(side, Inflow):
-                prescribed[:] = inflow(side, grid, axis)
+            places = np.meshgrid(*(grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis))
             moves = unbounded and isinstance(side, Stream)
-            edges.append(Edge(side, axis, name in NAMES[::2], grid.cells[axis], prescribed, moves))
+            edge = Edge(name, side, axis, name in NAMES[::2], grid.cells[axis], list(places), prescribed, moves)
+            edge.impose(0.0, 0.0)
+            edges.append(edge)
         water: OpenWater | FarField | None = None
         if unbounded:
             water = OpenWater.around(grid) if grid.axes == 2 else FarField(grid, sides.mirrors(3))
@@ -240,26 +282,32 @@ class Border:
         self.stream = tuple(state["stream"].tolist())
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
-    def prepare(self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...]) -> None:
-        """Fix the velocity on all sides at the end of the step from the fields at its start.
+    @property
+    def fastest(self) -> float:
+        """Fastest speed that a side itself imposes, a wall or an inflow [m/s]."""
+        return max(edge.fastest for edge in self.edges)
+
+    def prepare(
+        self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...], time: float = 0.0
+    ) -> None:
+        """Fix the velocity on all sides at the end of the step, at ``time`` [s], from the fields at its start.
 
         On return as much water leaves as enters.
+
+        Raises:
+            InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
         """
         before, self.stream = self.stream, stream
         size = max(length(stream), 1e-30)
         for edge in self.edges:
-            if isinstance(edge.side, Stream):
-                outward = -edge.sign * stream[edge.axis] / size
-                edge.leaves = min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
-            elif isinstance(edge.side, Outflow):
-                edge.leaves = 1.0
+            edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
         grown = dt / self.span if self.span else 0.0
         for edge in self.edges:
             ahead = grown * (edge.induced - edge.seen)
-            if isinstance(edge.side, Stream | Outflow):
+            if edge.side.opens:
                 rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
                 carried = self._carried(edge, velocity, dt) + (rise + ahead)
                 held = edge.sign * stream[edge.axis] + edge.induced + ahead
@@ -268,6 +316,20 @@ class Border:
             edge.induced += ahead
         self.steps, self.span = self.steps + 1, dt
         self._balance()
+        self._refuse_gain(time)
+
+    def _refuse_gain(self, time: float) -> None:
+        """Refuse water that enters through sides and cannot leave, or the reverse."""
+        through = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
+        net = sum(float(p.sum(dtype=np.float64)) for p in through)
+        most = sum(float(np.abs(p).sum(dtype=np.float64)) for p in through)
+        if abs(net) > LOST * most and not any(e.leaves or e.unbounded for e in self.edges):
+            driven = ", ".join(e.name for e in self.edges if e.side.passes)
+            way = "enters and cannot leave" if net > 0 else "leaves and none enters"
+            raise InvalidDesign(
+                f"at t = {time:.4g} s {100 * abs(net) / most:.2g} % of the water that passes the domain's sides "
+                f"({driven}) {way}; make another side an Outflow()."
+            )
 
     def update_induced(self, velocity: np.ndarray, window: Window) -> float:
         """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
+from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar
 
 import numba
@@ -106,9 +107,9 @@ class _Notice(event.Listener):  # type: ignore[misc]
 event.register("numba:compile", _Notice())
 
 
-def _compile(function: Callable[P, R], parallel: bool) -> Callable[P, R]:
+def _compile(function: Callable[P, R], parallel: bool, kept: bool = True) -> Callable[P, R]:
     made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
-    if FOLDER is not None:  # else it is compiled anew every time
+    if kept and FOLDER is not None:  # else it is compiled anew every time
         kernel_cache.keep(made, FOLDER)
     return made
 
@@ -121,6 +122,28 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 def threaded(function: Callable[P, R]) -> Callable[P, R]:
     """Compile ``function``, whose ``prange`` loops run on several threads."""
     return _compile(function, parallel=True)
+
+
+def threaded_with(kernel: Any, **parts: Any) -> Any:
+    """Compile a threaded kernel as it would be had its module other parts; its code is not kept.
+
+    Args:
+        kernel: that ``threaded`` made.
+        parts: by the names that they have in the kernel's module.
+    """
+    return _compile(_rewritten(kernel.py_func, parts), parallel=True, kept=False)
+
+
+def part_with(one: "Part[P, R]", **parts: Any) -> "Part[P, R]":
+    """Return a part as it would be had its module other parts; see ``threaded_with``."""
+    return Part(_rewritten(one.py_func, parts))
+
+
+def _rewritten(function: Any, names: dict[str, Any]) -> Any:
+    """Return a function that finds other things under some of the names of its module."""
+    made = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__)
+    made.__module__, made.__qualname__ = function.__module__, function.__qualname__
+    return made
 
 
 class PartType(numba.types.Dispatcher):  # type: ignore[misc]

@@ -73,7 +73,7 @@ class Record:
     step: np.ndarray
     """Length of each step, shape (step,) [s]."""
     cycles: np.ndarray
-    """Multigrid cycles of the two pressure solves, shape (step, 2) [-]."""
+    """Multigrid cycles of the first and the last pressure solve of each step, shape (step, 2) [-]."""
     divergence: np.ndarray
     """Largest divergence left over, in fastest speed per cell, shape (step,) [-]."""
     bodies: np.ndarray

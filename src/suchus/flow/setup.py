@@ -12,9 +12,11 @@ from suchus.flow.body import Body, cuts, thin_share, window_of
 from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
+from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.markers import Markers
 from suchus.flow.pose import speeds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
+from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import Sides
 from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
@@ -55,6 +57,10 @@ class Setup:
     """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
     follow_axes: tuple[bool, bool] | tuple[bool, bool, bool] = (True, True)
     """Whether the grid travels along x, y (and z); along z it stays if that is not given."""
+    scheme: Scheme = QUICK
+    """What carries the water's velocity on: limited QUICK, ``CENTRAL``, ``UPWIND`` or one of your own."""
+    integrator: Integrator = HEUN
+    """How a step is taken: Heun's method, ``SHU_OSHER``, ``EULER`` or one of your own."""
     courant: float = 0.8
     """Share of a cell that the water may cross in one step [-]."""
     step: float | None = None
@@ -101,6 +107,8 @@ class Setup:
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
+        if self.scheme != QUICK:  # what is tried is compiled
+            self.scheme.check()
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
             self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)

@@ -1,18 +1,70 @@
-"""What happens on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic."""
+"""What happens on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic.
+
+A kind of side is a subclass of ``Side`` that says what the water does there; your own is one too.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot
+from typing import ClassVar
 
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.compiled import PAD
-from suchus.flow.grid import Grid, check_kinds
+from suchus.flow.grid import check_kinds
+from suchus.kinds import show
+
+
+class Side:
+    """A kind of side of the domain: as it stands, a wall without friction.
+
+    A subclass says what is otherwise. Its methods are asked in every step, for the time at the step's end.
+    """
+
+    __slots__ = ()
+
+    passes: ClassVar[bool] = False
+    """Whether water can go through the side; what is through it must leave by a side that ``opens``."""
+    opens: ClassVar[bool] = False
+    """Whether as much water goes through as the others leave over, and the side's place does not count."""
+    travels: ClassVar[tuple[bool, bool]] = False, True
+    """Whether a grid that travels may take the side along: across it, and along it."""
+
+    def into(self, time: float, *places: np.ndarray) -> np.ndarray | float:
+        """Return the velocity into the domain [m/s], a number or one for each place; asked if the side ``passes``.
+
+        Args:
+            time: when [s].
+            places: coordinates along the side, of one axis in the plane and of two in space, in the order x, y, z [m].
+        """
+        del time, places
+        return 0.0
+
+    def along(self, time: float, axes: int) -> tuple[float, ...] | None:
+        """Return the velocity of what the water sticks to, along the other axes [m/s]; None without friction.
+
+        Args:
+            time: when [s].
+            axes: of the domain, 2 or 3.
+        """
+        del time, axes
+        return None
+
+    def carries(self, outward: float) -> float:
+        """Return the share of a step in which the water that comes is carried out [-].
+
+        Args:
+            outward: what share of the far stream's speed is across the side, positive outward [-].
+        """
+        del outward
+        return 0.0
+
+
+_LEAVES = 0.2, 0.4
+"""Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stream:
+class Stream(Side):
     """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""
 
     unbounded: bool = True
@@ -20,53 +72,86 @@ class Stream:
     (``openwater``, in space ``farfield``); False prescribes the far stream itself, which the body's displacement then
     cannot widen. In space some of the six may be a Mirror."""
 
+    passes: ClassVar[bool] = True
+    opens: ClassVar[bool] = True
+    travels: ClassVar[tuple[bool, bool]] = True, True
+
+    def carries(self, outward: float) -> float:
+        """Return more, the more the far stream leaves here; see ``Side``."""
+        return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Slip:
+class Slip(Side):
     """A wall without friction."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wall:
+class Wall(Side):
     """A wall that the water sticks to."""
 
     speed: float | tuple[float, float] = 0.0
     """Speed of the wall along itself, toward +x or +y; in space a pair along the other two axes, in the order x, y, z
     [m/s]."""
 
-    def along(self, axes: int) -> tuple[float, ...]:
-        """Return the speed along the axes that lie in the wall, of so many in all [m/s]."""
+    travels: ClassVar[tuple[bool, bool]] = False, False
+
+    def along(self, time: float, axes: int) -> tuple[float, ...]:
+        """Return the wall's speed; see ``Side``."""
+        del time
         return self.speed if isinstance(self.speed, tuple) else (self.speed, *(0.0,) * (axes - 2))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Inflow:
+class Inflow(Side):
     """Water that enters with a given profile."""
 
     profile: Callable[..., np.ndarray]
     """Velocity into the domain [m/s] over the coordinate along the side [m]; in space over both, in the order x, y, z,
     given as two arrays of the same shape."""
 
+    passes: ClassVar[bool] = True
+    travels: ClassVar[tuple[bool, bool]] = False, False
+
+    def into(self, time: float, *places: np.ndarray) -> np.ndarray:
+        """Return the profile; see ``Side``."""
+        del time
+        return np.asarray(self.profile(*places))
+
+    def along(self, time: float, axes: int) -> tuple[float, ...]:
+        """Return that the water enters straight; see ``Side``."""
+        del time
+        return (0.0,) * (axes - 1)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outflow:
+class Outflow(Side):
     """Where the water leaves; what it carries goes out with the mean speed."""
 
+    passes: ClassVar[bool] = True
+    opens: ClassVar[bool] = True
+    travels: ClassVar[tuple[bool, bool]] = True, True
+
+    def carries(self, outward: float) -> float:
+        """Return that it always is; see ``Side``."""
+        del outward
+        return 1.0
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Periodic:
+class Periodic(Side):
     """What leaves here enters on the opposite side, which is periodic too."""
 
+    travels: ClassVar[tuple[bool, bool]] = True, True
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mirror:
+class Mirror(Side):
     """A plane of symmetry, in space: beyond it lies the image of what is inside.
 
     A body may be cut by it, if its middle lies on it and stays there; what the record says is then of the whole body.
     """
 
-
-Side = Stream | Slip | Wall | Inflow | Outflow | Periodic | Mirror
 
 NAMES = ("left", "right", "bottom", "top", "low", "high")
 """Names of the sides: at the smallest and the largest x, y and z."""
@@ -102,22 +187,21 @@ class Sides:
                 )
         plane, ends = self.around(2), (self.low, self.high)
         enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
-        if enters and not any(isinstance(s, Outflow | Stream) for s in plane) and Outflow not in map(type, ends):
+        if enters and not any(s.opens for s in plane) and Outflow not in map(type, ends):
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
     def check(self, axes: int) -> None:
         """Refuse sides that cannot be those of a domain with so many axes.
 
         Raises:
-            InvalidDesign: a mirror in the plane, or a wall's speed of another dimension.
+            InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
         """
         for name, side in zip(NAMES, self.around(axes), strict=False):
             if isinstance(side, Mirror) and axes == 2:
                 raise InvalidDesign(f"the {name} side of a plane grid is a Mirror; in the plane take a Slip().")
-            if isinstance(side, Wall) and len(side.along(axes)) != axes - 1:
-                raise InvalidDesign(
-                    f"the speed of the wall at the {name} side is {side.speed} m/s; a plane grid needs one number."
-                )
+            speed, needs = side.along(0.0, axes), ("a plane grid needs one number", "in space it has two")[axes - 2]
+            if speed is not None and len(speed) != axes - 1:
+                raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
     def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
         """Refuse sides that stand still in the world, if the grid travels and would take them along.
@@ -133,9 +217,9 @@ class Sides:
             InvalidDesign: a wall, an inflow or a mirror would travel.
         """
         for number, name in enumerate(NAMES[: 2 * axes]):
-            side = getattr(self, name)
-            sticks = isinstance(side, Wall | Inflow) and any(travels)
-            if sticks or (isinstance(side, Slip | Mirror) and travels[number // 2]):
+            side, across = getattr(self, name), travels[number // 2]
+            may_across, may_along = side.travels
+            if (across and not may_across) or (any(travels) and not may_along):
                 raise InvalidDesign(
                     f"the grid is to follow {body!r} and would take its {name} side along; the place of a side of the "
                     f"kind {type(side).__name__} is fixed: make it a Stream(), or leave follow None in a domain that "
@@ -172,21 +256,5 @@ class Sides:
 
     def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
         """Return whether the place of the low and of the high side counts, along each axis: of all but open ones."""
-        fixed = [not isinstance(side, Stream | Outflow) for side in self.around(axes)]
+        fixed = [not side.opens for side in self.around(axes)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))
-
-    def fastest(self, grid: Grid) -> float:
-        """Return the fastest speed that a wall or an inflow imposes [m/s]."""
-        speeds = [0.0]
-        for k, side in enumerate(self.around(grid.axes)):
-            if isinstance(side, Wall):
-                speeds.append(hypot(*side.along(grid.axes)))
-            elif isinstance(side, Inflow):
-                speeds.append(float(np.abs(inflow(side, grid, k // 2)).max()))
-        return max(speeds)
-
-
-def inflow(side: Inflow, grid: Grid, axis: int) -> np.ndarray:
-    """Return the velocity into the domain on the faces of a side across an axis, the last axis first [m/s]."""
-    along = [grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis]
-    return np.asarray(side.profile(*np.meshgrid(*along)))

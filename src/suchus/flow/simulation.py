@@ -92,7 +92,9 @@ class Simulation(Fields):
         self.thin = setup.check()
         compile_ahead(setup.grid.axes, setup.dtype)
         self.time = 0.0
-        self.water = Fluid(setup.grid, setup.sides, setup.viscosity, setup.dtype)
+        self.water = Fluid(
+            setup.grid, setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
+        )  # fmt: skip
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
@@ -210,7 +212,7 @@ class Simulation(Fields):
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
-            self._speed = max(self._speed, self._reference, self.setup.sides.fastest(self.setup.grid))
+            self._speed = max(self._speed, self._reference, self.water.border.fastest)
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
@@ -245,7 +247,7 @@ class Simulation(Fields):
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
-        self.water.step(dt, self._stream(time), tuple(map(float, push)), limits)
+        self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
         self.time, self._last = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
         self._taken = _Taken(dt, poses, push, drift, self._log.held)
@@ -299,10 +301,10 @@ class Simulation(Fields):
             along += part_columns(body, parts, point, poses[k], self.time, taken.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        self._reference = max(self._reference, length(water.border.stream), body_speed, setup.sides.fastest(setup.grid))
+        self._reference = max(self._reference, length(water.border.stream), body_speed, water.border.fastest)
         solves = water.solves
         row = np.array(
-            [self.time, dt, solves[0].cycles, solves[1].cycles, solves[1].largest / self._speed, *values, *along]
+            [self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values, *along]
         )  # fmt: skip
         good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)

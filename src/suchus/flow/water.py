@@ -1,4 +1,4 @@
-"""The water's fields and one time step: predict, project, correct, project.
+"""The water's fields and one time step: stages of an integrator, each immersed and projected.
 
 Arrays have the padded shape of the grid, the last axis first: (ny + 2 PAD, nx + 2 PAD), and vectors the component
 before that; what counts around the bodies only has the shape of their window. Kernels see them slab by slab (``slab``).
@@ -12,15 +12,17 @@ import numpy as np
 
 from suchus.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
-from suchus.flow.advect import advance
+from suchus.flow.advect import advance_by
 from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, rows_of, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import close, close_surface, fill, fill_source, immerse
+from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, sums_of
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
+from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.shape import Shape
 from suchus.flow.sides import Sides
 from suchus.flow.slab import inner_strides
@@ -46,8 +48,8 @@ def _inflow(given: np.ndarray, axis: int) -> np.ndarray:
     return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (given.ndim - 1)]
 
 
-class HeunStage(NamedTuple):
-    """One stage of Heun's method, ``out = keep blend + (1 - keep) B[base + step (f(rate) + push) - step grad p]``.
+class Taken(NamedTuple):
+    """A stage of an integrator at work: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
 
     B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
     """
@@ -62,6 +64,8 @@ class HeunStage(NamedTuple):
     """Velocity at which advection and diffusion are taken."""
     keep: float
     """Share of ``blend`` [-]."""
+    dt: float
+    """How far it goes from ``base`` [cells per (m/s)]."""
 
 
 class Fluid:
@@ -80,12 +84,16 @@ class Fluid:
         rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
         given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
-        solves: how the last two pressure solves went.
+        solves: how the pressure solves of the last step went, one a stage.
         overlap: the two bodies that lie deepest in each other.
     """
 
-    def __init__(self, grid: Grid, sides: Sides, viscosity: float, dtype: type) -> None:
-        self.grid, self.sides, self.dtype = grid, sides, dtype
+    def __init__(
+        self, grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme = QUICK,
+        integrator: Integrator = HEUN,
+    ) -> None:  # fmt: skip
+        self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
+        self._advance_all = advance_by(scheme)
         self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
@@ -280,7 +288,10 @@ class Fluid:
         fastest(self._flat(self.velocity), self.inner, self._sums)
         return float(self._sums[PAD:-PAD, 0].max())
 
-    def step(self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], limits: tuple[float, float]) -> None:
+    def step(
+        self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], limits: tuple[float, float],
+        time: float = 0.0,
+    ) -> None:  # fmt: skip
         """Advance velocity and pressure by ``dt`` [s] around the bodies placed at its end.
 
         Args:
@@ -288,6 +299,7 @@ class Fluid:
             stream: velocity of the far water at the end of the step [m/s].
             push: uniform acceleration of the water [m/s^2].
             limits: mean and largest divergence that may be left [m/s per cell].
+            time: of the end of the step, for sides that change [s].
 
         On return the velocity is divergence-free to ``limits`` outside the bodies and fits the sides.
         """
@@ -296,62 +308,53 @@ class Fluid:
         force = tuple(real(part * h) for part in push)
         first = self.border.steps == 0 and self.border.water is not None
         start = self.p.copy() if first else self.p
-        self.border.prepare(self.velocity, self.window, float(step), stream)
-        self._heun(step, force, limits)
+        self.border.prepare(self.velocity, self.window, float(step), stream, time)
+        self._stages(step, force, limits)
         if first:  # a body that starts at once moves the far water at once
             for _ in range(MOST_ROUNDS):
                 if self.border.update_induced(self._corrected, self.window) <= limits[1]:
                     break
                 self.p[:] = start
-                self._heun(step, force, limits)
+                self._stages(step, force, limits)
         self.velocity, self._corrected = self._corrected, self.velocity
 
-    def _heun(self, step: float, push: tuple[float, ...], limits: tuple[float, float]) -> None:
-        """Take a step of Heun's method: predict, project, correct, project.
+    def _stages(self, step: float, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+        """Take the stages of a step, each immersed and its divergence projected out; with Heun's method two.
 
         On return ``_corrected`` is the velocity at the step's end, ``p`` its pressure, and ``given`` what the immersion
         gave to the water.
         """
         self.solves = []
         self.given[:] = 0
-        half = self.dtype(0.5)
-        stage = self._predict(step, push)
-        self._project(self._predicted, step, limits)
-        self._collect(stage, step)
-        self.border.update_induced(self._predicted, self.window)
-        stage = self._correct(step, push)
-        self._project(self._corrected, half * step, limits)
-        self._collect(stage, step)
+        last, rooms = self.velocity, (self._corrected, self._predicted)
+        stages, weights = self.integrator.stages, self.integrator.weights
+        for left, stage, weight in zip(reversed(range(len(stages))), stages, weights, strict=True):
+            if last is not self.velocity:
+                self.border.update_induced(last, self.window)
+            keep, dt = self.dtype(stage.keep), self.dtype(stage.span) * step
+            taken = Taken(rooms[left % 2], last, self.velocity, last, keep, dt)
+            self._advance(taken, push)
+            self._project(taken.out, (1 - keep) * dt, limits)
+            self._collect(taken, weight)
+            last = taken.out
 
-    def _predict(self, step: float, push: tuple[float, ...]) -> HeunStage:
-        """On return ``_predicted`` is Euler's step, immersed, before its divergence is projected out."""
-        now = self.velocity
-        return self._advance(HeunStage(self._predicted, now, now, now, self.dtype(0)), step, push)
-
-    def _correct(self, step: float, push: tuple[float, ...]) -> HeunStage:
-        """On return ``_corrected`` is the mean of ``_predicted`` and of a step with its rates, immersed."""
-        predicted = self._predicted
-        return self._advance(
-            HeunStage(self._corrected, predicted, self.velocity, predicted, self.dtype(0.5)), step, push
-        )
-
-    def _advance(self, stage: HeunStage, step: float, push: tuple[float, ...]) -> HeunStage:
-        """On return ``out`` of the stage is what ``HeunStage`` says, and fits the sides."""
+    def _advance(self, stage: Taken, push: tuple[float, ...]) -> None:
+        """On return ``out`` of the stage is what ``Taken`` says, and fits the sides; its divergence is left."""
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
-        advance(
-            out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, step, self.nu, push, stage.keep
+        self._advance_all(
+            out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, stage.dt, self.nu, push,
+            stage.keep,
         )  # fmt: skip
         if self.window[1] > self.window[0]:
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.axes):
                 immerse(
-                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner, step,
+                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner, stage.dt,
                     stage.keep,
                 )  # fmt: skip
         self.border.fill(stage.out)
-        return stage
 
     def _mirror_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies with its image."""
@@ -370,11 +373,11 @@ class Fluid:
                     image, source = (PAD - 1 - start, PAD - start) if low else (n, n - 1)
                     planes[image] = planes[source]
 
-    def _collect(self, stage: HeunStage, step: float) -> None:
-        """Add half of what the immersion gave in this stage: the step is the mean of its two stages."""
+    def _collect(self, stage: Taken, weight: float) -> None:
+        """Add what the immersion gave in this stage, by the share that it has in the step."""
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, near, inner = float(step), float(stage.keep), self._near, self.inner
+        dt, keep, near, inner = float(stage.dt), float(stage.keep), self._near, self.inner
         sums, p = np.zeros_like(self.given), self._flat(self.p)
         out, blend, raw, passage, mu1 = (
             self._flat(a) for a in (stage.out, stage.blend, self._raw, self.passage, self.mu1)
@@ -386,7 +389,7 @@ class Fluid:
                 keep,
             )  # fmt: skip
         dilatation_work(sums, p, self._flat(self.source), owners[0], near, inner, dt)
-        self.given += 0.5 * sums
+        self.given += weight * sums
 
     def contents(self) -> np.ndarray:
         """Return what the region of each part of each placed body holds, shape (row, ``momentum.contents_of``)."""

@@ -1,0 +1,107 @@
+"""Integrators in time: explicit Runge-Kutta methods, each stage of which is immersed and projected.
+
+Stage ``k`` makes of the velocity ``y_0`` at the step's start and of the last stage's ``y_(k-1)``
+
+    y_k = keep y_(k-1) + (1 - keep) (y_0 + span dt f(y_(k-1)))
+
+with advection and diffusion ``f``; the bodies are where they are at the step's end. An integrator is the ``keep`` and
+``span`` of its stages.
+
+Source: Shu and Osher 1988, J. Comput. Phys. 77, 439-471 (methods that keep a bound which Euler's step keeps).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.grid import check_kinds
+
+ROUNDING = 1e-9
+"""How far sums over stages may be off what a method of some order asks [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One stage of an integrator."""
+
+    keep: float
+    """Share of the last stage's velocity that stays, 0 to 1 [-]; 0 in the first stage, which has none before it."""
+    span: float
+    """How far the stage goes from the step's start, in steps [-]."""
+
+
+@dataclass(frozen=True)
+class Integrator:
+    """A method of Runge and Kutta.
+
+    Raises:
+        InvalidDesign: on creation, for stages that cannot be or do not add up to the step.
+    """
+
+    stages: tuple[Stage, ...]
+    """Its stages, in their order."""
+
+    def __post_init__(self) -> None:
+        check_kinds(self)
+        for stage in self.stages:
+            check_kinds(stage)
+            if not (0 <= stage.keep < 1 and isfinite(stage.span) and stage.span > 0):
+                raise InvalidDesign(f"a stage is {stage}; keep is at least 0 and below 1, and span is above 0.")
+        if not self.stages or self.stages[0].keep:
+            raise InvalidDesign("an integrator has at least one stage, and the first keeps nothing: Stage(0.0, 1.0).")
+        if self.order < 1:
+            total = float(self.rates[-1].sum())
+            raise InvalidDesign(
+                f"the stages of the integrator add up to {total:.6g} of a step; they must add up to 1. Heun's method "
+                f"is Integrator((Stage(0.0, 1.0), Stage(0.5, 1.0)))."
+            )
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Share of each stage in the velocity at the step's end, shape (stage,) [-]; they add up to 1."""
+        out = np.zeros(len(self.stages))
+        for k, stage in enumerate(self.stages):
+            out *= stage.keep
+            out[k] = 1 - stage.keep
+        return out
+
+    @cached_property
+    def rates(self) -> np.ndarray:
+        """Butcher's table: the part that each stage has of the rates taken in each, shape (stage, stage) [steps]."""
+        out = np.zeros((len(self.stages),) * 2)
+        for k, stage in enumerate(self.stages):
+            if k:
+                out[k] = stage.keep * out[k - 1]
+            out[k, k] = (1 - stage.keep) * stage.span
+        return out
+
+    @property
+    def order(self) -> int:
+        """Order of the method for the water alone, 0 to 3 [-].
+
+        Bodies, which are placed at the step's end for all stages, and the pressure, which the last step left, enter
+        with an error of their own.
+        """
+        b = self.rates[-1]
+        before = np.vstack([np.zeros(len(b)), self.rates[:-1]])  # rates are taken at what the last stage left
+        c = before.sum(axis=1)
+        asked = (1.0, ((b.sum(), 1.0),)), (2.0, ((b @ c, 1 / 2),)), (3.0, ((b @ c**2, 1 / 3), (b @ before @ c, 1 / 6)))
+        order = 0
+        for reached, conditions in asked:
+            if any(abs(has - needs) > ROUNDING for has, needs in conditions):
+                break
+            order = int(reached)
+        return order
+
+
+EULER = Integrator((Stage(0.0, 1.0),))
+"""Euler's method, of first order: to compare with; its vortices grow by themselves unless steps are small."""
+
+HEUN = Integrator((Stage(0.0, 1.0), Stage(0.5, 1.0)))
+"""Heun's method, of second order."""
+
+SHU_OSHER = Integrator((Stage(0.0, 1.0), Stage(0.25, 1 / 3), Stage(2 / 3, 2.0)))
+"""The method of third order of Shu and Osher, for half as much time again as Heun's."""

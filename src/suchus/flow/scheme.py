@@ -1,0 +1,102 @@
+# mypy: disable-error-code="no-untyped-def, var-annotated"
+# (the faces get their types from numba, once per precision)
+"""Advection schemes: what a velocity is on a face, from the values at the three nodes that the water comes by.
+
+Sources: Leonard 1979, Comput. Methods Appl. Mech. Eng. 19, 59-98 (QUICK); Leonard 1991, ibid. 88, 17-74 (the
+universal limiter).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numba
+import numpy as np
+
+from suchus.errors import InvalidDesign
+from suchus.flow.compiled import part
+from suchus.flow.grid import check_kinds
+from suchus.kinds import show
+
+TRIED = -1.0, 0.0, 3.0
+"""Uniform velocities that a scheme has to carry on as they are [m/s]."""
+
+
+@part
+def median(a, b, c):
+    """Return the middle one of three numbers."""
+    low = a if a < b else b
+    high = a if a > b else b
+    capped = high if high < c else c
+    return low if low > capped else capped
+
+
+@part
+def limited_quick(upstream, centre, downstream):
+    """Return the face value: QUICK, kept monotone between its neighbours."""
+    real = type(centre)
+    quick = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
+    steepest = real(10.0) * centre - real(9.0) * upstream
+    return median(quick, centre, median(steepest, centre, downstream))
+
+
+@part
+def central(upstream, centre, downstream):
+    """Return the face value: the mean of both sides, which keeps energy and makes waves where gradients are steep."""
+    return type(centre)(0.5) * (centre + downstream)
+
+
+@part
+def upwind(upstream, centre, downstream):
+    """Return the face value: what comes, which makes no waves and as much friction as half a cell times the speed."""
+    return centre
+
+
+@dataclass(frozen=True, slots=True)
+class Scheme:
+    """An advection scheme."""
+
+    face: Callable[..., Any]
+    """Function of the velocities at the nodes two before, before and behind a face [m/s], as the water comes: that on
+    the face. It is compiled by numba and knows the module's numbers and parts; ``type(centre)(0.5)`` is a half in the
+    precision of the fields."""
+
+    def __post_init__(self) -> None:
+        check_kinds(self)
+
+    def check(self) -> None:
+        """Try the scheme on uniform velocities.
+
+        Raises:
+            InvalidDesign: the function cannot be compiled, or does not carry a uniform velocity on.
+        """
+        compiled, name = numba.njit(getattr(self.face, "py_func", self.face)), self.name
+        try:
+            found = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
+        except Exception as error:  # whatever a user's function raises, and numba's errors, which have no base but this
+            raise InvalidDesign(
+                f"the advection scheme {name} cannot be used: {show(str(error).strip())}; it is a function "
+                f"of three numbers (upstream, centre, downstream) that numba compiles and that returns one."
+            ) from error
+        for value, has in zip(TRIED, found, strict=True):
+            if not (isfinite(has) and abs(has - value) <= 1e-5 * abs(value)):
+                raise InvalidDesign(
+                    f"the advection scheme {name} makes {has:.6g} m/s of water that moves at {value:g} m/s "
+                    f"everywhere; shares of the three velocities must add up to 1."
+                )
+
+    @property
+    def name(self) -> str:
+        """What the function is called."""
+        return str(getattr(getattr(self.face, "py_func", self.face), "__name__", show(self.face)))
+
+
+QUICK = Scheme(limited_quick)
+"""Limited QUICK: of third order where the flow is smooth, without new extremes."""
+
+CENTRAL = Scheme(central)
+"""Central differences: of second order."""
+
+UPWIND = Scheme(upwind)
+"""First-order upwind: to see what false diffusion is."""
