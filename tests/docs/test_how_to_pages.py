@@ -23,6 +23,9 @@ ROOT = Path(__file__).parents[2]
         "own_experiment",
         "own_fault",
         "own_controller",
+        "own_shape",
+        "own_side",
+        "own_scheme",
         "projects",
     ],
 )

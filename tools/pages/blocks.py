@@ -55,6 +55,8 @@ def follow(page: str) -> list[str]:
         WrongOutput: a block printed something else than the page says.
     """
     session: dict[str, Any] = {"__name__": "__main__"}
+    if "" not in sys.path:
+        sys.path.insert(0, "")  # as for whoever starts Python there
     printed: list[str] = []
     for block in blocks(page):
         if block.language == "text":
@@ -88,12 +90,20 @@ def _do(block: Block, session: dict[str, Any]) -> str:
         return ""
     if block.language not in ("python", "sh"):
         return ""
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(out):
+    aside = io.StringIO()  # progress of a session; what commands say there is a part of the page
+    with contextlib.redirect_stdout(io.StringIO()) as out:
         if block.language == "python":
-            exec(compile(block.text, "page", "exec"), session)
-        else:
+            with contextlib.redirect_stderr(aside):
+                exec(compile(block.text, "page", "exec"), session)
+            return _trimmed(out)
+        with contextlib.redirect_stderr(out):
             for line in block.text.splitlines():
                 _command(shlex.split(line, comments=True))
+    return _trimmed(out)
+
+
+def _trimmed(out: io.StringIO) -> str:
+    """Return what was printed, without spaces at the ends of lines."""
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines()) + "\n"
 
 

@@ -158,41 +158,46 @@ class Edge:
         at = self.prescribed.ndim - self.axis
         return a.transpose(at, *(k for k in range(a.ndim) if k != at))  # np.moveaxis takes ten times as long
 
+    def asked(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
+        """Return what the side says at a time [s]: the velocity of what the water sticks to, and that into the domain.
+
+        None without friction, and None where the side gives no velocity through it [m/s].
+
+        Raises:
+            InvalidDesign: it says something that is no velocity.
+        """
+        slides, given = self.side.along(time, 1 + self.prescribed.ndim), None
+        who = f"the {self.name} side, a {type(self.side).__name__},"
+        if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
+            raise InvalidDesign(
+                f"at t = {time:.4g} s {who} moves along itself at {show(slides)} m/s; along() gives one finite number "
+                f"for each other axis, or None."
+            )
+        if self.side.passes and not self.side.opens:
+            given = np.asarray(self.side.into(time, *self.places))
+            if given.shape not in ((), self.prescribed.shape) or not np.isfinite(given).all():
+                raise InvalidDesign(
+                    f"at t = {time:.4g} s velocities into the domain through {who} are {show(given)}; into() gives one "
+                    f"finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                )
+        return slides, given
+
     def impose(self, time: float, outward: float) -> None:
         """Take what the side says of the water at a time.
 
         Args:
             time: when [s].
             outward: what share of the far stream's speed is across the side, positive outward [-].
-
-        Raises:
-            InvalidDesign: it says something that is no velocity.
         """
         self.leaves = self.side.carries(outward)
-        self.slides = self.side.along(time, 1 + self.prescribed.ndim)
-        if self.slides is not None and not (
-            np.shape(self.slides) == (self.prescribed.ndim,) and np.isfinite(self.slides).all()
-        ):
-            raise InvalidDesign(
-                f"at t = {time:.4g} s the {self.name} side, a {type(self.side).__name__}, moves along itself at "
-                f"{show(self.slides)} m/s; along() gives one finite number for each other axis, or None."
-            )
-        if self.side.passes and not self.side.opens:
-            given = np.asarray(self.side.into(time, *self.places))
-            if given.shape not in ((), self.prescribed.shape) or not np.isfinite(given).all():
-                raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through the {self.name} side, a "
-                    f"{type(self.side).__name__}, are {show(given)}; into() gives one finite number [m/s], or as many "
-                    f"as there are places, shape {self.prescribed.shape}."
-                )
+        self.slides, given = self.asked(time)
+        if given is not None:
             self.prescribed[:] = given
 
-    @property
-    def fastest(self) -> float:
-        """Fastest speed that the side itself imposes [m/s]."""
-        along = 0.0 if self.slides is None else length(self.slides)
-        through = float(np.abs(self.prescribed).max()) if self.side.passes and not self.side.opens else 0.0
-        return max(along, through)
+    def fastest(self, time: float) -> float:
+        """Return the fastest speed that the side itself imposes at a time [m/s]."""
+        slides, given = self.asked(time)
+        return max(0.0 if slides is None else length(slides), 0.0 if given is None else float(np.abs(given).max()))
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""
@@ -282,10 +287,9 @@ class Border:
         self.stream = tuple(state["stream"].tolist())
         self.steps, self.span = int(state["prepared"][0]), float(state["prepared"][1])
 
-    @property
-    def fastest(self) -> float:
-        """Fastest speed that a side itself imposes, a wall or an inflow [m/s]."""
-        return max(edge.fastest for edge in self.edges)
+    def fastest(self, time: float) -> float:
+        """Return the fastest speed that a side itself imposes at a time, a wall or an inflow [m/s]."""
+        return max(edge.fastest(time) for edge in self.edges)
 
     def prepare(
         self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...], time: float = 0.0
@@ -327,7 +331,7 @@ class Border:
             driven = ", ".join(e.name for e in self.edges if e.side.passes)
             way = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
-                f"at t = {time:.4g} s {100 * abs(net) / most:.2g} % of the water that passes the domain's sides "
+                f"at t = {time:.4g} s {100 * abs(net) / most:.3g} % of the water that passes the domain's sides "
                 f"({driven}) {way}; make another side an Outflow()."
             )
 

@@ -42,13 +42,13 @@ def limited_quick(upstream, centre, downstream):
 
 
 @part
-def central(upstream, centre, downstream):
+def central(upstream, centre, downstream):  # noqa: ARG001
     """Return the face value: the mean of both sides, which keeps energy and makes waves where gradients are steep."""
     return type(centre)(0.5) * (centre + downstream)
 
 
 @part
-def upwind(upstream, centre, downstream):
+def upwind(upstream, centre, downstream):  # noqa: ARG001
     """Return the face value: what comes, which makes no waves and as much friction as half a cell times the speed."""
     return centre
 

@@ -1,6 +1,6 @@
 """What is to be simulated: grid, water, sides and bodies, checked before anything runs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import ceil, isfinite, prod
 from typing import Any, Literal
@@ -9,6 +9,7 @@ import numpy as np
 
 from suchus.errors import Doubtful, InvalidDesign
 from suchus.flow.body import Body, cuts, thin_share, window_of
+from suchus.flow.compiled import PAD
 from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
@@ -47,6 +48,9 @@ class Setup:
     """Density of the water, 1 unless it is given: forces then come in units of speed squared times length [kg/m^3]."""
     stream: tuple[float, float] | tuple[float, float, float] | Callable[[float], tuple[float, ...]] = (0.0, 0.0)
     """Velocity of the far water (x, y) or (x, y, z), fixed or for every time; without it, that along z is 0 [m/s]."""
+    start: Callable[..., Sequence[np.ndarray]] | None = None
+    """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m], arrays of one
+    shape; None is that of the far stream. The first step takes out what it has of divergence [m/s]."""
     sides: Sides = field(default_factory=Sides)
     """What happens on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
@@ -149,6 +153,28 @@ class Setup:
         else:
             stream = self.stream
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
+
+    def began(self, component: int) -> np.ndarray | float:
+        """Return the water's velocity along an axis at time 0 on the faces across it, padded, the last axis first [m/s].
+
+        Raises:
+            InvalidDesign: ``start`` gives something that is no velocity there.
+        """
+        if self.start is None:
+            return self.far(0.0)[component]
+        grid, ends = self.grid, [n + 2 * PAD for n in self.grid.cells]
+        along = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
+        points = np.meshgrid(*along[::-1], indexing="ij")[::-1]
+        given = self.start(*points)
+        if len(given) != self.grid.axes:
+            raise InvalidDesign(f"start gives {len(given)} velocities; one along each of {self.grid.axes} axes counts.")
+        velocity = np.asarray(given[component], float)
+        if velocity.shape not in ((), points[0].shape) or not np.isfinite(velocity).all():
+            raise InvalidDesign(
+                f"start gives {show(given[component])} along {'xyz'[component]}; a finite velocity for each point is "
+                f"needed [m/s], shape {points[0].shape}."
+            )
+        return velocity
 
     def _check_stream(self, stream: Any, when: str) -> None:
         allowed = [(2,), (self.grid.axes,)]

@@ -104,8 +104,8 @@ class Simulation(Fields):
         self._last = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
-        for component, part in zip(self.water.velocity, stream, strict=True):
-            component[:] = part
+        for c, component in enumerate(self.water.velocity):
+            component[:] = setup.began(c) - self.frame[1, c]
         self.water.border.stream = stream
         self._placed = False
         self._taken: _Taken | None = None
@@ -212,7 +212,7 @@ class Simulation(Fields):
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
-            self._speed = max(self._speed, self._reference, self.water.border.fastest)
+            self._speed = max(self._speed, self._reference, self.water.border.fastest(self.time))
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
@@ -243,7 +243,7 @@ class Simulation(Fields):
                 for b, m in zip(self._bodies, markers, strict=True)
             ]
         )
-        ahead = length(self._stream(time))
+        ahead = max(length(self._stream(time)), self.water.border.fastest(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
@@ -301,7 +301,7 @@ class Simulation(Fields):
             along += part_columns(body, parts, point, poses[k], self.time, taken.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        self._reference = max(self._reference, length(water.border.stream), body_speed, water.border.fastest)
+        self._reference = max(self._reference, length(water.border.stream), body_speed, water.border.fastest(self.time))
         solves = water.solves
         row = np.array(
             [self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values, *along]
