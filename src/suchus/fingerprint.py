@@ -86,7 +86,7 @@ class _Walk:
 
     def _behaviour(self, value: object) -> None:
         if isinstance(value, FunctionType):
-            cells = [cell.cell_contents for cell in value.__closure__ or ()]
+            cells = [_written(cell.cell_contents) for cell in value.__closure__ or ()]
             names = _names(value.__code__)
             known = _known(names, value.__globals__)
             own = {name: item for name, item in known.items() if _decides(item, value.__module__)}
@@ -118,6 +118,12 @@ class _Walk:
                 self.value(constant)
 
 
+def _written(value: object) -> object:
+    """Return the function that a compiled one of numba's was made of, and anything else as it is."""
+    function = getattr(value, "py_func", None)
+    return function if isinstance(function, FunctionType) else value
+
+
 def _names(code: CodeType) -> list[str]:
     """Return the names that a function looks up, and those that functions inside it do."""
     inner = [name for part in code.co_consts if isinstance(part, CodeType) for name in _names(part)]
@@ -126,7 +132,7 @@ def _names(code: CodeType) -> list[str]:
 
 def _known(names: list[str], found: dict[str, object]) -> dict[str, object]:
     """Return what names mean among the globals of a function; of a module, what the function may take from it."""
-    known = {name: found[name] for name in names if name in found}
+    known = {name: _written(found[name]) for name in names if name in found}
     for module, value in list(known.items()):
         if isinstance(value, ModuleType) and _given(value):
             known |= {f"{module}.{name}": vars(value)[name] for name in names if name in vars(value)}

@@ -66,15 +66,17 @@ class Spy:
     def __post_init__(self):
         self.collect, self.water._collect = self.water._collect, self
 
-    def __call__(self, stage, dt):
+    def __call__(self, stage, weight):
         w = self.water
-        self.collect(stage, dt)
+        self.collect(stage, weight)
         inside = list(w.mu0 < 1)
         for touched, mu1 in zip(inside, w.mu1, strict=True):
             touched[w.here] |= (mu1 != 0).any(axis=0)
         dilatation_work = float((w.p[w.here].astype(float) * w.source).sum())
         copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
-        self.stages.append(Stage(*copies, w.p.astype(float), dilatation_work, float(dt), float(stage.keep), inside))
+        self.stages.append(
+            Stage(*copies, w.p.astype(float), dilatation_work, float(stage.dt), float(stage.keep), inside)
+        )
 
 
 def limited(far, near, ahead):

@@ -2,15 +2,18 @@
 
 from math import exp, log2, pi
 
+import numba
 import numpy as np
 import pytest
 
 from suchus import flow
 from suchus.errors import InvalidDesign
+from suchus.fingerprint import fingerprint
 from suchus.flow.advect import advance, advance_by
 from suchus.flow.compiled import PAD
 
 NU = 1e-3
+ALL = flow.QUICK, flow.CENTRAL, flow.UPWIND
 
 
 def vortices(cells, **settings):
@@ -55,9 +58,9 @@ def test_the_water_begins_as_it_is_told_also_in_space_and_in_a_grid_that_travels
     def start(x, y, z):
         return 0.1 + 0 * x, 0.2 * y, 0.3 * z
 
-    grid = flow.Grid(cells=(8, 16, 8), cell=0.1)
+    grid = flow.Grid(cells=(16, 16, 16), cell=0.1)
     body = flow.Body(shape=flow.Sphere(diameter=0.5), name="it",
-                     motion=flow.Glide(start=(0.4, 0.8, 0.4), velocity=(0.05, 0.0, 0.0)))  # fmt: skip
+                     motion=flow.Glide(start=(0.8, 0.8, 0.8), velocity=(0.05, 0.0, 0.0)))  # fmt: skip
     setup = flow.Setup(grid=grid, viscosity=1.0, start=start, bodies=(body,), follow="it")
     u, v, w = flow.Simulation(setup).water.velocity
     assert u[3, 4, 5] == pytest.approx(0.05)  # the grid's own 0.05 m/s less
@@ -105,6 +108,25 @@ def test_upwind_loses_energy_that_central_differences_keep():
         kept[scheme.name] = energy(sim) / before
     assert kept["central"] == pytest.approx(exp(-4 * NU), abs=2e-3)
     assert kept["upwind"] < 0.85
+
+
+def test_another_scheme_is_another_setup_for_a_checkpoint_and_so_is_its_helper():
+    def of(half):
+        @numba.njit
+        def mean(a, b):
+            return half * a + (1 - half) * b
+
+        def face(upstream, centre, downstream):
+            return mean(centre, downstream)
+
+        return fingerprint(flow.Setup(grid=grid, viscosity=1.0, scheme=flow.Scheme(face)))
+
+    grid = flow.Grid(cells=(32, 32), cell=0.1)
+    assert of(0.5) == of(0.5) != of(0.25)
+    assert fingerprint(flow.Setup(grid=grid, viscosity=1.0)) == fingerprint(flow.Setup(grid=grid, viscosity=1.0))
+    theirs = {fingerprint(flow.Setup(grid=grid, viscosity=1.0, scheme=one)) for one in ALL}
+    assert len({of(0.5), *theirs}) == 1 + len(ALL)
+    assert fingerprint(flow.Setup(grid=grid, viscosity=1.0, integrator=flow.EULER)) != of(0.5)
 
 
 def double(upstream, centre, downstream):

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, Part, part, part_with, signed, threaded, threaded_with, unsigned
+from suchus.flow.compiled import PAD, UNIT, part, part_with, signed, threaded, threaded_with, unsigned
 from suchus.flow.scheme import QUICK, Scheme, limited_quick
 from suchus.flow.slab import (
     EDGE,
@@ -143,6 +143,5 @@ def advance_by(scheme: Scheme):
         return advance
     name = scheme.name
     print(f"Compiling the flow solver with the advection scheme {name} ...", file=sys.stderr, flush=True)
-    face = scheme.face if isinstance(scheme.face, Part) else part(scheme.face)
-    fluxes = part_with(_fluxes, limited_quick=face)
+    fluxes = part_with(_fluxes, limited_quick=part(scheme.face))
     return threaded_with(advance, _advance=part_with(_advance, _fluxes=fluxes))

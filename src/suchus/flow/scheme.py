@@ -41,13 +41,11 @@ def limited_quick(upstream, centre, downstream):
     return median(quick, centre, median(steepest, centre, downstream))
 
 
-@part
 def central(upstream, centre, downstream):  # noqa: ARG001
     """Return the face value: the mean of both sides, which keeps energy and makes waves where gradients are steep."""
     return type(centre)(0.5) * (centre + downstream)
 
 
-@part
 def upwind(upstream, centre, downstream):  # noqa: ARG001
     """Return the face value: what comes, which makes no waves and as much friction as half a cell times the speed."""
     return centre
@@ -59,8 +57,7 @@ class Scheme:
 
     face: Callable[..., Any]
     """Function of the velocities at the nodes two before, before and behind a face [m/s], as the water comes: that on
-    the face. It is compiled by numba and knows the module's numbers and parts; ``type(centre)(0.5)`` is a half in the
-    precision of the fields."""
+    the face. It is compiled by numba; ``type(centre)(0.5)`` is a half in the precision of the fields."""
 
     def __post_init__(self) -> None:
         check_kinds(self)
@@ -71,7 +68,7 @@ class Scheme:
         Raises:
             InvalidDesign: the function cannot be compiled, or does not carry a uniform velocity on.
         """
-        compiled, name = numba.njit(getattr(self.face, "py_func", self.face)), self.name
+        compiled, name = numba.njit(self.face), self.name
         try:
             found = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
         except Exception as error:  # whatever a user's function raises, and numba's errors, which have no base but this
@@ -89,10 +86,10 @@ class Scheme:
     @property
     def name(self) -> str:
         """What the function is called."""
-        return str(getattr(getattr(self.face, "py_func", self.face), "__name__", show(self.face)))
+        return str(getattr(self.face, "__name__", show(self.face)))
 
 
-QUICK = Scheme(limited_quick)
+QUICK = Scheme(limited_quick.py_func)
 """Limited QUICK: of third order where the flow is smooth, without new extremes."""
 
 CENTRAL = Scheme(central)

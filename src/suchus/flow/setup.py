@@ -155,7 +155,7 @@ class Setup:
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
     def began(self, component: int) -> np.ndarray | float:
-        """Return the water's velocity along an axis at time 0 on the faces across it, padded, the last axis first [m/s].
+        """Return the water's velocity along an axis at time 0, on all faces across it, the last axis first [m/s].
 
         Raises:
             InvalidDesign: ``start`` gives something that is no velocity there.

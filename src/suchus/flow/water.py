@@ -337,6 +337,8 @@ class Fluid:
             self._project(taken.out, (1 - keep) * dt, limits)
             self._collect(taken, weight)
             last = taken.out
+        if len(stages) == 1:  # else the sides would go on from what they have never seen
+            self.border.update_induced(last, self.window)
 
     def _advance(self, stage: Taken, push: tuple[float, ...]) -> None:
         """On return ``out`` of the stage is what ``Taken`` says, and fits the sides; its divergence is left."""
