@@ -279,3 +279,23 @@ def test_a_levelled_run_stands_on_a_slope_whose_water_line_is_the_origin():
 def test_shores_that_cannot_be_are_refused(fields, message):
     with pytest.raises(InvalidDesign, match=message):
         replace(SHORE, **fields)
+
+
+def test_each_run_is_a_robot_as_built_on_a_floor_that_is_told_as_designed(monkeypatch):
+    seen = []
+
+    def stopped(runs, **_):
+        seen.extend(runs)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(shore, "simulate", stopped)
+    question = replace(SHORE, slopes=SHORE.slopes[:1], others=(), other_air_released=())
+    with pytest.raises(KeyboardInterrupt):
+        question.simulate()
+    designed = [run for _, _, run in question._cases()]
+    assert len(seen) == len(designed)
+    assert len({run.zero_error for run in seen}) == len({run.seed for run in designed}) > 7
+    for built, run in zip(seen, designed, strict=True):
+        assert built.noise == run.noise == 0.0
+        assert built.robot != run.robot
+        assert built.ground.friction_scale != run.ground.friction_scale in question.friction_scales

@@ -15,6 +15,7 @@ import xarray as xr
 
 from suchus.cli import main
 from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_3d.experiment import Item, _swum_here, swum_in_space
 from suchus.fingerprint import fingerprint
 from suchus.jobs import NoCluster, conduct_sweep, connected
@@ -23,6 +24,7 @@ from suchus.optimise import Aim, Optimisation, optimise
 from suchus.optimise.conduct import tried
 from suchus.optimise.evaluate import evaluate
 from suchus.study import Study, Vary, conduct
+from suchus.study.varied import conduct_varied, varied_study
 from suchus.water import fit, printed_wave
 from suchus.water.resolved import SwimSetting
 
@@ -107,8 +109,10 @@ def squared(number, progress):
 
 @pytest.mark.slow("a cluster, of which parts are killed, and a second run")
 def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, counted):
+    claims = varied_study(EXPERIMENTS["tail_bending"], samples=8)
     with connected(machines.address) as client:
         client.wait_for_workers(2, timeout=60)
+        conduct_varied(claims, tmp_path / "claims", client=client)
         optimise(search, tmp_path / "search", client=client)
         conduct(asked, tmp_path / "study", progress=lambda *_: machines.workers[0].kill(), client=client)
         assert len(client.nthreads()) == 1
@@ -122,9 +126,10 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, co
     assert [(float(one.x[1]), one.attrs) for one in results] == [(float(n**2), {"of": n}) for n in range(1, 6)]
     spread = conduct(asked, tmp_path / "study_here")
     assert int((spread.error != "").sum()) == 2
+    conduct_varied(claims, tmp_path / "claims_here")
     optimise(search, tmp_path / "search_here")
     conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep_here")
-    for name in ("study", "search", "sweep"):
+    for name in ("claims", "study", "search", "sweep"):
         assert contents(tmp_path / name) == contents(tmp_path / f"{name}_here")
 
 

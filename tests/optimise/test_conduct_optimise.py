@@ -25,6 +25,7 @@ from suchus.metrics import displacement, slip
 from suchus.motion import Gait
 from suchus.optimise import Limit, evaluate, optimise, read_optimisation
 from suchus.optimise.aims import LIMITS
+from suchus.optimise.conduct import CONDITIONS, _under
 from suchus.record import load
 from suchus.robots import ROBOTS
 from suchus.study import Arm, Vary
@@ -243,3 +244,16 @@ name = "displacement"
 """)
     assert main(["optimise", str(page), "--out", str(tmp_path / "found")]) == 0
     assert len(list((tmp_path / "found").rglob("*_replay.html"))) == 1
+
+
+def test_a_check_shakes_no_servo_and_builds_robots_of_the_design():
+    """White noise shakes a robot forward, so that it would flatter what was found."""
+    run = Run(robot="caiman", gait="belly_crawl")
+    tried = {condition.tells: _under(run, condition) for condition in CONDITIONS}
+    built = {one.zero_error for one in tried.values() if one.zero_error}
+    assert {one.noise for one in tried.values()} == {0.0}
+    assert len(built) == sum(condition.built is not None for condition in CONDITIONS) == 2
+    assert tried["2 ms"] == run
+    assert tried["foot friction 1.0"].ground.friction_scale == 1.25
+    assert tried["a robot as built, seed 1"].robot != run.robot
+    assert tried["begun a quarter of a cycle later"].gait != run.gait

@@ -25,14 +25,6 @@ WAITING = {
     "height_from_spine_head_legs",
     "height_ratio",
     "height_standing",
-    "high_walk_speed_high",
-    "high_walk_speed_low",
-    "oscillators_direction",
-    "salamander_force_times",
-    "salamander_fore_force",
-    "salamander_hind_force",
-    "salamander_hind_push",
-    "salamander_swim_stride",
     "shared_variables",
     "swim_body_wave",
     "swim_diagonal_force",
@@ -44,7 +36,6 @@ WAITING = {
     "swim_tail_thrust",
     "swim_thrust_symmetric",
     "switches_structure",
-    "tail_on_ground_in_high_walk",
     "tilt_limbs_only",
 }
 """Claims asked of other designs or by another rule since the table was made, and those of other publications, which

@@ -19,7 +19,7 @@ from suchus.design import with_values
 from suchus.design.scale import physics_step
 from suchus.errors import IncompatibleRecord, NotConverged
 from suchus.jobs import MADE_BY, InMemory, Job, Place, Store, Tally, deciding, finish, place_for
-from suchus.land import Run, simulate
+from suchus.land import Run, Tolerances, simulate
 from suchus.land.extent import processor_seconds
 from suchus.optimise.aims import AIMS
 from suchus.optimise.evaluate import allowed, columns, evaluate, losses, measure, score, units
@@ -198,10 +198,8 @@ class Condition:
     """Description of the condition."""
     friction_scale: float = 1.0
     """Factor on the friction [-]."""
-    noise: float = 0.0
-    """Standard deviation of noise on every commanded angle [rad]."""
-    seed: int = 0
-    """Seed of the noise."""
+    built: int | None = None
+    """Seed of the errors of a robot that is built of the design, see ``land.Tolerances``; None as designed."""
     later: float = 0.0
     """Phase by which the walk begins later in its cycle [cycle]."""
 
@@ -211,8 +209,8 @@ CONDITIONS = (
     Condition("foot friction 0.5", friction_scale=0.625),
     Condition("foot friction 0.65", friction_scale=0.8125),
     Condition("foot friction 1.0", friction_scale=1.25),
-    Condition("servo noise 0.01 rad, seed 1", noise=0.01, seed=1),
-    Condition("servo noise 0.01 rad, seed 2", noise=0.01, seed=2),
+    Condition("a robot as built, seed 1", built=1),
+    Condition("a robot as built, seed 2", built=2),
     Condition("begun a quarter of a cycle later", later=0.25),
     Condition("begun 0.4 of a cycle later", later=0.4),
 )
@@ -244,8 +242,9 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
 def _under(run: Run, condition: Condition) -> Run:
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
-    other = replace(run, gait=gait if condition.later else run.gait, noise=condition.noise, seed=condition.seed)
-    return with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
+    other = replace(run, gait=gait if condition.later else run.gait)
+    other = with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
+    return other if condition.built is None else Tolerances().built(other, condition.built)
 
 
 def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:

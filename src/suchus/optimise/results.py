@@ -219,7 +219,7 @@ def _sections(
             texts=(
                 f"The search ran with {1000 * spec.timestep:g} ms; here the best is run again with "
                 f"{1000 * physics_step(spec.run.robot):g} ms, on other "
-                "ground, with noise on its servos, and begun elsewhere in its cycle, beside the start.",
+                "ground, as robots that are built of the design, and begun elsewhere in its cycle, beside the start.",
             ),
             figures=tuple(f"around_{search.arm}" for search in searches),
             tables=[_checks(search) for search in searches],

@@ -21,7 +21,7 @@ from suchus.experiments._similar import similar
 from suchus.experiments.shore.figure import draw_ashore, draw_decides
 from suchus.gaits import DRAFTED, GAITS, own_gait, suits
 from suchus.gaits.belly_crawl import LIMBS
-from suchus.land import Ground, Lake, Run, simulate
+from suchus.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.land.afloat import check_floats, hovers
 from suchus.land.lake import up
 from suchus.metrics import swim_numbers
@@ -68,11 +68,11 @@ class Shore(Experiment):
     It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
     belly and tail carry, and lands with air let out in the gait ``wade``. It approaches obliquely, so that along its
     body the slope is less than that of the shore. Main runs: every slope with every friction scale, ``seeds`` times,
-    with noise on the servos. Beside them other gaits on every slope with one friction scale, other amounts of air let
-    out on the steepest slope with every friction scale, and walks from land into the water on every slope. It has come
-    ashore if its centre of mass is ``beyond`` the water line without falling; it is in the water if it swims at the
-    end, floats free, and did not fall. The work per metre is measured in three more runs: the gait on level dry land,
-    and the swim at the surface and at a constant depth.
+    each a robot that is built of the design, see ``land.Tolerances``. Beside them other gaits on every slope with one
+    friction scale, other amounts of air let out on the steepest slope with every friction scale, and walks from land
+    into the water on every slope. It has come ashore if its centre of mass is ``beyond`` the water line without
+    falling; it is in the water if it swims at the end, floats free, and did not fall. The work per metre is measured
+    in three more runs: the gait on level dry land, and the swim at the surface and at a constant depth.
     """
 
     title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
@@ -100,8 +100,8 @@ class Shore(Experiment):
     """Factors on the friction of all the robot's surfaces [-]."""
     seeds: int = 2
     """Runs of each slope with each friction scale [-]."""
-    noise: float = 0.01
-    """Standard deviation of the noise on every commanded angle [rad]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots and their grounds differ from the design; the friction scale is that of the design."""
     air_released: float = 1.0
     """Share of the air of the hull that it lets out while it lands [-]."""
     other_air_released: tuple[float, ...] = (0.0, 0.5)
@@ -128,7 +128,6 @@ class Shore(Experiment):
             check.rising("slopes", 0.01, pi / 4, "rad")
             check.rising("friction_scales", 0.01, 10.0, "")
             check.whole("seeds", 1, 1000)
-            check.number("noise", 0.0, 1.0, "rad")
             check.number("air_released", 0.0, 1.0, "")
             check.number("approach", -1.2, 1.2, "rad")
             if self.other_air_released:
@@ -169,7 +168,7 @@ class Shore(Experiment):
         cases = self._cases()
         runs = [run for _, _, run in cases]
         record = simulate(
-            runs,
+            [self.tolerances.built(run, run.seed) for run in runs],
             duration=self.duration,
             timestep=self.timestep,
             every=_SAMPLE,
@@ -241,7 +240,6 @@ class Shore(Experiment):
             ground=Ground(uphill=uphill, friction_scale=scale),
             lake=Lake(level=offshore * sin(uphill)),
             control=control,
-            noise=self.noise,
             seed=seed,
             label=f"{np.degrees(abs(uphill)):.0f} degrees, friction scale {scale:g}",
         )
