@@ -116,7 +116,11 @@ def write(path: Path, content: str | bytes) -> Path:
     Raises:
         Unwritable: the place cannot be written to, or is taken by something that suchus did not write.
     """
-    data = content.encode() if isinstance(content, str) else content
+    try:
+        data = content.encode() if isinstance(content, str) else content
+    except UnicodeEncodeError as error:
+        odd = error.object[error.start : error.end]
+        raise Unwritable(f"{path} cannot be written: it would hold {odd!r}, which is no text in UTF-8.") from error
     if _is_draft(path):
         path.write_bytes(data)
         return path
@@ -251,11 +255,11 @@ def _to_disk(path: Path) -> None:
 
 def _check_names(path: Path) -> None:
     """Refuse a path that the system takes for no path at all."""
-    if "\0" in str(path) or not _is_text(str(path)):
+    if "\0" in str(path) or not is_text(str(path)):
         raise Unwritable(f"{str(path)!r} is no name that a file of suchus's can have: it is to be a text in UTF-8.")
 
 
-def _is_text(name: str) -> bool:
+def is_text(name: str) -> bool:
     """Return whether a name can stand in a text; one with bytes that are no UTF-8 cannot."""
     try:
         name.encode()

@@ -11,10 +11,11 @@ from suchus import blueprint
 from suchus.cli import main
 from suchus.design import Robot
 from suchus.design.segment import Rod, Shell
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.errors import InvalidDesign, UnreadableFile, Unwritable
 from suchus.flow import checkpoint
 from suchus.robots import ROBOTS
 from suchus.water.samples import Samples
+from suchus.writing import write
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "model"))
 from hinge_trees import quadruped
@@ -79,6 +80,21 @@ def test_a_name_that_is_no_text_is_refused_before_the_work(desk, capsys):
     assert main(["run", "wave", "--out", os.fsdecode(b"o\xff")]) == 2
     assert "UTF-8" in capsys.readouterr().err
     assert not list(desk.iterdir())
+
+
+@pytest.mark.usefixtures("fakes")
+def test_an_input_whose_name_is_no_text_is_refused_too(desk, capsys):
+    """Captions, outcomes and pages name what they are of, and the command that made them."""
+    blueprint.write(ROBOTS["caiman"], desk / "it.toml")
+    (desk / "it.toml").rename(os.fsdecode(b"it\xff.toml"))
+    for words in (["run", "wave", "--robot"], ["capture"], ["compare", "."]):
+        assert main([*words, os.fsdecode(b"it\xff.toml")]) == 2
+        told = capsys.readouterr().err
+        assert "it\\udcff.toml' is no text in UTF-8" in told
+        assert told.count("\n") == 1
+    with pytest.raises(Unwritable, match=r"page\.html cannot be written: it would hold '.udcff'"):
+        write(desk / "page.html", os.fsdecode(b"of it\xff"))
+    assert not (desk / "page.html").exists()
 
 
 @pytest.mark.usefixtures("fakes")

@@ -98,7 +98,7 @@ def build(tools: Environment, folder: Path, checkout: Path = ROOT) -> tuple[Path
     for old in [*folder.glob("suchus-*.whl"), *folder.glob("suchus-*.tar.gz")]:
         old.unlink()
     if tools.pip_if_served("build"):  # the build back end runs in an environment of its own, which pip makes
-        pinned = clean() | {"PIP_CONSTRAINT": str(PINNED)}
+        pinned = clean() | {"PIP_CONSTRAINT": PINNED.as_uri()}  # pip takes a path with a space for two
         run([tools.bin / "python", "-m", "build", "--outdir", folder, checkout], cwd=folder, env=pinned)
     else:
         print("The package build is not to be had: pip builds the wheel, and there is no sdist.")

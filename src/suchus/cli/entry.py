@@ -14,7 +14,7 @@ from suchus import large
 from suchus.errors import BusFailure, Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
 from suchus.sources import within
 from suchus.stopping import Stopped, stopping
-from suchus.writing import replacing
+from suchus.writing import is_text, replacing
 
 PROJECT = "--project"
 """Option of every command: the project folder, see ``suchus.sources``."""
@@ -184,6 +184,7 @@ def main(words: Sequence[str] | None = None) -> int:
         replace, mixed, any_size = (option in words for option in (REPLACE, MIXED, large.OPTION))
         words = [word for word in words if word not in (REPLACE, MIXED, large.OPTION)]
         with stopping(), plain_warnings(), within(folder), replacing(replace), _mixing(mixed), large.allowing(any_size):
+            _check_words(words)
             _check_room()
             return _flushed(words)
     except (Diverged, NotConverged) as error:
@@ -200,6 +201,17 @@ def main(words: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has gone, as in `suchus list | head -1`
         _drop_output()
         return 0
+
+
+def _check_words(words: Sequence[str]) -> None:
+    """Refuse what no result could hold, since results say by which command they were made.
+
+    Raises:
+        BadCommand: a word has bytes that are no UTF-8.
+    """
+    for word in words:
+        if not is_text(word):
+            raise BadCommand(f"{word!r} is no text in UTF-8, as results, which hold their command, are: rename it.")
 
 
 def _check_room() -> None:
