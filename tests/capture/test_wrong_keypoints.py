@@ -5,14 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from changed import changes, delayed, put, shaken, swapped, told, walker
+from menagerie import built
 
-from suchus.capture import Tracks, UnusableTracks, observe
+from suchus.capture import Camera, Tracks, UnusableTracks, film_animal, observe
 from suchus.capture.late import late
 from suchus.capture.screen import screened
 from suchus.capture.swings import Clock
 from suchus.capture.walk import _timed
-
-NEVER_SEEN_LATE = 3  # of the keypoints; frames by which some of them may run late without being found
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +88,20 @@ def test_three_frames_late_show_in_all_that_the_links_of_a_point_do(filmed):
         assert set(late(tracks, clock, seen.tracks.time)) == {point} - {""}
 
 
+def test_a_film_from_the_side_shows_no_lag():
+    """A body that bends to the sides is seen shortened, now here and now there."""
+    animal = built(np.random.default_rng(4), 4, trunk=(0.1, 0.2), period=(0.8, 1.2))
+    camera = Camera(rate=50.0, noise=2e-4, lost=0.0, heading=0.0, scale=None, heights=True, seed=4)
+    tracks = film_animal(animal, camera, cycles=5)
+    beside = replace(tracks, position=tracks.position[..., [0, 2]], view="side")
+    for filmed in (tracks, beside):
+        for point in ("", "tail_3"):
+            lagging = delayed(filmed, point, 5) if point else filmed
+            clock = Clock(np.array([0.0, animal.period]), np.array([0.0, 1.0]), animal.period)
+            found = late(lagging, clock, lagging.time)
+            assert set(found) == ({point} if filmed is tracks and point else set())
+
+
 def straight(point="", lag=0.0, varies=0.2):
     """Return a stiff body that goes straight ahead at a pace that varies, one of its points seen late."""
     time, names = np.arange(0.0, 12.0, 0.02), ("snout", "shoulder", "hip", "tail_base", "tail_tip")
@@ -135,6 +148,28 @@ def test_a_chord_of_a_body_that_bends_between_keypoints_is_not_seen_late():
     assert not late(timed, clock, seen.tracks.time)
 
 
+def test_a_keypoint_that_others_pass_is_lost_until_it_is_with_them_again():
+    """A neck that stays where it is: the shoulder passes it, and is as far from it as ever, on its other side."""
+    filmed = walker(11)
+    frames = slice(150, 240)
+    frozen = put(
+        filmed.tracks, "neck", np.broadcast_to(filmed.tracks.at("neck")[150], (len(filmed.tracks.time), 2)), frames
+    )
+    seen = screened(frozen)
+    assert not seen.wrong
+    assert "neck in " in " ".join(seen.notes)
+    assert np.isnan(seen.tracks.at("neck")[160:240]).mean() > 0.95
+
+
+def test_feet_stay_where_they_are_if_their_girdle_is_elsewhere_for_a_while():
+    filmed = walker(11)
+    away = put(filmed.tracks, "hip", 0.0 * np.nan_to_num(filmed.tracks.at("hip")), slice(150, 240))
+    found = told(filmed, away, ("hip",))
+    assert found.named
+    assert not found.outside
+    assert "LH in" not in found.said
+
+
 def test_noise_of_one_keypoint_is_told_from_that_of_all(filmed):
     assert "spine_2 by" in named(shaken(filmed.tracks, "spine_2", 10.0), "more noise than usual")
     loud = replace(filmed.tracks, position=filmed.tracks.position.copy())
@@ -159,6 +194,5 @@ def test_the_whole_battery(filmed):
         found = told(filmed, tracks, names)
         if found.outside or not found.named:
             wrong.append((kind, names, found.outside, found.named))
-    few = [one for one in wrong if one[0] != f"{NEVER_SEEN_LATE} frames late"]
     print(*wrong, sep="\n")
-    assert len(few) <= 0.05 * len(list(changes(filmed.tracks)))
+    assert len(wrong) <= 0.05 * len(list(changes(filmed.tracks)))

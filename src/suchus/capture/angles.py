@@ -61,7 +61,10 @@ def bend_angles(tracks: Tracks, tail_share: float = 1.0) -> BendAngles:
 def _tail_yaw(tracks: Tracks, share: float) -> Float[np.ndarray, " frame"]:
     """Return how far the tail looks left of the girdle, drawn through between the middles of its segments [rad]."""
     segments = list(pairwise(tracks.tail_chain[1:]))
-    lengths = np.array([np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1)) for a, b in segments])
+    apart = [np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1) for a, b in segments]
+    if not all(np.isfinite(size).any() for size in apart):  # a segment was never seen whole
+        return np.full(len(tracks.time), np.nan)
+    lengths = np.array([np.nanmedian(size) for size in apart])
     middles = np.cumsum(lengths) - lengths / 2
     distance = share * lengths.sum()
     pelvis = azimuth(tracks, "hip", "tail_base")

@@ -72,6 +72,8 @@ class PeriodicFit:
 def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, drift: int = 0) -> PeriodicFit:
     """Fit mean, drift and harmonics by least squares to the frames that are seen; points that jumped are left out.
 
+    Of what was never seen all is NaN.
+
     Args:
         time: shape (frame,) [s].
         values: shape (frame,), NaN where the quantity was not seen.
@@ -85,6 +87,11 @@ def fit(time: np.ndarray, values: np.ndarray, period: float, *, harmonics: int, 
     angle = 2 * np.pi * np.multiply.outer(time, np.arange(1, harmonics + 1)) / period
     X = np.hstack([np.power.outer(t, np.arange(drift + 1)), np.cos(angle), np.sin(angle)])
     use = np.isfinite(values)
+    if not use.any():
+        lost = np.full(harmonics, np.nan + 0j)
+        return PeriodicFit(
+            period=period, mean=np.nan, drift=np.full(drift, np.nan), middle=middle, harmonics=lost, residual=values
+        )
     solution = np.zeros(X.shape[1])
     for _ in range(_ROUNDS):
         solution = np.linalg.lstsq(X[use].T @ X[use], X[use].T @ values[use], rcond=None)[0]

@@ -154,6 +154,8 @@ def sweep(tracks: Tracks, leg: str, period: float) -> FootSweep | None:
     d = tracks.at(leg) - tracks.at(origin)
     forward = d[:, 0] * np.cos(look) + d[:, 1] * np.sin(look)
     outward = (d[:, 1] * np.cos(look) - d[:, 0] * np.sin(look)) * (1 if leg.startswith("L") else -1)
+    if not np.isfinite(outward).any():  # never seen together with its girdle
+        return None
     count = _harmonics(tracks, leg, period, 8)
     path = fit(tracks.time, forward, period, harmonics=count)
     lift = float("nan")

@@ -32,7 +32,7 @@ _EVEN = 0.3  # [cycle]; over which the velocity of a keypoint is smoothed
 
 
 def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dict[str, str]:
-    """Return the midline points that run behind or ahead of the others.
+    """Return the midline points that run behind or ahead of the others; from the side that cannot be seen.
 
     The distance of neighbours stays. If one of them is seen late it does not, as the link turns and the pace changes;
     the lag with which it stays most nearly the same is that of one behind the other.
@@ -43,6 +43,8 @@ def late(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> dic
         time: of the film, in each frame [s].
     """
     chain, found = list(tracks.midline), dict[str, str]()
+    if tracks.view == "side":  # bends to the sides shorten what is seen of a link
+        return found
     lags = _Lags(tracks, clock, time)
     while len(chain) >= 3:
         links = lags.links(list(pairwise(chain)))
@@ -224,13 +226,16 @@ class _Lags:
 def _line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:
     """Return where a straight line through each frame and ``half`` before and after it is, and its slope [1/frame].
 
-    Points that were not seen are put between their neighbours; at both ends of the film both are NaN.
+    Points that were not seen are put between their neighbours. Both are NaN at the ends of the film, and where fewer
+    than half of these frames were seen.
     """
     frames, (middle, slope) = np.arange(len(place)), np.full((2, *place.shape), np.nan)
     steps = np.arange(-half, half + 1)
     for i, row in enumerate(place.T):
         seen = np.isfinite(row)
         whole = np.interp(frames, frames[seen], row[seen])
-        middle[half:-half, i] = np.correlate(whole, np.ones(len(steps)), mode="valid") / len(steps)
-        slope[half:-half, i] = np.correlate(whole, steps, mode="valid") / (steps @ steps)
+        enough = np.correlate(seen.astype(float), np.ones(len(steps)), mode="valid") > half
+        mean = np.correlate(whole, np.ones(len(steps)), mode="valid") / len(steps)
+        middle[half:-half, i] = np.where(enough, mean, np.nan)
+        slope[half:-half, i] = np.where(enough, np.correlate(whole, steps, mode="valid") / (steps @ steps), np.nan)
     return middle, slope

@@ -19,6 +19,7 @@ from suchus.capture.tracks import LOST, Tracks, UnusableTracks
 _SWAY = 0.1  # share of its length by which a link between neighbours may vary: skin slides over bones
 _NOISES = 4.0  # standard deviations of noise that it may vary beyond that
 _ASTRAY = 0.25  # the same share in a single frame
+_FOLDED = 0.5  # the same of points that are not neighbours: a body that bends by two radians between them
 _ROUNDS = 4  # keypoints that may be elsewhere in one frame, and still be told from the others
 _TOLD = 0.02  # share of the frames in which a keypoint leaps or is elsewhere from which on it is named
 _SHAKES = 3.0  # times the usual noise from which on a keypoint is named
@@ -186,11 +187,11 @@ class _Links:
         spread = float(1.4826 * np.nanmedian(np.abs(seen - np.nanmedian(seen))))
         return max(0.0, spread / self.most(pair, _SWAY) - 1.0)
 
-    def strays(self, pair: tuple[str, str]) -> Bool[np.ndarray, " frame"]:
-        """Return in which frames the distance of a pair is not what it usually is."""
+    def strays(self, pair: tuple[str, str], share: float = _ASTRAY) -> Bool[np.ndarray, " frame"]:
+        """Return in which frames the distance of a pair is not what it usually is, by more than a share of it."""
         seen = self.apart(pair)
         with np.errstate(invalid="ignore"):
-            return np.abs(seen - np.nanmedian(seen)) > self.most(pair, _ASTRAY)
+            return np.abs(seen - np.nanmedian(seen)) > self.most(pair, share)
 
 
 def _unsteady(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
@@ -331,24 +332,29 @@ def _without_strays(tracks: Tracks, noise: Mapping[str, float], scale: float) ->
     """Return the tracks with midline points lost where they are not at their usual distance from neighbours, and where.
 
     In every frame the point goes that most of the wrong distances have in common, then the next; so do feet that are
-    much farther from their girdles than they usually are.
+    much farther from their girdles than they usually are, where the girdles are where they belong. A point that its
+    neighbour has passed may be as far from it as ever; then it is not as far from the next but one.
     """
     links, chain = _Links(tracks, noise, scale), tracks.midline
     pairs = links.pairs(chain)
     bad = np.array([links.strays(pair) for pair in pairs])
     member = np.array([[name in pair for name in chain] for pair in pairs], dtype=float)
     adjacent = np.array([pair in set(pairwise(chain)) for pair in pairs])
+    surely = np.array([bad[i] if adjacent[i] else links.strays(pair, _FOLDED) for i, pair in enumerate(pairs)])
     gone = np.zeros((len(chain), len(tracks.time)), dtype=bool)
     for _ in range(_ROUNDS):
-        frames = np.flatnonzero(bad[adjacent].any(axis=0))
+        frames = np.flatnonzero(surely.any(axis=0))
         if not len(frames):
             break
-        worst = np.argmax(member.T @ bad[:, frames], axis=0)
+        votes = member.T @ bad[:, frames]
+        worst = np.argmax(votes + 0.5 * votes / member.sum(axis=0)[:, None], axis=0)  # of equals who is at fewer pairs
         gone[worst, frames] = True
         bad[:, frames] &= member[:, worst] == 0
+        surely[:, frames] &= member[:, worst] == 0
     position, found = tracks.position.copy(), dict(zip(chain, gone, strict=True))
     for leg in tracks.legs:
-        far = _apart(tracks, leg, _girdle(tracks, leg))
+        girdle = _girdle(tracks, leg)
+        far = np.where(found[girdle], np.nan, _apart(tracks, leg, girdle))
         with np.errstate(invalid="ignore"):
             found[leg] = far > _STRETCHED * np.nanmedian(far) + _NOISES * np.nan_to_num(noise[leg])
     for name, frames in found.items():

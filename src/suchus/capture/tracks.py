@@ -175,6 +175,8 @@ def _length(link: np.ndarray) -> float:
         link: from one point to the other, for each frame (frames, axes); NaN where one was not seen.
     """
     size = np.linalg.norm(link, axis=-1)
+    if not np.isfinite(size).any():
+        return float("nan")
     usual = float(np.nanmedian(size))
     kept = np.where((size <= _JUMPED * usual)[:, None], link, np.nan)
     later = [np.sum(kept[ahead:] * kept[:-ahead], axis=-1) for ahead in (1, 2)]

@@ -27,6 +27,7 @@ _SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard e
 _TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
 _LATE, _ALIKE = 0.015, 0.35  # [cycle], share; a foot that is later, and by about as much behind, was seen late
 _PLACED = 0.005  # share of a step by which the unknown shape of the swing may move the places of a foot
+_PLACES = 0.7  # share of the frames of a cycle in which a point must be seen to tell how far it comes in it
 _ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
 
 
@@ -138,15 +139,16 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     tracks = tracks.without(wrong)
     count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
     each = [_read(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
-    whole = whole._replace(advance=float(np.mean([one.advance for one in each])))  # along a path that may be curved
+    gone = [one.advance for one in each if np.isfinite(one.advance)] or [whole.advance]
+    whole = whole._replace(advance=float(np.mean(gone)))  # along a path that may be curved
     _check_advance(whole, tracks.source)
     _check_feet(feet, tracks.source)
     zero = _zero(feet)
     strides = per_stride(tracks, clock, feet, zero)
     numbers = _seen(whole, each, feet, zero, clock, tracks.time[0])
     if np.isfinite(whole.trunk):
-        lengths = np.array([one.trunk for one in each])
-        spread = float(np.std(lengths, ddof=1)) if count > 1 else float("nan")
+        lengths = np.array([one.trunk for one in each if np.isfinite(one.trunk)])
+        spread = float(np.std(lengths, ddof=1)) if len(lengths) > 1 else float("nan")
         numbers["trunk_length"] = Seen(whole.trunk, spread, float(half_width(whole.trunk, lengths, 0.0)), tracks.unit)
     numbers |= _paced(strides, numbers["period"], whole, tracks.unit)
     unsure = 0.0  # of where the cycle begins
@@ -374,13 +376,15 @@ def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         seen = int(np.isfinite(series).sum())
         if seen:
             fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
-    place = tracks.at(tracks.line[1])
-    advanced = [fit(tracks.time, place[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+    place, advance = tracks.at(tracks.line[1]), float("nan")
+    if np.isfinite(place[:, 0]).mean() >= _PLACES:
+        advanced = [fit(tracks.time, place[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+        advance = float(np.hypot(*advanced)) * period
     sweeps = {leg: sweep(tracks, leg, period) for leg in tracks.legs}
     return _Reading(
         fits,
         {leg: one for leg, one in sweeps.items() if one is not None},
-        float(np.hypot(*advanced)) * period,
+        advance,
         tracks.trunk_length(),
         period,
         tail_share,
