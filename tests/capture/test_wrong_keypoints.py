@@ -89,17 +89,15 @@ def test_three_frames_late_show_in_all_that_the_links_of_a_point_do(filmed):
 
 
 def test_a_film_from_the_side_shows_no_lag():
-    """A body that bends to the sides is seen shortened, now here and now there."""
+    """A body that bends to the sides is seen shortened, now here and now there, which would look like lags."""
     animal = built(np.random.default_rng(4), 4, trunk=(0.1, 0.2), period=(0.8, 1.2))
     camera = Camera(rate=50.0, noise=2e-4, lost=0.0, heading=0.0, scale=None, heights=True, seed=4)
-    tracks = film_animal(animal, camera, cycles=5)
-    beside = replace(tracks, position=tracks.position[..., [0, 2]], view="side")
-    for filmed in (tracks, beside):
-        for point in ("", "tail_3"):
-            lagging = delayed(filmed, point, 5) if point else filmed
-            clock = Clock(np.array([0.0, animal.period]), np.array([0.0, 1.0]), animal.period)
-            found = late(lagging, clock, lagging.time)
-            assert set(found) == ({point} if filmed is tracks and point else set())
+    tracks = film_animal(replace(animal, tail_wave=0.6, tail_bend=0.8), camera, cycles=5)
+    clock = Clock(np.array([0.0, animal.period]), np.array([0.0, 1.0]), animal.period)
+    beside = replace(tracks, position=tracks.position[..., [0, 2]])
+    assert not late(tracks, clock, tracks.time)
+    assert late(beside, clock, tracks.time)  # taken for a film from above
+    assert not late(replace(beside, view="side"), clock, tracks.time)
 
 
 def straight(point="", lag=0.0, varies=0.2):

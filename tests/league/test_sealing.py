@@ -1,5 +1,6 @@
 import json
 import sys
+import warnings
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -134,6 +135,14 @@ def test_the_page_says_misses_first_and_keeps_what_it_is_made_of(tmp_path):
     assert "Of 2 predictions that could be judged here 1 missed, 0 were within a wide interval and 1 within" in page(
         [near], "x"
     )
+
+
+def test_a_page_of_whom_nothing_was_measured_warns_of_nothing(tmp_path):
+    sealed_prediction(stone(), tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        write_page([standing(stone(), tmp_path, tmp_path / "none")], tmp_path)
+    assert "kept back or not published" in (tmp_path / PAGE).read_text()
 
 
 def test_the_command_predicts_seals_and_judges(tmp_path, monkeypatch, capsys):
