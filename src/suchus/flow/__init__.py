@@ -1,6 +1,7 @@
 """Incompressible flow around bodies that move and bend, in the plane and in space."""
 
 from suchus.flow.added import added_mass
+from suchus.flow.bent import BentMesh, BentOutline, bent
 from suchus.flow.body import Body
 from suchus.flow.contact import BodyContact
 from suchus.flow.eel import eel, eel_in_space
@@ -40,6 +41,8 @@ __all__ = [
     "QUICK",
     "SHU_OSHER",
     "UPWIND",
+    "BentMesh",
+    "BentOutline",
     "Body",
     "BodyContact",
     "Capsule",
@@ -94,6 +97,7 @@ __all__ = [
     "Twists",
     "Wall",
     "added_mass",
+    "bent",
     "difference",
     "eel",
     "eel_in_space",

@@ -70,7 +70,7 @@ class TriangleMesh(SpaceShape):
                 f"the faces of the mesh look inwards: its volume is {self.volume(0.0):.3g} m3. Turn them round, as "
                 "mesh.invert() of trimesh does."
             )
-        object.__setattr__(self, "_normals", _pseudo_normals(vertices, faces))
+        object.__setattr__(self, "_normals", pseudo_normals(vertices, faces))
         object.__setattr__(self, "_thick", self._widest())
 
     @property
@@ -102,22 +102,9 @@ class TriangleMesh(SpaceShape):
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
         place = pose.along(3)
-        corners = self._placed(place)[self.faces]
-        edges = np.roll(corners, -1, axis=1) - corners
-        parts = np.maximum(1, np.ceil(np.sqrt((edges**2).sum(axis=2)).max(axis=1) / spacing)).astype(int)
-        across = np.cross(edges[:, 0], edges[:, 1])
-        area = 0.5 * np.sqrt((across**2).sum(axis=1))
-        points, share, normals = [], [], []
-        for count in np.unique(parts):
-            some, weights = parts == count, _middles(int(count))
-            points.append(np.einsum("mk,fkd->dfm", weights, corners[some]).reshape(3, -1))
-            share.append(np.repeat(area[some] / count**2, count**2))
-            normals.append(np.repeat(across[some] / np.maximum(2 * area[some, None], 1e-300), count**2, axis=0).T)
-        at = np.concatenate(points, axis=1)
-        return Markers(
-            points=at, share=np.concatenate(share), velocities=np.stack(place.rates(at)),
-            normals=np.concatenate(normals, axis=1), spins=np.broadcast_to(place.spins[:, None], at.shape),
-        )  # fmt: skip
+        at, share, normals = middles_of(self._placed(place)[self.faces], spacing)
+        spins = np.broadcast_to(place.spins[:, None], at.shape)
+        return Markers(points=at, share=share, velocities=np.stack(place.rates(at)), normals=normals, spins=spins)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
@@ -149,22 +136,48 @@ class TriangleMesh(SpaceShape):
 
     def volume(self, time: float) -> float:
         """Return the volume."""
-        return float(self._tetrahedra()[1].sum()) / 6
-
-    def _tetrahedra(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the corners of the tetrahedra between the origin and each face, and six times their volumes."""
-        corners = self.vertices[self.faces]
-        return corners, np.einsum("fd,fd->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+        return float(_six_volumes(self.vertices[self.faces]).sum()) / 6
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume, centre and moments, exact for the mesh."""
-        corners, six = self._tetrahedra()
-        volume, total, none = float(six.sum()) / 6, corners.sum(axis=1), (0.0, 0.0, 0.0)
-        centre = (six @ total) / 24 / volume
-        second = (np.einsum("f,fi,fj->ij", six, total, total) + np.einsum("f,fki,fkj->ij", six, corners, corners)) / 120
-        cx, cy, cz = centre.tolist()
-        moments = tensor(second - volume * np.outer(centre, centre))
-        return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=none, moments=moments, swirl=none)
+        return mass_of_mesh(self.vertices[self.faces])
+
+
+def _six_volumes(corners: np.ndarray) -> np.ndarray:
+    """Return six times the volumes of the tetrahedra between the origin and each face, (face, corner, axis) [m^3]."""
+    volumes: np.ndarray = np.einsum("fd,fd->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    return volumes
+
+
+def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
+    """Return the mass of what is still inside a closed mesh, by the corners of its faces (face, corner, axis) [m]."""
+    six, total, none = _six_volumes(corners), corners.sum(axis=1), (0.0, 0.0, 0.0)
+    volume = float(six.sum()) / 6
+    centre = (six[:, None] * total).sum(axis=0) / 24 / volume
+    second = (np.einsum("f,fi,fj->ij", six, total, total) + np.einsum("f,fki,fkj->ij", six, corners, corners)) / 120
+    cx, cy, cz = centre.tolist()
+    moments = tensor(second - volume * np.outer(centre, centre))
+    return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=none, moments=moments, swirl=none)
+
+
+def middles_of(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the middles of faces, of large ones those of equal parts, the area of each and its normal.
+
+    Args:
+        corners: of the faces, shape (face, corner, axis) [m].
+        spacing: about how far apart the middles are to be [m].
+    """
+    edges = np.roll(corners, -1, axis=1) - corners
+    parts = np.maximum(1, np.ceil(np.sqrt((edges**2).sum(axis=2)).max(axis=1) / spacing)).astype(int)
+    across = np.cross(edges[:, 0], edges[:, 1])
+    area = 0.5 * np.sqrt((across**2).sum(axis=1))
+    points, share, normals = [], [], []
+    for count in np.unique(parts):
+        some, weights = parts == count, _middles(int(count))
+        points.append(np.einsum("mk,fkd->dfm", weights, corners[some]).reshape(3, -1))
+        share.append(np.repeat(area[some] / count**2, count**2))
+        normals.append(np.repeat(across[some] / np.maximum(2 * area[some, None], 1e-300), count**2, axis=0).T)
+    return np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(normals, axis=1)
 
 
 def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
@@ -249,7 +262,7 @@ def _at(point: np.ndarray) -> str:
     return f"({', '.join(f'{part:.4g}' for part in point)})"
 
 
-def _pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return the pseudo-normals of each face, its three edges and its three corners, shape (face, 7, 3) [-].
 
     An edge's is the sum of its faces' normals, a corner's that of all around it, weighted by their angles there.
