@@ -195,3 +195,23 @@ def test_an_added_mass_that_is_no_number_is_refused():
     mass[0, 1] = np.nan
     with pytest.raises(Diverged, match=r"t = 0.3 s the added mass of oval is nan in a degree of freedom"):
         swimmer.take_added(mass, 0.3)
+
+
+def test_a_body_that_begins_at_rest_in_thin_water_begins_with_a_step_in_which_it_goes_a_cell_at_most():
+    """Water at rest of small viscosity allows steps of a minute; the body swings ten times in that."""
+
+    def motion(t):
+        rise = 1 - np.exp(-t)
+        return flow.Pose(
+            position=(0.0, 0.2 * rise * np.sin(t) ** 2),
+            velocity=(0.0, 0.2 * (np.exp(-t) * np.sin(t) ** 2 + rise * np.sin(2 * t))),
+        )
+
+    grid, viscosity = flow.Grid.covering((-1.5, 1.5), (-1.5, 1.5), cell=CELL), 1e-6
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion)
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=viscosity, bodies=(body,), coarse=True))
+    assert CELL / (4 * viscosity / CELL) > 60.0
+    first = sim.next_step()
+    assert 0.1 * CELL < motion(first).position[1] < CELL
+    sim.run(first)
+    assert sim.last("body").whole.force[1] < 0.0

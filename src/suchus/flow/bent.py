@@ -43,7 +43,7 @@ Back = Callable[..., Sequence[np.ndarray]]
 
 
 @dataclass(frozen=True, slots=True)
-class Bend:
+class BendingMap:
     """A map that bends a shape, and what follows from it."""
 
     back: Back
@@ -144,7 +144,7 @@ class BentOutline(Shape):
 
     still: Solid
     """The shape that it bends."""
-    bend: Bend
+    bend: BendingMap
     """The map."""
     _corners: np.ndarray = field(init=False, repr=False)
 
@@ -222,7 +222,7 @@ class BentMesh(SpaceShape):
 
     still: TriangleMesh
     """The mesh that it bends."""
-    bend: Bend
+    bend: BendingMap
     """The map."""
 
     even = (False, False, False)
@@ -339,7 +339,7 @@ def bent(shape: Any, back: Back, *, tick: float = TICK) -> BentOutline | BentMes
         raise InvalidDesign(f"tick is {tick} s; a positive time is needed, short for what the map does.")
     if isinstance(shape, TriangleMesh):
         size = float(np.ptp(shape.vertices, axis=0).max())
-        mesh = BentMesh(still=shape, bend=Bend(back, 3, size, tick))
+        mesh = BentMesh(still=shape, bend=BendingMap(back, 3, size, tick))
         mesh.bounds(0.0, Pose())
         return mesh
     if not isinstance(shape, Solid):
@@ -348,6 +348,6 @@ def bent(shape: Any, back: Back, *, tick: float = TICK) -> BentOutline | BentMes
             f"Ellipse, or a closed mesh."
         )
     size = float(np.ptp(np.stack(shape.outline(CORNERS)), axis=1).max())
-    outline = BentOutline(still=shape, bend=Bend(back, 2, size, tick))
+    outline = BentOutline(still=shape, bend=BendingMap(back, 2, size, tick))
     outline.bounds(0.0, Pose())
     return outline

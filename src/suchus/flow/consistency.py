@@ -34,6 +34,7 @@ LEAP = 1.0
 """Distance by which a body may be off the place that its rates lead to [cells]. To it comes what a kink within a step,
 where they change at once, may make: half of the distance at the greatest rate so far."""
 
+_HALVINGS = 40  # of a first step, until nothing goes farther than a cell
 _LOOK = 0.01  # share of a step over which positions are compared
 
 
@@ -175,6 +176,19 @@ class Consistency:
     """Way of each coordinate less what its rates add up to [m]."""
     path: np.ndarray = field(default_factory=lambda: np.zeros(1))
     """Way of each coordinate, to and fro [m]."""
+
+    def longest(self, time: float, dt: float) -> float:
+        """Return how much of a step [s] it takes until a place has gone a cell; all of it for a body that leaps.
+
+        A body that begins at rest in water at rest says nothing yet of how fast it will be.
+        """
+        step = dt
+        for _ in range(_HALVINGS):
+            seen = self.told.at((time, *(time + part * step for part in (1 / 3, 1 / 2, 1))))
+            if np.abs(seen.places * seen.arms).max() <= LEAP * self.cell:
+                return step
+            step /= 2
+        return dt
 
     def start(self, time: float, dt: float) -> None:
         """Look at the first step, of about ``dt`` [s].

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
-from math import isfinite, prod
+from math import inf, isfinite, prod
 from pathlib import Path
 from typing import NamedTuple
 
@@ -116,6 +116,7 @@ class Simulation(Fields):
         self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
+        self._longest = inf  # of a first step, by how far it carries bodies that begin at rest
         self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
         shared = self._watch.shared(self.water, 0.0)
         if shared is not None:
@@ -148,8 +149,11 @@ class Simulation(Fields):
         if isinstance(body.shape, Midline | Trunk):
             found.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
             changing.append(not body.shape.rigid)
+        step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for one in found:
-            one.start(0.0, self.setup.step or self._limit(max(self.water.fastest(), self._speed)))
+            first = one.longest(0.0, step)
+            self._longest = min(self._longest, first)
+            one.start(0.0, first)
         return [one for one, does in zip(found, changing, strict=True) if does]
 
     # --- state -------------------------------------------------------------------------------------------------
@@ -189,7 +193,7 @@ class Simulation(Fields):
         """
         limit = self._limit(max(self._fastest if self._log.rows else self.water.fastest(), self._speed))
         if self.setup.step is None:
-            return self.setup.courant * limit
+            return self.setup.courant * (limit if self._log.rows else min(limit, self._longest))
         if self.setup.step > 1.2 * limit:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
