@@ -278,10 +278,10 @@ class Swim:
             self.series.radius.append((self.time, float(np.abs(apart).max())))
         self._kept = self.stepper.burden(self._added)
 
-    def _gone(self, count: int, force: np.ndarray, push: np.ndarray) -> tuple[Stretch, np.ndarray]:
+    def _gone(self, count: int, force: np.ndarray, push: np.ndarray) -> tuple[PlaneState, np.ndarray]:
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
-        Returns the stretch, and the mean acceleration in it.
+        Returns where it comes to, and its mean acceleration on the way.
         """
         h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
@@ -290,8 +290,8 @@ class Swim:
         newton = np.eye(len(force)) + np.linalg.solve(inertia, left)  # servos make it another; Broyden finds which
         missing = change = np.zeros_like(push)
         for round_ in range(_ROUNDS):
-            stretch = self.stepper.go(count, force + self._added @ push - left @ guess)
-            found = (stretch.end.rate - before) / h
+            end = self.stepper.go(count, force + self._added @ push - left @ guess)
+            found = (end.rate - before) / h
             last, missing = missing, found - guess
             if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
                 break
@@ -299,7 +299,7 @@ class Swim:
                 newton += np.outer(last - missing - newton @ change, change) / (change @ change)
             change = np.linalg.solve(newton, missing)
             guess = guess + change
-        return stretch, found
+        return end, found
 
     def _size(self, force: np.ndarray) -> float:
         """Return the size of a generalised force, each coordinate's over the root of its inertia."""
@@ -325,9 +325,9 @@ class Swim:
         count = stepper.until(until, max(int(allowed / self.timestep), 1))
         h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
         stepper.begin()
-        stretch, push = self._gone(count, self._force, self._push)
+        end, push = self._gone(count, self._force, self._push)
         told = self._force - self._added @ (push - self._push)
-        posture = self._seen(stretch.end)
+        posture = self._seen(end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
         self._placed = posture
@@ -337,36 +337,36 @@ class Swim:
         made = 0
         while made < self.water.corrections and left > self.water.tolerance:
             asked, at = found, push
-            stretch, push = self._gone(count, asked, at)
+            end, push = self._gone(count, asked, at)
             told = asked - self._added @ (push - at)
-            other = self._seen(stretch.end)
+            other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
             posture = other
             self.path.go(start, began, start + h, posture)
             sim.accelerate({name: more})
             found = self._found(posture)
             left, made = self._size(found - told) / self._greatest, made + 1
+        stretch = stepper.account()
         self._effort += stretch.effort
-        self._note(stretch, found, began, posture, (first, left), made)
+        self._note(stretch, found, posture, (first, left), made)
         self._force, self._push = found, push
         self._watch(left)
         self._renew()
 
     def _note(
-        self, stretch: Stretch, found: np.ndarray, began: ChainState, posture: ChainState,
+        self, stretch: Stretch, found: np.ndarray, posture: ChainState,
         residual: tuple[float, float], made: int,
     ) -> None:  # fmt: skip
         series = self.series
         loads = self.sim.last(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
-        way = self._signs * (posture.place - began.place)
         power = self._times * loads.whole.power - float(self._times * np.dot(loads.whole.force, self._drift()))
         series.time.append(self.time)
         series.force.append(found)
         series.links.append(self._links(posture, loads))
         series.residual.append(residual)
         series.corrections.append(made)
-        series.worked.append((stretch.worked, stretch.yielded, float(found @ way), -power * h))
+        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way), -power * h))
         series.energy.append(stretch.energy)
 
     def _drift(self) -> np.ndarray:

@@ -13,6 +13,7 @@ locked, by an inertia that ``LOCKED`` times exceeds the robot's.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import mujoco
@@ -30,6 +31,7 @@ from suchus.land.loop import Loop
 from suchus.land.readings import Recorder
 from suchus.land.run import Run
 from suchus.model import joint_addresses
+from suchus.model.stability import damping_of
 
 LOCKED = 1e7
 """Inertia of the root against heave, roll and pitch, over the robot's own [-]."""
@@ -48,10 +50,14 @@ class PlaneState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """What became of the robot in a stretch of time."""
+    """What became of the robot in a stretch of time.
 
-    end: PlaneState
-    """State at its end."""
+    Works are those of the forces as they act over each step, dampers and the servos' loops with the velocity at its
+    end, along the mean of its velocities at both ends: they add up to the kinetic energy that is gained.
+    """
+
+    way: Float[np.ndarray, " coordinate"]
+    """Integral of the coordinates' velocities [m, rad]."""
     worked: float
     """Work of the servos on the joints [J]."""
     yielded: float
@@ -69,7 +75,21 @@ class _Saved:
     state: np.ndarray
     step: int
     last: "_Decision | None"
+    passive: np.ndarray
+    inertia: np.ndarray
     decisions: dict[int, "_Decision"] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class _Tape:
+    """What was seen in each physics step of a stretch, one a row; of velocities and passive forces also the start."""
+
+    velocity: list[np.ndarray]
+    passive: list[np.ndarray]
+    served: list[np.ndarray] = field(default_factory=list)
+    held: list[np.ndarray] = field(default_factory=list)
+    smooth: list[np.ndarray] = field(default_factory=list)
+    power: list[float] = field(default_factory=list)
 
 
 class _Decision(NamedTuple):
@@ -132,7 +152,10 @@ class Stepper:
         self._applied = self._physics.bind("qfrc_applied")
         self._pushed = self._physics.bind("xfrc_applied")
         self._user = self._physics.bind("userdata")
-        self._works = [self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")]
+        self._served, self._passive, self._held = (
+            self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")
+        )
+        self._smooth = self._physics.bind("qfrc_smooth")
         self._whole = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
         self.at_begin: PlaneState = self.now
@@ -148,6 +171,10 @@ class Stepper:
         self.burden(np.zeros((len(self.dofs), len(self.dofs))))
         self._physics.forward()
         self._batch.read(slice(None))
+        self._is_looked_at = False
+        self._look()
+        self._damping = damping_of(self.model, self._data)
+        self._tape = _Tape([], [])
 
     # --- where it is -------------------------------------------------------------------------------------------
 
@@ -199,6 +226,9 @@ class Stepper:
         batch.physics.state[row] = self._physics.state[0]
 
     def _look(self) -> None:
+        if self._is_looked_at:
+            return
+        self._is_looked_at = True
         data, model = self._data, self.model
         data.qpos[:], data.qvel[:] = self._batch.qpos[0], self._batch.qvel[0]
         data.userdata[:] = 0.0
@@ -221,8 +251,7 @@ class Stepper:
         heavy = LOCKED * float(model.body_mass.sum())
         for dof in _ACROSS:
             whole[dof, dof] = heavy
-        rows = np.repeat(np.arange(model.nv), model.M_rownnz)
-        columns = np.array(model.M_colind)[: len(rows)]
+        rows, columns = self._entries
         room = np.zeros(whole.shape, bool)
         room[rows, columns] = room[columns, rows] = True
         whole = np.where(room, whole, 0.0) + _above(np.where(room, 0.0, whole), room)
@@ -230,24 +259,44 @@ class Stepper:
         self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)] = whole[rows, columns]
         return np.array(whole[np.ix_(self.dofs, self.dofs)])
 
+    @cached_property
+    def _entries(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of MuJoCo's matrix that have room."""
+        rows = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
+        return rows, np.array(self.model.M_colind)[: len(rows)]
+
+    def _burdened(self) -> Float[np.ndarray, "dof dof"]:
+        """Return the mass matrix of all that moves, with what it has been burdened with."""
+        self._look()
+        (rows, columns), whole = self._entries, self._whole.copy()
+        given = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
+        whole[rows, columns] += given
+        across = rows != columns
+        whole[columns[across], rows[across]] += given[across]
+        return whole
+
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
         """Begin a stretch here."""
         self.at_begin = self.now
-        self._saved = _Saved(self._physics.state[0].copy(), self.steps, self._last)
+        state, passive = self._physics.state[0].copy(), self._passive[0].copy()
+        self._saved = _Saved(state, self.steps, self._last, passive, self._burdened())
 
     def until(self, time: float, most: int) -> int:
         """Return how many physics steps the next stretch may have, so that none goes beyond a time [s] or a trouble."""
         ahead = self._troubles[self._troubles > self.steps]
         return max(min([most, round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
 
-    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> Stretch:
-        """Go through the stretch that was begun, in so many steps, under a constant force of the water.
+    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> PlaneState:
+        """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
 
         Args:
             count: physics steps.
             force: along the coordinates, that on a body that does not accelerate; the added mass comes on top [N, N m].
+
+        Returns:
+            Root and joints at its end.
 
         Raises:
             Diverged: the physics did.
@@ -258,16 +307,16 @@ class Stepper:
         self._physics.state[0] = saved.state
         self._user[0] = kept
         self.steps, self._last = saved.step, saved.last
+        self._is_looked_at = False
         self._applied[0] = 0.0
         self._applied[0, self.dofs] = force
-        worked = yielded = effort = 0.0
         sensors, speeds, torques = self._batch.sensors[0], self._batch.velocities, self._batch.torques
+        tape = self._tape = _Tape([self._batch.qvel[0].copy()], [saved.passive])
         for _ in range(count):
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
             assert self._last is not None
             self._batch.ctrl[0] = self._last.command.targets[0]
-            before = self._batch.qvel[0].copy()
             try:
                 self._physics.step(None, 1, int(mujoco.mjtStage.mjSTAGE_VEL))
             except SimulationError as error:
@@ -275,16 +324,31 @@ class Stepper:
                     f"at t = {self.time:.4g} s the robot in the flow diverged: {self._physics.error(0)}; take a "
                     f"shorter timestep than {self.timestep:g} s.", time=self.time,
                 ) from error  # fmt: skip
-            way = 0.5 * self.timestep * (before + self._batch.qvel[0])
-            own, passive, held = (float(part[0] @ way) for part in self._works)
-            worked, yielded = worked + own, yielded + passive + held
-            effort += self.timestep * float(np.abs(sensors[speeds] * sensors[torques]).sum())
+            tape.velocity.append(self._batch.qvel[0].copy())
+            tape.passive.append(self._passive[0].copy())
+            tape.served.append(self._served[0].copy())
+            tape.held.append(self._held[0].copy())
+            tape.smooth.append(self._smooth[0].copy())
+            tape.power.append(float(np.abs(sensors[speeds] * sensors[torques]).sum()))
             self.steps += 1
+        return self.now
+
+    def account(self) -> Stretch:
+        """Return what became of the robot in the stretch that it went through last."""
+        assert self._saved is not None
+        tape, dt = self._tape, self.timestep
+        rate = np.array(tape.velocity)
+        way, gained = 0.5 * dt * (rate[1:] + rate[:-1]), np.diff(rate, axis=0)
+        # MuJoCo's implicit step takes dampers and servos at the velocity it leads to: by so much they differ from qfrc
+        later = gained / dt @ self._saved.inertia - np.array(tape.smooth) - np.array(tape.held)
+        damped = -gained @ self._damping
         self._look()
-        rate = self._batch.qvel[0]
+        last = rate[-1]
         return Stretch(
-            end=self.now, worked=worked, yielded=yielded, energy=0.5 * float(rate @ self._whole @ rate),
-            effort=effort,
+            way=way.sum(axis=0)[self.dofs],
+            worked=float(((np.array(tape.served) + later - damped) * way).sum()),
+            yielded=float(((np.array(tape.passive[:-1]) + np.array(tape.held) + damped) * way).sum()),
+            energy=0.5 * float(last @ self._whole @ last), effort=dt * sum(tape.power),
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:
@@ -358,6 +422,8 @@ class Stepper:
         self._recorder.resume(parts["samples"])
         self._batch.feel(0, parts["now"])
         self._physics.state[0] = state["physics"]
+        self._physics.forward(None, int(mujoco.mjtStage.mjSTAGE_VEL))
+        self._is_looked_at = False
         self._is_read = self.steps % self._per_tick == 0
         self.at_begin = self.now
 

@@ -27,22 +27,32 @@ def longest_step(robot: Robot) -> float:
     mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    damping, stiffness = np.diag(np.asarray(model.dof_damping, float)), np.zeros_like(mass)
+    damping, stiffness = damping_of(model, data), np.zeros_like(mass)
     hinges = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
     own = model.jnt_dofadr[hinges]
     stiffness[own, own] = _first(model.jnt_stiffness, model.njnt)[hinges]
     servos = _dense(data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind, model.nv)
-    cables = _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
-    for arms, springs, dampers in (
-        (servos, *_gains(model)),
-        (cables, _first(model.tendon_stiffness, model.ntendon), _first(model.tendon_damping, model.ntendon)),
-    ):
-        stiffness += arms.T @ (springs[:, None] * arms)
-        damping += arms.T @ (dampers[:, None] * arms)
+    held, slowing = _gains(model)
+    stiffness += servos.T @ (held[:, None] * servos)
+    damping += servos.T @ (slowing[:, None] * servos)
+    cables = _cables(model, data)
+    stiffness += cables.T @ (_first(model.tendon_stiffness, model.ntendon)[:, None] * cables)
     still = np.zeros_like(mass)
     pulled, slowed = (-np.linalg.solve(mass, one) for one in (stiffness, damping))
     rates = np.linalg.eigvals(np.block([[still, np.eye(model.nv)], [pulled, slowed]]))
     return _REACH / float(np.abs(rates).max())
+
+
+def damping_of(model: Any, data: Any) -> Float[np.ndarray, "dof dof"]:
+    """Return what the dampers of joints and cables, but no servos, take per velocity [N m s/rad]."""
+    cables = _cables(model, data)
+    dampers = _first(model.tendon_damping, model.ntendon)
+    return np.diag(np.asarray(model.dof_damping, float)) + cables.T @ (dampers[:, None] * cables)
+
+
+def _cables(model: Any, data: Any) -> Float[np.ndarray, "cable dof"]:
+    """Return how much longer a cable gets per turn of each joint [m/rad]."""
+    return _dense(data.ten_J, model.ten_J_rownnz, model.ten_J_rowadr, model.ten_J_colind, model.nv)
 
 
 def _gains(model: Any) -> tuple[np.ndarray, np.ndarray]:
