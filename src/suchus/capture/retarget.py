@@ -332,8 +332,8 @@ def _slowed(robot: Robot, gait: Gait, notes: list[str]) -> Gait:
     if needed <= gait.period:
         return gait
     notes.append(
-        f"in a cycle of {gait.period:.2f} s {slow} would have to turn faster than its servo can; the period is "
-        f"{needed:.2f} s"
+        f"in a cycle of {gait.period:.4g} s {slow} would have to turn faster than its servo can; the period is "
+        f"{needed:.4g} s"
     )
     return replace(gait, period=round(needed + 5e-5, 4))  # never rounded to below what is needed
 

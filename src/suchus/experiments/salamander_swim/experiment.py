@@ -172,6 +172,7 @@ class SalamanderSwim(Experiment):
             "share_under": Measure(float(record.under.mean()), "-"),
             "heel": Measure(float(record.heel.max()), "rad"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
+            "trim_submerged": Measure(own_size.trim_submerged(self.robot), "rad"),
             **own_size.measures(record),
         }
 

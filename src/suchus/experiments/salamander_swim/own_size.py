@@ -203,6 +203,12 @@ def _swum(one: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[st
     }  # fmt: skip
 
 
+def trim_submerged(robot: Robot) -> float:
+    """Return at which pitch a robot would hover that plays the animal's swim, nose down positive [rad]."""
+    gait = played(robot, FREQUENCIES[0])
+    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
+
+
 def measures(record: xr.Dataset) -> Measures:
     """Return of each animal what it is, how it floats and how it swims; nothing if none was asked."""
     found = Measures()
