@@ -105,7 +105,7 @@ def _told_what_is_in_it(user: Environment, tools: Environment, wheel: Path) -> N
         print("cyclonedx-bom is not to be had: there is no bill of materials.")
         return
     bill = wheel.with_suffix(".cdx.json")
-    words = ["cyclonedx_py", "environment", "--output-reproducible", "--outfile", bill, user.bin / "python"]
+    words = ["cyclonedx_py", "environment", "--output-reproducible", "--output-file", bill, user.bin / "python"]
     run([tools.bin / "python", "-m", *words], cwd=user.folder.parent)
     print(f"bill of materials: {bill.name}")
 

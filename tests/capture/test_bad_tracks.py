@@ -108,6 +108,18 @@ def test_a_swap_for_a_while_is_named_with_its_frames(tracks):
     refused(swapped(tracks, "LH", "RH", slice(100, 130)), "30 frames", "frame 101 at 1.00 s", "frame 130")
 
 
+@pytest.mark.parametrize("last", [1e308, 1e9, 20.0])
+def test_a_time_far_from_all_others_is_named(tracks, last):
+    time = tracks.time.copy()
+    time[-1] = last
+    refused(replace(tracks, time=time), f"nothing was filmed from frame {len(time) - 1} to frame {len(time)}")
+
+
+def test_a_pause_shorter_than_the_rest_is_read(tracks):
+    keep = np.r_[0:30, 60 : len(tracks.time)]
+    observe(replace(tracks, time=tracks.time[keep], position=tracks.position[keep]))
+
+
 def test_wrong_units_are_told(tracks):
     refused(replace(tracks, position=1000 * tracks.position), "the trunk measures 120 m", "unit is wrong")
     refused(replace(tracks, position=tracks.position / 1000), "unit is wrong")

@@ -126,7 +126,8 @@ def passage(found: dict[str, Any]) -> str:
     """Return the passage of the page."""
     made_by = ", ".join(f"{name} {version}" for name, version in found["versions"].items())
     kinds = found["kinds"].items()
-    refused, numbers = found["refused"], f"{found['cases']:,} of the {found['asked']:,}".replace(",", " ")
+    refused, cases, asked = found["refused"], *(f"{found[name]:,}".replace(",", " ") for name in ("cases", "asked"))
+    begin = f"Of the long form {cases}" + f" of the {asked}" * (found["cases"] < found["asked"])
     rows = "\n".join(f"| {name.replace('_', ' ')} | {count} | {count - refused[name]} |" for name, count in kinds)
     passed = found["cases"] - sum(refused.values())
     mended = [f"case {one['case']} ({one['kind'].replace('_', ' ')})" for one in found.get("mended", [])]
@@ -135,7 +136,7 @@ def passage(found: dict[str, Any]) -> str:
         source = found["mended"][-1]["source"]
         told = f"{len(mended)} more had failed, were mended and pass (source {source}): {', '.join(mended)}.\n"
     return (
-        f"Of the long form {numbers} cases have run, on {found['date']} with\n{made_by} (source {found['source']}).\n"
+        f"{begin} cases have run, on {found['date']} with\n{made_by} (source {found['source']}).\n"
         f"{passed} of them got through the door and did what they asked for, the others ended in a sentence.\n"
         f"**{len(found['failures'])}** of them failed. {told}They took {found['processor_seconds']} s of a processor, "
         f"the\nlongest {found['longest_seconds']} s.\n\n| kind | cases | through the door |\n|---|---|---|\n{rows}"

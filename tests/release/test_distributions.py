@@ -1,5 +1,6 @@
 """What is asked of the wheel and the sdist that `make release` builds."""
 
+import json
 import subprocess
 import tarfile
 import tomllib
@@ -179,3 +180,17 @@ def test_two_builds_at_other_places_and_times_have_the_same_bytes(tmp_path, monk
     (checkout / "src" / "suchus" / "__init__.py").write_text("other = 1\n")
     other = distributions.digests(*distributions.build(tools, tmp_path / "other", checkout))
     assert ".whl" in distributions.unlike(found[0], other)
+
+
+@pytest.mark.slow("tools are installed in fresh environments")
+def test_the_bill_of_materials_names_what_a_user_gets(tmp_path):
+    tools, user = Environment(tmp_path / "tools").make(), Environment(tmp_path / "a user").make()
+    if not tools.pip_if_served("cyclonedx-bom"):
+        pytest.skip("no index is at hand")
+    wheel = tmp_path / "suchus-1.0-py3-none-any.whl"
+    make_release._told_what_is_in_it(user, tools, wheel)
+    bill = json.loads(wheel.with_suffix(".cdx.json").read_text())
+    assert bill["bomFormat"] == "CycloneDX"
+    (pip,) = (one for one in bill["components"] if one["name"] == "pip")
+    assert pip["version"]
+    assert pip["licenses"]

@@ -18,6 +18,7 @@ NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
 UNITS: Mapping[str, float] = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": float("nan")}
 """Units of length and what they are in metres; pixels are of unknown size."""
 
+_FEW = 4  # frames; where their steps are even, none is longer than all the rest
 _RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
 _TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
 _JUMPED = 3.0  # times the usual length of a link; longer, and one of its points is somewhere else
@@ -265,4 +266,11 @@ def _check_time(tracks: Tracks) -> None:
         raise UnusableTracks(
             f"in {tracks.source} frames are {np.median(steps):.4g} s apart; {1 / _RATE[1]:g} to {1 / _RATE[0]:g} s is "
             "allowed: the time seems to be in milliseconds or frames, seconds are needed."
+        )
+    longest = int(steps.argmax())
+    if n >= _FEW and steps[longest] > np.delete(steps, longest).sum():
+        at = longest + 1
+        raise UnusableTracks(
+            f"in {tracks.source} nothing was filmed from frame {at} to frame {at + 1}, for {steps.max():.4g} s, longer "
+            "than all the rest lasts: mend that time, or give what is before it and what is behind as two tables."
         )
