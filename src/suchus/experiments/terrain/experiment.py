@@ -53,11 +53,12 @@ SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 _COMPARED = ("low_crawl", "high_walk_level")
 _TWO = ("low_crawl", "high_walk", "high_walk_level")
 """Arms of the two structures that the article compares."""
-_OF_TWO = (
-    "flat_cost_ratio", "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
+_OF_ROUGH = (
+    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
     *(f"falls_rough_{name}" for name in _TWO),
 )  # fmt: skip
-"""Measures of these alone."""
+"""Measures of these alone, on rough grounds."""
+_OF_TWO = ("flat_cost_ratio", *_OF_ROUGH)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,10 +162,12 @@ class Terrain(Experiment):
         names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
         if not all(name in _OF_TWO or name.startswith("transition") for name in names):
             return super(Terrain, self).measured(wanted, progress)
-        walked = self._rough(staged(progress, "grounds", 0.0, 0.9), _TWO)
+        on_rough = any(name in _OF_ROUGH for name in names)
+        asked = self if on_rough else replace(self, bumps=(), steps=(), stones=())
+        walked = asked._rough(staged(progress, "grounds", 0.0, 0.9), _TWO)
         changed = self._changes(staged(progress, "transitions", 0.9, 1.0))
-        rough = _from_rough(walked)
-        return _flat(walked) | _rough(rough) | _falls(rough) | _transitions(changed)
+        found, rough = _flat(walked) | _transitions(changed), _from_rough(walked)
+        return found | _rough(rough) | _falls(rough) if on_rough else found
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
