@@ -138,10 +138,10 @@ ANIMALS: Mapping[str, OwnSize] = {
 }  # fmt: skip
 """The animals by name."""
 CALLED: Mapping[str, str] = {
-    "salamander": "salamander, lungs filled",
+    "salamander": "salamander with filled lungs",
     "salamander_neutral": "salamander that hovers",
-    "catshark": "catshark carried by its fins",
-    "catshark_dense": "catshark as dense as it is",
+    "catshark": "catshark whose fins carry it",
+    "catshark_dense": "catshark at its own density",
     "eel": "eel",
     "alligator_0_3": "alligator of 0.3 m",
     "alligator_1": "alligator of 1 m",
