@@ -70,13 +70,18 @@ def test_names_that_are_exchanged_are_refused_with_the_remedy(filmed):
         assert all(f"{one}={other}" in str(caught.value) for one, other in (pair, pair[::-1]))
 
 
-@pytest.mark.slow("two walks are read")
+@pytest.mark.slow("three walks are read")
 def test_frames_that_come_late_are_found_on_the_midline_and_at_the_feet(filmed):
     for point in ("neck", "RH"):
         found = told(filmed, delayed(filmed.tracks, point, 5), (point,))
         assert found.named
         assert not found.outside
     assert "behind" in found.said
+    other = walker(11)
+    found = told(other, delayed(other.tracks, "tail_5", 3), ("tail_5",))  # the tip alone shows no bend of the tail
+    assert found.named
+    assert "tail_tip does not show how the tail bends without tail_5" in found.said
+    assert not found.outside
 
 
 def test_three_frames_late_show_in_all_that_the_links_of_a_point_do(filmed):

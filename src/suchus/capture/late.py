@@ -28,6 +28,8 @@ _SURE = 5.0  # the same of a point with one link
 _BENDS = 5  # powers of time that a path is drawn with at most
 _HARMONICS = 4  # of its mean cycle at most
 _SKIN = 0.01  # [link]; its least standard deviation
+_UNKNOWN = 1e9  # [s]; standard error of a lag of which too little is seen
+_EXACT = 1e-4  # [link]; no keypoint is placed better
 _EVEN = 0.3  # [cycle]; over which the velocity of a keypoint is smoothed
 
 
@@ -212,6 +214,8 @@ class _Lags:
         long, toward = np.linalg.norm(apart, axis=-1), _line(apart, half)[0]  # smoothed, so that noise is not in both
         gone = np.sum(self._tracks.rate * _line(place, half)[1] * toward, axis=-1) / np.linalg.norm(toward, axis=-1)
         use = np.isfinite(gone) & np.isfinite(long)
+        if use.sum() < _FRAMES:
+            return 0.0, _UNKNOWN
         angle = 2 * np.pi * np.multiply.outer(self._tracks.time[use], np.arange(1, _HARMONICS + 1)) / self._clock.period
         X, _ = np.linalg.qr(np.hstack([np.ones((use.sum(), 1)), np.cos(angle), np.sin(angle)]))
         x, y = (row[use] - X @ (X.T @ row[use]) for row in (gone, long))
@@ -220,7 +224,8 @@ class _Lags:
         alike = (left[1:] @ left[:-1]) * (x[1:] @ x[:-1]) / max((left @ left) * (x @ x), 1e-300)
         wide = max(1.0, (1.0 + alike) / (1.0 - alike))  # what is left over may go on from frame to frame
         count = max(1, use.sum() - X.shape[1] - 1)
-        return lag, float(np.sqrt(wide * (left @ left) / count / max(x @ x, 1e-300))) + 1e-12
+        noise = max(float(left @ left) / count, (_EXACT * float(np.mean(long[use]))) ** 2)
+        return lag, float(np.sqrt(wide * noise / max(x @ x, 1e-300)))
 
 
 def _line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:

@@ -114,9 +114,9 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     seen = screened(tracks)
     wrong = dict(seen.wrong)
     last = tracks.tail_chain[-2:]
-    if len(last) == 2 and last[0] in wrong and tail_share > 0.5 and "tail_tip" not in wrong:
-        wrong["tail_tip"] = f"does not show how the tail bends without {last[0]}"
     while True:
+        if len(last) == 2 and last[0] in wrong and tail_share > 0.5 and "tail_tip" not in wrong:
+            wrong["tail_tip"] = f"does not show how the tail bends without {last[0]}"
         filmed = seen.tracks.without(wrong)
         tracks, clock, period = _timed(filmed)
         runs_late = late(tracks, clock, filmed.time)
