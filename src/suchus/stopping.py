@@ -3,7 +3,7 @@
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import parent_process
 from multiprocessing.connection import wait
 from threading import Event, Thread, current_thread, main_thread
@@ -12,6 +12,8 @@ from types import FrameType
 
 SOON = 1.5
 """Time after which a process that was told to stop ends, whatever it is at [s]."""
+CUT = "suchus: stopped while it was busy; what was finished is kept, the next run takes away what is half-written.\n"
+"""What is said where that time was too short."""
 _LOOK = 0.1  # [s]; between two looks whether it has ended by itself
 _longer: list[float] = []  # what ``finishing`` asks for
 
@@ -51,6 +53,8 @@ def stopping() -> Iterator[None]:
         since = monotonic()
         while not done.wait(_LOOK):
             if monotonic() - since > max((SOON, *_longer)):
+                with suppress(OSError):  # nobody may read it
+                    os.write(2, CUT.encode())
                 os._exit(128 + number[0])
 
     heard = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
