@@ -41,11 +41,12 @@ def kept(**changes):
     }  # fmt: skip
     for name, value in cases.items():
         found[name] = ("case", np.array(value))
-    for name, value in (("speed", [0.1, 0.2, 0.1]), ("power", [3.0, 1.2, 1.0]), ("depth", [-9.9, 0.1, 0.63])):
+    metres = {"speed": [0.1, 0.2, 0.1], "power": [3.0, 1.2, 1.0], "depth": [-9.9, 0.1, 0.63], "swing": [0.2, 0.1, 0.1]}
+    for name, value in metres.items():
         found[f"metre_{name}"] = ("where", np.array(value))
     found["metre_weight"] = ("where", np.full(3, 30.0))
     return found.assign_coords(where=["land", "surface", "deep"]).assign_attrs(
-        beyond=1.0, depth=0.6, approach=0.0, shown=0, metacentric_height=0.01
+        beyond=1.0, depth=0.6, approach=0.0, shown=0, metacentric_height=0.01, length=0.8, beat=1.5
     )
 
 
@@ -177,14 +178,19 @@ def test_a_metre_on_land_at_the_surface_and_at_depth_costs_power_over_speed_and_
     )
     assert found["cost_of_transport_surface"].value == pytest.approx(0.2)
     assert found["depth_error"].value == pytest.approx(0.03)
+    assert found["strouhal_surface"].value == pytest.approx(1.5 * 0.1 / 0.2)
+    assert found["froude_deep"].value == pytest.approx(0.1 / (9.81 * 0.8) ** 0.5, rel=1e-3)
+    assert "strouhal_land" not in found
 
 
 def test_metres_are_read_from_the_last_seconds_along_the_course():
     time = np.linspace(0.0, 4.0, 5)
     way = np.array([[0, 0, 0], [9, 0, 0], [0, 0, 0], [0.3, 0.4, 0], [0.6, 0.8, 0]], dtype=float)
+    aside = np.array([9.0, 9.0, 0.1, -0.1, 0.05])[:, None] * np.array([-0.8, 0.6, 0.0])  # across the course
     record = xr.Dataset(
         {
             "centre_of_mass": (("run", "time", "xyz"), way[None]),
+            "tail_tip": (("run", "time", "xyz"), way[None] + aside - [0.3, 0.4, 0.0]),
             "position": (("run", "time", "xyz"), way[None] + [0, 0, 2.4]),
             "water_level": (("run", "time"), np.full((1, 5), 3.0)),
             "servo_power": (("run", "time"), np.array([[9.0, 9.0, 2.0, 3.0, 4.0]])),
@@ -196,6 +202,7 @@ def test_metres_are_read_from_the_last_seconds_along_the_course():
     assert found.metre_speed.item() == pytest.approx(0.5)
     assert found.metre_power.item() == pytest.approx(3.0)
     assert found.metre_depth.item() == pytest.approx(0.6)
+    assert found.metre_swing.item() == pytest.approx(0.2)
 
 
 def test_limbs_whose_phase_stands_still_do_not_walk():
