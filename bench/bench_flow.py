@@ -24,8 +24,8 @@ from suchus.water.setting import SwimSetting
 from suchus.water.swim_setup import ResolvedSwim
 
 PIECES = (
-    (water, "advance immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
-    (water.Fluid, "step place _measure _clear"),
+    (water, "immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),
+    (water.Fluid, "step place _measure _clear _advance"),
     (poisson, "solve"),
     (multigrid, "coarsen spread"),
     (midline, "paint sections"),

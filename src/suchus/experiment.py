@@ -284,7 +284,7 @@ class Experiment(ABC):
     def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
         """Return every number, read from the record alone; ``Measures`` keep two from having one name."""
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least, as a run gives them.
 
         By default all are simulated for; whoever has runs that some measures do not take leaves those runs out here.
@@ -294,7 +294,7 @@ class Experiment(ABC):
             progress: told the share that is done.
         """
         del wanted
-        return self.measure(self.simulate(progress).record)
+        return Measures(self.measure(self.simulate(progress).record))
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what decided the outcome, in a paragraph whose every statement follows from the measures.

@@ -19,10 +19,6 @@ TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
 WAITING = {
     "erect_structure_rough",
     "feedback_rules",
-    "height_crawl",
-    "height_from_spine_head_legs",
-    "height_ratio",
-    "height_standing",
     "shared_variables",
     "swim_body_wave",
     "swim_diagonal_force",
@@ -38,11 +34,10 @@ WAITING = {
 """Claims that can be asked of other designs and have no share yet, since the machine was too busy.
 
 ``suchus study claims --only EXPERIMENT`` asks single experiments, and ``--finished`` answers from what a store
-holds of them. Of processor time on one core ``bipedal_reach`` takes 25 s a design, as measured over five (7 min for
-all). From the steps that each design walks, at a quarter of a millisecond: ``feedback`` 70 s (15 min), ``terrain``
-with its rough grounds 75 s (17 min), ``crawl_stability`` 8 s (14 min; in one design of ten the control group
-steps). ``swimming`` is not measured: each design swims eight times in the plane and four times in space, which
-takes hours for all.
+holds of them. Of processor time on one core, from the steps that each design walks at a quarter of a millisecond:
+``feedback`` takes 70 s a design (15 min for all), ``terrain`` with its rough grounds 75 s (17 min), ``crawl_stability``
+8 s (14 min; in one design of ten the control group steps). ``swimming`` is not measured: each design swims eight times
+in the plane and four times in space, which takes hours for all.
 """
 shipped = pytest.mark.skipif(not TOLD, reason="no table has been shipped yet")
 

@@ -15,7 +15,7 @@ MADE_BY = (
 """Whose code decides the numbers of a run on land."""
 FLOW = (
     "blueprint", "catalog.py", "design", "fingerprint.py", "flow", "hydro", "isosurface.py", "kinds.py", "kinematics",
-    "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
+    "metrics", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
 )  # fmt: skip
 """Whose code decides the numbers of a swim by CFD."""
 

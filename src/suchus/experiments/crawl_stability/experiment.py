@@ -91,7 +91,7 @@ class CrawlStability(TwoGroups):
         record.attrs["equal_stroke"] = share * self._stroke()
         return Simulated(record=record, replays=self._replays(record))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; of single conditions no other condition walks."""
         if any(name.startswith(_OF_ALL) or _EQUAL in name for name in wanted):
             return super(CrawlStability, self).measured(wanted, progress)

@@ -175,7 +175,7 @@ class Feedback(Experiment):
         record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
         return Simulated(record=record, replays=self._replays(pair))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; for those of the claims fewer laws and disturbances."""
         if not set(wanted) <= _OF_CLAIMS:
             return super(Feedback, self).measured(wanted, progress)
@@ -184,7 +184,7 @@ class Feedback(Experiment):
         if not set(wanted) <= found.keys():
             disturbed = self._disturbed(staged(progress, "disturbances", 0.8, 1.0), _DISTURBANCES_OF_CLAIMS)
             found |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
-        return {name: found[name] for name in wanted}
+        return Measures({name: found[name] for name in wanted})
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many starts converge, and what each rule makes of each disturbance."""

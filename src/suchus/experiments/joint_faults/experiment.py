@@ -123,7 +123,7 @@ class JointFaults(TwoGroups):
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
         return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; for what carries the body nothing else need fail."""
         if not all(name.startswith(_OF_SUPPORT) for name in wanted):
             return super(JointFaults, self).measured(wanted, progress)

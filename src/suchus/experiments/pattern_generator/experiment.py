@@ -146,7 +146,7 @@ class PatternGeneratorExperiment(Experiment):
         )
         return Simulated(record=record, replays=self._replays(ramped))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; turns alone need no drive but the walks'."""
         if not set(wanted) <= _TURNS.keys():
             return super(PatternGeneratorExperiment, self).measured(wanted, progress)

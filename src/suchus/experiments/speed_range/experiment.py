@@ -213,7 +213,7 @@ class SpeedRange(Experiment):
             measures |= ranged("tail_on_ground_high_walk", high.tail_lies.mean(), high.tail_lies, "-")
         return measures
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; of single gaits no other gait is walked."""
         named = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
         whole = not named or not all(any(f"_{gait.name}" in name for gait in named) for name in wanted)

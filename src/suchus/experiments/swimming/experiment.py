@@ -173,7 +173,7 @@ class PlaneSwims(Experiment):
         names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
         return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; for those of the ladder nothing else swims."""
         if not all(name.endswith(_OF_RUNGS) for name in wanted):
             return super(PlaneSwims, self).measured(wanted, progress)

@@ -157,7 +157,7 @@ class Terrain(Experiment):
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
         return Simulated(record=record, replays=self._replays(record))
 
-    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Measure]:
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; for those of crawl and high walk nobody else walks."""
         names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
         if not all(name in _OF_TWO or name.startswith("transition") for name in names):
