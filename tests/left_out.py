@@ -37,7 +37,8 @@ def rows(items: Iterable[pytest.Item]) -> list[str]:
     for name, cases in functions.items():
         for case in cases:
             if (runs := command(case)) and reason(case) != costly.WHY:
-                some = " (some cases)" if any(command(other) != runs for other in cases) else ""
+                whole = all(command(other) == runs and reason(other) != costly.WHY for other in cases)
+                some = "" if whole else " (some cases)"
                 what = f"{name}`{some}" if runs == COMMANDS["slow"] else f"{name.partition('::')[0]}`"
                 told.add(f"| `{what} | {reason(case)} | `{runs}` |")
     return sorted(told)
