@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 FILE = Path(__file__).with_name("costly.json")
-LIMIT = 0.25
+LIMIT = 0.15
 """Most processor time of a test that ``make test`` runs [s]; with it the whole stays within ten minutes."""
 QUICK_LIMIT = 20.0
 """Most processor time of an experiment's quick form that ``make test`` runs [s]."""
