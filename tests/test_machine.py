@@ -89,6 +89,7 @@ def test_each_library_that_takes_other_routines_is_seen():
 
 @LINUX
 @pytest.mark.skipif(shutil.which("qemu-x86_64") is None, reason="qemu-user is not installed")
+@pytest.mark.battery("imitated processors")
 @pytest.mark.slow("processors are emulated")
 def test_portable_arithmetic_is_the_same_on_emulated_processors(counted):
     """Whole processors, not settings of libraries: without the settings they differ, with them they do not."""
@@ -97,10 +98,11 @@ def test_portable_arithmetic_is_the_same_on_emulated_processors(counted):
     portable = [in_a_process(TOLD, before=one, **machine.PORTABLE) for one in (*of, ())]
     assert plain[0] != plain[1]
     assert len(set(portable)) == 1
-    counted("imitated processors", len(of))
+    counted(len(of))
 
 
 @LINUX
+@pytest.mark.battery("imitated processors")
 @pytest.mark.slow("four studies, in processes of their own")
 def test_a_portable_study_has_the_same_bytes_on_two_imitated_processors(tmp_path, counted):
     file = tmp_path / "s.toml"
@@ -117,7 +119,7 @@ def test_a_portable_study_has_the_same_bytes_on_two_imitated_processors(tmp_path
     names = [str(tmp_path / name) for name in "abcd"]
     assert digest(names[0]) != digest(names[1], **WITHOUT_FMA)
     assert digest(names[2], **machine.PORTABLE) == digest(names[3], **(WITHOUT_FMA | machine.PORTABLE))
-    counted("imitated processors", 2)
+    counted(2)
 
 
 def test_a_store_of_another_arithmetic_is_refused_and_its_parts_are_named(tmp_path, elsewhere):

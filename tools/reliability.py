@@ -1,13 +1,15 @@
 """The table of docs/reliability.md that counts what the batteries did: run them and write it, ``make reliability``.
 
-``python tools/reliability.py --table`` writes the table of what is kept, without running anything. The cases of the
-fuzzer are run by ``python tests/fuzz/long_form.py``, which takes much longer.
+``python tools/reliability.py FILE ...`` runs those of some files of tests again, and ``--table`` writes the table of
+what is kept, without running anything. A run that is interrupted changes nothing. The cases of the fuzzer are run by
+``python tests/fuzz/long_form.py``, which takes much longer.
 """
 
 import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -38,6 +40,7 @@ BATTERIES = {
     ),
 }
 """Of each battery what is done, and what it found, mended since."""
+_FAILED = 1  # what pytest ends with where tests failed; other numbers say that it did not run them all
 _FOUND = (
     "records in centimetres, degrees or milliseconds, with axes in another order or two variables exchanged, that were "
     "read as if they were in SI units"
@@ -51,13 +54,14 @@ def table(kept: Mapping[str, Mapping[str, Any]], cases: Mapping[str, Any]) -> st
         kept: what each test did, see ``tests/batteries.py``.
         cases: results of the fuzzer's cases, see ``tests/fuzz/long_form.py``.
     """
-    rows = ["| battery | what is done | how many | failed | last run | found, and mended since |"]
+    rows = ["| battery | what is done | how many | failed | run on | found, and mended since |"]
     rows.append("|---|---|---:|---:|---|---|")
     for name, (what, found) in BATTERIES.items():
         of = [one for one in kept.values() if one["battery"] == name]
-        last = max((one["date"] for one in of), default="never")
+        days = sorted({one["date"] for one in of}) or ["never"]
+        when = days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
         failed = sum(one["failed"] for one in of)
-        rows.append(f"| {name} | {what} | {sum(one['number'] for one in of)} | {failed} | {last} | {found} |")
+        rows.append(f"| {name} | {what} | {sum(one['number'] for one in of)} | {failed} | {when} | {found} |")
     what = f"hostile cases and cases that are nearly right, [{len(cases['kinds'])} kinds](#how-it-is-tested)"
     done = f"{cases['cases']} | {len(cases['failures'])} | {cases['date']}"
     return "\n".join([*rows, f"| fuzzer | {what} | {done} | {_FOUND} |"]) + "\n"
@@ -72,16 +76,23 @@ def write() -> None:
 def tests() -> list[str]:
     """Return the files of the tests that count what they do."""
     files = sorted((ROOT / "tests").rglob("test_*.py"))
-    return [str(file) for file in files if "    counted(" in file.read_text(encoding="utf-8")]
+    return [str(file) for file in files if "@pytest.mark.battery(" in file.read_text(encoding="utf-8")]
 
 
 def main(words: list[str]) -> int:
     """Run the batteries, unless only the table is asked for, and write it."""
     code = 0
     if "--table" not in words:
-        environment = os.environ | {"SUCHUS_BATTERIES": "write"}
-        command = [sys.executable, "-m", "pytest", "-n0", "-m", "slow or not slow", "-k", "not validate", *tests()]
-        code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+        with tempfile.TemporaryDirectory() as folder:
+            made = Path(folder) / KEPT.name
+            command = [sys.executable, "-m", "pytest", "-n0", "-m", "battery and not validate", *(words or tests())]
+            environment = os.environ | {"SUCHUS_BATTERIES": str(made)}
+            code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+            if code not in (0, _FAILED):
+                return code
+            before = json.loads(KEPT.read_text(encoding="utf-8")) if words else {}
+            every = before | json.loads(made.read_text(encoding="utf-8"))
+            KEPT.write_text(json.dumps(dict(sorted(every.items())), indent=1) + "\n", encoding="utf-8")
     write()
     return code
 

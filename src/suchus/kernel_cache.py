@@ -5,8 +5,10 @@ and asks of a kernel that it loads only whether the kernel's own file has change
 kernel that others call, would leave them as they were. So there is a folder for each state of the sources.
 
 What numba keeps are pickles of machine code, and a flipped bit in them is any error, or the end of the process. So each
-file begins with a digest of the rest and of its name: nothing is unpickled that was damaged or is another's, and it is
-compiled anew. What cannot be kept is compiled each time, and one sentence says so.
+file begins with a digest of the rest, of its name and of numba's version: nothing is unpickled that was damaged or is
+another's, and it is compiled anew. numba numbers the files of a kernel's signatures, so that a number may come to mean
+another signature while two processes write, or after a kill: each file says of which it is. What cannot be kept is
+compiled each time, and one sentence says so.
 """
 
 import hashlib
@@ -88,19 +90,28 @@ class _SealedCache(FunctionCache):  # type: ignore[misc]
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = SealedFiles(self._cache_path, self._impl.filename_base, stamp)
 
+    def save_overload(self, signature: Any, code: Any) -> None:
+        """Keep the code of a signature where that can be."""
+        try:
+            super().save_overload(signature, code)
+        except OSError as error:
+            _say_unkept(str(error))
 
-_SEAL = b"suchus kernel 1\n"
+
+_SEAL = b"suchus kernel 2\n"
 
 
 class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
     """An index of a kernel's signatures and a file for each of them, as numba has them, each with its digest."""
 
     def save(self, key: Any, data: Any) -> None:
-        """Keep the code of a signature where that can be."""
-        try:
-            super().save(key, data)
-        except OSError as error:
-            _say_unkept(str(error))
+        """Keep the code of a signature; the file says of which."""
+        super().save(key, (key, data))
+
+    def load(self, key: Any) -> Any:
+        """Return the code of a signature; None where there is none, or that of another in its place."""
+        of, data = super().load(key) or (None, None)
+        return data if of == key else None
 
     def _load_index(self) -> dict[Any, str]:
         version, stamp, names = self._read(self._index_name) or ("", None, {})
@@ -116,25 +127,25 @@ class SealedFiles(IndexDataCacheFile):  # type: ignore[misc]
         self._write(name, data)
 
     def _read(self, name: str) -> Any:
-        """Return what a file holds; None where there is none, it is not as we wrote it, or its module is gone."""
+        """Return what a file holds; None where there is none, it is not as we wrote it, or what it names is gone."""
         try:
             data = Path(self._cache_path, name).read_bytes()
         except OSError:
             return None
         content = data[len(_SEAL) + 32 :]
         try:
-            return pickle.loads(content) if data == _sealed(name, content) else None
-        except ImportError:
+            return pickle.loads(content) if data == self.sealed(name, content) else None
+        except (ImportError, AttributeError):
             return None
 
     def _write(self, name: str, value: Any) -> None:
         with new_file(Path(self._cache_path, name)) as draft:
-            draft.write_bytes(_sealed(name, self._dump(value)))
+            draft.write_bytes(self.sealed(name, self._dump(value)))
 
-
-def _sealed(name: str, content: bytes) -> bytes:
-    """Return the content of a file of this name with its digest."""
-    return _SEAL + hashlib.sha256(name.encode() + b"\0" + content).digest() + content
+    def sealed(self, name: str, content: bytes) -> bytes:
+        """Return the content of a file of this name with its digest."""
+        whose = f"{name} of numba {self._version}\0".encode()
+        return _SEAL + hashlib.sha256(whose + content).digest() + content
 
 
 @cache

@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 import suchus.experiments
+from suchus.verdict import RULES
 
 FAKES = Path(__file__).parent / "fake_shelf"
 BROKEN = '''"""Does it break?"""
@@ -23,12 +24,13 @@ experiment = Broken()
 
 @pytest.fixture
 def fakes(monkeypatch):
-    """Only the fake experiment stands on the shelf."""
+    """Only the fake experiment stands on the shelf; rules that were read from it meanwhile are forgotten."""
     path = suchus.experiments.__path__  # the import system holds the same list, so it is changed in place
     real = list(path)
     path[:] = [str(FAKES)]
     yield
     path[:] = real
+    vars(RULES).pop("_by_claim", None)
     for name in [n for n in sys.modules if n in ("suchus.experiments.wave", "suchus.experiments.broken")]:
         monkeypatch.delitem(sys.modules, name)
 

@@ -102,6 +102,7 @@ def made(place):
     return {name: None if file.name in VOLATILE else file.read_bytes() for name, file in files.items()}
 
 
+@pytest.mark.battery("failed writes")
 @pytest.mark.slow("commands are repeated for every write that can fail")
 @pytest.mark.parametrize("name", COMMANDS)
 def test_whatever_fails_what_was_kept_is_whole_and_the_next_run_gives_the_same(
@@ -133,7 +134,7 @@ def test_whatever_fails_what_was_kept_is_whole_and_the_next_run_gives_the_same(
         assert (code, len(told)) in allowed, (kind, which, told)
         assert code != 2 or "no space left on device" in told[0]
         failures += code > 0
-        counted("failed writes")
+        counted()
         if not fresh[0]:
             assert made(place) == whole, (kind, which)
         assert command() == 0

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -42,7 +43,7 @@ from suchus.experiment import Replay
 
 def dawdle():
     Path(os.environ["STARTED"]).write_text(str(os.getpid()))
-    time.sleep(60.0)
+    time.sleep(3600.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slow(wave.Wave):
@@ -93,36 +94,63 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
     assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
 
 
-@pytest.mark.slow("processes are stopped")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
-def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path, number, counted):
-    out, started = tmp_path / "out", tmp_path / "started"
+PATIENCE = 300.0
+"""Time that a process may take to end, however busy the machine is; one that computes on takes an hour [s]."""
+
+
+@pytest.fixture
+def saving(tmp_path):
+    """Two experiments in processes, of which one saves for an hour: it alone or its whole group may get a signal."""
+    started = tmp_path / "started"
     (tmp_path / "slow.py").write_text(SLOW)
     process = subprocess.Popen(
-        [sys.executable, "-c", DRIVER, f"{FAKES}:{tmp_path}", "reproduce", "--jobs", "2", "--out", str(out)],
+        [
+            sys.executable,
+            "-c",
+            DRIVER,
+            f"{FAKES}:{tmp_path}",
+            "reproduce",
+            "--jobs",
+            "2",
+            "--out",
+            str(tmp_path / "out"),
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         env={**os.environ, "STARTED": str(started)},
         start_new_session=True,
     )
-    while not started.exists():
-        assert process.poll() is None
-        time.sleep(0.05)
+    with process:
+        try:
+            while not started.exists():
+                assert process.poll() is None
+                time.sleep(0.05)
+            yield process
+        finally:  # else it is a warning of a process that nobody waited for, in whatever test comes next
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+@pytest.mark.battery("kills")
+@pytest.mark.slow("processes are stopped")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_a_signal_while_one_is_saving_stops_all_and_leaves_nothing_half_written(tmp_path, saving, number, counted):
+    out = tmp_path / "out"
     if number == signal.SIGINT:
-        os.killpg(process.pid, number)  # as a terminal does, to all of them
+        os.killpg(saving.pid, number)  # as a terminal does, to all of them
     else:
-        os.kill(process.pid, number)
-    told, complaint = process.communicate(timeout=30)
-    counted("kills")
+        os.kill(saving.pid, number)
+    told, complaint = saving.communicate(timeout=PATIENCE)
+    counted()
     killed = number == signal.SIGKILL
-    assert (process.returncode, told) == (-number if killed else 128 + number, "")
+    assert (saving.returncode, told) == (-number if killed else 128 + number, "")
     assert "Traceback" not in complaint
     if not killed:
         assert complaint.splitlines()[-1].startswith("suchus: stopped"), complaint
         cut = complaint.endswith(CUT)  # a machine that is busy with others
         assert {path.name for path in out.glob("[!.]*" if cut else "*")} <= {"wave"}
-    worker, end = int(started.read_text()), time.monotonic() + 30.0  # it is to sleep for a minute
+    worker, end = int((tmp_path / "started").read_text()), time.monotonic() + PATIENCE
     while is_there(worker):
         assert time.monotonic() < end, "a worker computes on"
         time.sleep(0.05)

@@ -2,7 +2,10 @@
 
 import ast
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -71,9 +74,9 @@ def test_the_page_counts_what_the_batteries_did():
 
 def test_a_battery_is_the_sum_of_its_tests_and_one_that_failed_is_told(tmp_path):
     kept = tmp_path / "batteries.json"
-    batteries.keep("a.py::test_a", {"kills": 3}, failed=False, kept=kept)
-    batteries.keep("a.py::test_b", {"kills": 4}, failed=True, kept=kept)
-    batteries.keep("a.py::test_a", {"kills": 5}, failed=False, kept=kept)
+    batteries.keep("a.py::test_a", "kills", 3, failed=False, kept=kept)
+    batteries.keep("a.py::test_b", "kills", 4, failed=True, kept=kept)
+    batteries.keep("a.py::test_a", "kills", 5, failed=False, kept=kept)
     rows = [line.split(" | ") for line in reliability.table(json.loads(kept.read_text()), CASES).splitlines()]
     counts = {row[0].removeprefix("| "): row[2:4] for row in rows[2:]}
     assert counts["kills"] == ["9", "1"]
@@ -81,14 +84,61 @@ def test_a_battery_is_the_sum_of_its_tests_and_one_that_failed_is_told(tmp_path)
     assert counts["fuzzer"] == ["100", "1"]
 
 
-def test_the_fixture_counts_only_where_it_is_asked_to(monkeypatch, tmp_path, request):
-    kept = []
-    monkeypatch.setattr(batteries, "keep", lambda test, numbers, failed: kept.append((numbers, failed)))
-    for asked in ("", "write"):
-        monkeypatch.setenv("SUCHUS_BATTERIES", asked)
-        steps = batteries.counted.__wrapped__(request)
-        count = next(steps)
-        count("kills")
-        count("kills", 2)
-        assert next(steps, None) is None
-    assert kept == [({"kills": 3}, False)]
+COUNTING = """
+import pytest
+from batteries import counted
+
+pytestmark = pytest.mark.battery("kills")
+
+def test_three(counted):
+    counted()
+    counted(2)
+
+def test_none(counted):
+    assert not counted
+"""
+
+
+def test_the_fixture_counts_and_tells_who_failed_before_counting(tmp_path):
+    file, kept = tmp_path / "test_counting.py", tmp_path / "kept.json"
+    file.write_text(COUNTING)
+    words = [sys.executable, "-m", "pytest", "-n0", "-c", "/dev/null", "--rootdir", str(tmp_path), str(file)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "tests"), "SUCHUS_BATTERIES": str(kept)}
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+    assert "1 failed, 1 passed" in done.stdout
+    found = {
+        test.partition("::")[2]: (one["number"], one["failed"]) for test, one in json.loads(kept.read_text()).items()
+    }
+    assert found == {"test_three": (3, False), "test_none": (0, True)}
+
+
+def test_a_whole_run_takes_the_place_of_what_was_kept_and_a_part_is_added(tmp_path, monkeypatch):
+    kept, code = tmp_path / "batteries.json", [0]
+
+    def run(words, env, **_):
+        batteries.keep("b.py::test_b", "kills", 2, failed=bool(code[0]), kept=Path(env["SUCHUS_BATTERIES"]))
+        return subprocess.CompletedProcess(words, code[0])
+
+    monkeypatch.setattr(reliability, "KEPT", kept)
+    monkeypatch.setattr(reliability, "write", lambda: None)
+    monkeypatch.setattr(reliability.subprocess, "run", run)
+    batteries.keep("a.py::test_a", "kills", 1, failed=False, kept=kept)
+    assert reliability.main(["b.py"]) == 0
+    assert list(json.loads(kept.read_text())) == ["a.py::test_a", "b.py::test_b"]
+    code[0] = 1
+    assert reliability.main([]) == 1
+    assert list(json.loads(kept.read_text())) == ["b.py::test_b"]
+    assert json.loads(kept.read_text())["b.py::test_b"]["failed"]
+    code[0] = 2  # interrupted
+    batteries.keep("a.py::test_a", "kills", 1, failed=False, kept=kept)
+    assert reliability.main([]) == 2
+    assert list(json.loads(kept.read_text())) == ["a.py::test_a", "b.py::test_b"]
+
+
+def test_the_days_of_a_battery_are_told():
+    kept = {
+        f"{day}.py::test": {"battery": "kills", "number": 1, "failed": False, "date": f"2031-01-0{day}"}
+        for day in (2, 1, 3)
+    }
+    assert "| 3 | 0 | 2031-01-01 to 2031-01-03 |" in reliability.table(kept, CASES)
+    assert "| 0 | 0 | never |" in reliability.table(kept, CASES)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numba
 import pytest
+from numba.core.caching import _CacheLocator
 
 from suchus import kernel_cache
 from suchus.flow import compiled
@@ -109,9 +110,33 @@ def test_without_a_home_there_is_still_an_answer(monkeypatch):
 
 def test_code_of_a_module_that_is_gone_is_compiled_anew(tmp_path):
     files = kernel_cache.SealedFiles(str(tmp_path), "k", ("stamp",))
-    for content, held in ((b"cmath\nsqrt\n.", math.sqrt), (b"cno_such_module\nf\n.", None)):
-        (tmp_path / "k.nbi").write_bytes(kernel_cache._sealed("k.nbi", content))
+    for content, held in (
+        (b"cmath\nsqrt\n.", math.sqrt),
+        (b"cno_such_module\nf\n.", None),
+        (b"cmath\nno_such_function\n.", None),
+    ):
+        (tmp_path / "k.nbi").write_bytes(files.sealed("k.nbi", content))
         assert files._read("k.nbi") is held
+
+
+def test_a_number_that_means_another_signature_by_now_is_not_taken(tmp_path):
+    """Two processes find no index, and both take the first number; or one is killed before it wrote the code."""
+    one, other = (kernel_cache.SealedFiles(str(tmp_path), "k", "stamp") for _ in range(2))
+    one.save("floats", "code for floats")
+    (tmp_path / "k.nbi").write_bytes(b"damaged")
+    other._save_index({"halves": other._data_name(1)})  # and here it is killed
+    assert other.load("halves") is None
+    other.save("halves", "code for halves")
+    assert other.load("halves") == "code for halves"
+    one._save_data(one._data_name(1), ("floats", "code for floats"))  # by who read the index before that
+    assert other.load("halves") is None
+
+
+def test_code_of_another_numba_is_not_unpickled(tmp_path, monkeypatch):
+    files = kernel_cache.SealedFiles(str(tmp_path), "k", "stamp")
+    files.save("floats", "code")
+    monkeypatch.setattr(files, "_version", "0.1")
+    assert files._read(files._data_name(1)) is None
 
 
 @pytest.fixture
@@ -145,6 +170,7 @@ def test_code_is_kept_and_found(kernel, tmp_path):
 FLIPPED = [12, pytest.param(200, marks=pytest.mark.slow("200 kernels are compiled anew"))]
 
 
+@pytest.mark.battery("flipped caches")
 @pytest.mark.parametrize("count", FLIPPED)
 def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_path, count, counted):
     draw = random.Random(count)
@@ -155,12 +181,12 @@ def test_flipped_and_cut_caches_give_right_results_and_are_mended(kernel, tmp_pa
         if i % 4 == 3:
             data = data[: draw.randrange(len(data))]
         else:
-            for _ in range(draw.choice((1, 2, 50))):
-                data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
+            for bit in draw.sample(range(8 * len(data)), draw.choice((1, 2, 50))):  # twice the same would be none
+                data[bit // 8] ^= 1 << bit % 8
         path.write_bytes(data)
         assert kernel() == (7, False), path
         assert kernel() == (7, True), "it was not mended"
-        counted("flipped caches")
+        counted()
 
 
 def test_what_another_wrote_is_never_unpickled(kernel, tmp_path):
@@ -173,6 +199,21 @@ def test_what_another_wrote_is_never_unpickled(kernel, tmp_path):
     for path in kept_files(tmp_path):
         path.write_bytes(b"cbuiltins\nexit\n(I1\ntR.")
     assert kernel() == (7, False)
+
+
+def test_a_place_that_becomes_full_before_the_code_is_kept_is_a_sentence(kernel, monkeypatch, capsys):
+    kernel_cache._say_unkept.cache_clear()
+    made, looked = _CacheLocator.ensure_cache_path, []
+
+    def full_the_second_time(self):
+        looked.append(self)
+        if len(looked) > 1:
+            raise OSError(28, "No space left on device")
+        made(self)
+
+    monkeypatch.setattr(_CacheLocator, "ensure_cache_path", full_the_second_time)
+    assert kernel() == (7, False)
+    assert "compiled code is not kept" in capsys.readouterr().err
 
 
 def test_a_place_that_takes_nothing_is_one_sentence(kernel, tmp_path, monkeypatch, capsys):

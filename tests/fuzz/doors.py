@@ -35,7 +35,7 @@ from suchus.design.ground import Bumps, Step, Stone
 from suchus.design.scale import scaled
 from suchus.errors import Diverged, SuchusError
 from suchus.jobs.store import Store
-from suchus.kernel_cache import SealedFiles, _sealed
+from suchus.kernel_cache import SealedFiles
 from suchus.land import Backlash, Deaf, Ground, Lake, Limp, Locked, LostFoot, Offset, Push, Run, Slow, Weak, simulate
 from suchus.model.importing import Words, import_robot
 from suchus.motion import check_limits, draft_gait
@@ -83,7 +83,8 @@ class Doors(Range):
         self.suited = [(robot, gait) for robot in suchus.ROBOTS for gait in suchus.GAITS if _suits(robot, gait)]
         wet = Run(robot=suchus.ROBOTS["caiman"], gait=suchus.GAITS["belly_crawl"], lake=Lake(level=1.0))
         simulate([wet], duration=0.02)  # compiled once, by the parent of all who will need it
-        self.kernel = _sealed("k.nbi", pickle.dumps(("version", "stamp", {"a": "b"})))
+        sealed = SealedFiles(str(place), "k", "stamp").sealed
+        self.kernel = sealed("k.nbi", pickle.dumps(("version", "stamp", {"a": "b"})))
         self.animals = [filmed(seed) for seed in range(_ANIMALS)]
         self.walks = [observe(animal.tracks).numbers for animal in self.animals]
         self.sound["tracks.csv"] = table_of(self.animals[0].tracks).encode()

@@ -107,6 +107,7 @@ def squared(number, progress):
     return xr.Dataset({"x": ("i", np.arange(3.0) * number**2, {"units": "m"})}, attrs={"of": number})
 
 
+@pytest.mark.battery("kills")
 @pytest.mark.slow("a cluster, of which parts are killed, and a second run")
 def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, counted):
     claims = varied_study(EXPERIMENTS["tail_bending"], samples=8)
@@ -120,7 +121,7 @@ def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, co
             conduct_sweep(
                 "squares", squared, range(1, 6), tmp_path / "sweep", progress=lambda *_: machines.stop(), client=client
             )
-    counted("kills", 2)
+    counted(2)
     assert 1 <= len(list((tmp_path / "sweep" / "parts").iterdir())) < 5
     results = conduct_sweep("squares", squared, range(1, 6), tmp_path / "sweep")  # resumed, here
     assert [(float(one.x[1]), one.attrs) for one in results] == [(float(n**2), {"of": n}) for n in range(1, 6)]

@@ -74,6 +74,7 @@ def contents(folder):
 
 
 @pytest.mark.slow("processes are killed twenty times")
+@pytest.mark.battery("kills")
 @pytest.mark.parametrize("what", ["study", "search", "swim"])
 def test_what_was_killed_twenty_times_ends_as_if_nothing_had_happened(what, tmp_path, counted):
     root = Path(__file__).parents[2]
@@ -88,4 +89,4 @@ def test_what_was_killed_twenty_times_ends_as_if_nothing_had_happened(what, tmp_
     assert whole.keys() == often.keys()
     told = {name for name in whole if whole[name] != often[name]}
     assert not told
-    counted("kills", killed)
+    counted(killed)

@@ -65,11 +65,12 @@ def test_our_own_errors_come_back_and_end_it():
         list(side_by_side(refused, [7, 8], 2))
 
 
+@pytest.mark.battery("kills")
 @pytest.mark.slow("processes are killed")
 @pytest.mark.parametrize(("deaths", "tries"), [(1, 1), (1, 2), (2, 2)])
 def test_a_piece_whose_process_dies_is_begun_again_as_often_as_is_said(deaths, tries, tmp_path, counted):
     heard = list(side_by_side(partial(deadly, folder=tmp_path, deaths=deaths), [0, 1, 2], 2, tries=tries))
-    counted("kills", deaths)
+    counted(deaths)
     ends = {i: said for i, said in heard if isinstance(said, (Done, Died))}
     assert ends[0] == Done(0)
     assert ends[2] == Done(2)

@@ -70,6 +70,7 @@ def page(tmp_path):
     return path
 
 
+@pytest.mark.battery("kills")
 @pytest.mark.slow("a process is killed, and the search run twice")
 def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes(page, tmp_path, counted):
     store = tmp_path / "killed"
@@ -77,7 +78,7 @@ def test_a_killed_search_loses_at_most_a_generation_and_ends_with_the_same_bytes
         while len(list((store / "free" / "parts").glob("*.nc"))) < 3 and process.poll() is None:
             time.sleep(0.002)
         os.kill(process.pid, signal.SIGKILL)
-    counted("kills")
+    counted()
     kept = {p: (p.read_bytes(), p.stat().st_mtime_ns) for p in store.rglob("*.nc") if not p.parent.name.startswith(".")}
     assert len(kept) >= 3
     optimise(read_optimisation(page), store)

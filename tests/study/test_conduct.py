@@ -95,6 +95,7 @@ def test_progress_counts_up_to_all_runs(asked, tmp_path):
     assert stage.endswith("/s, 0 s left")
 
 
+@pytest.mark.battery("kills")
 @pytest.mark.slow("a process is killed, and the study run twice")
 def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_bytes(tmp_path, counted):
     page = tmp_path / "strokes.toml"
@@ -105,7 +106,7 @@ def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_b
         while len(list((store / "parts").glob("*.nc"))) < 2 and process.poll() is None:
             time.sleep(0.002)
         os.kill(process.pid, signal.SIGKILL)
-    counted("kills")
+    counted()
     kept = {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in (store / "parts").glob("*.nc")}
     assert 2 <= len(kept) < 8
     assert not (store / RESULTS).exists()
