@@ -102,9 +102,9 @@ def test_none(counted):
 def test_the_fixture_counts_and_tells_who_failed_before_counting(tmp_path):
     file, kept = tmp_path / "test_counting.py", tmp_path / "kept.json"
     file.write_text(COUNTING)
-    words = [sys.executable, "-m", "pytest", "-n0", "-c", "/dev/null", "--rootdir", str(tmp_path), str(file)]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "tests"), "SUCHUS_BATTERIES": str(kept)}
-    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+    words = [sys.executable, "-m", "pytest", "-c", "/dev/null", "--rootdir", str(tmp_path), str(file)]
+    own = {"PYTHONPATH": str(ROOT / "tests"), "SUCHUS_BATTERIES": str(kept), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    done = subprocess.run(words, env=os.environ | own, capture_output=True, text=True, check=False)
     assert "1 failed, 1 passed" in done.stdout
     found = {
         test.partition("::")[2]: (one["number"], one["failed"]) for test, one in json.loads(kept.read_text()).items()
