@@ -70,12 +70,13 @@ def crashing(broken, tmp_path):
 
 
 def files(folder: Path) -> dict[str, bytes | dict[str, object]]:
-    """What a folder holds; of an outcome, and of its page, all but how it was asked for and how long it took."""
+    """What a folder holds; of an outcome, and of its page, all but its command, its threads and its time."""
     found: dict[str, bytes | dict[str, object]] = {
         path.name: path.read_bytes() for path in folder.iterdir() if path.name not in (MANIFEST, PAGE)
     }
     found["outcome.json"] = json.loads(found["outcome.json"])
     del found["outcome.json"]["provenance"]["seconds"], found["outcome.json"]["command"]
+    del found["outcome.json"]["provenance"]["machine"]["described"]["threads"]
     return found
 
 
