@@ -165,7 +165,7 @@ def slices(cycles):
 
 
 def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
-    record = climbed(replace(SWIMMING.quick(), cycles=4).climb(), slices(4), lambda stage, share: None)
+    record = climbed(replace(SWIMMING.quick(), cycles=4).climb(), lambda stage, share: None, slices=slices(4))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"slice_taken", "space"}
     assert unable["space"] == "Not run: the grid is too coarse."
@@ -187,7 +187,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
 
     monkeypatch.setattr(ladder, "swum_in_sections", sinks)
     climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).climb()
-    record = climbed(climb, slices(2), lambda stage, share: None)
+    record = climbed(climb, lambda stage, share: None, slices=slices(2))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"sections", "slice_taken", "space"}
     assert unable["slice_taken"] == unable["sections"]
@@ -201,3 +201,49 @@ def test_every_rung_is_asked_the_same_motions():
     gait = SWIMMING.climb().fitted.gait
     whole, tail, trunk = motions(gait).values()
     assert (whole, tail, trunk) == (gait, gait.straightened("trunk"), gait.straightened("tail"))
+
+
+@pytest.fixture
+def swum(monkeypatch):
+    """Let theories swim alone, and note by the axes of the grid which swims are asked for."""
+    asked, one = [], slices(8)
+    names = {motion: name for name, motion in motions(SWIMMING.quick().climb().fitted.gait).items()}
+
+    def noted(robot, motion, setting, **named):
+        asked.append((setting.axes, "held" if setting.tethered else names[motion]))
+        return one[asked[-1][1]]
+
+    def sinks(*given):
+        raise InvalidDesign("nothing lets it float.")
+
+    monkeypatch.setattr(ladder, "resolved_swim", noted)
+    monkeypatch.setattr(ladder, "swum_in_sections", sinks)
+    return asked
+
+
+def swum_of(**given):
+    return climbed(replace(SWIMMING.quick(), cycles=8).climb(), lambda stage, share: None, **given)
+
+
+def test_nothing_swims_for_a_claim_on_which_the_rungs_before_disagree(swum):
+    whole = numbers(swum_of())
+    assert swum == [(axes, name) for axes in (2, 3) for name in ladder.SWIMS]
+    swum.clear()
+    found = numbers(swum_of(claims=[rule.claim for rule in RULES]))
+    # drag and momentum disagree on the tail, so that nobody asks what the trunk alone does; of the spine they do not
+    assert swum == [(axes, name) for axes in (2, 3) for name in ("trunk and tail", "tail only", "held")]
+    assert isnan(found["gain_tail_share_slice"])
+    assert not isnan(whole["gain_tail_share_slice"])
+    assert found["gain_spine_share_slice"] == whole["gain_spine_share_slice"]
+    for rule in RULES:
+        assert judge(rule, found).verdict == judge(rule, whole).verdict
+
+
+def test_only_what_the_claims_are_read_of_swims(swum):
+    swum_of(claims=["swim_pressure_falls"])
+    assert {name for _, name in swum} == {"held"}
+    swum.clear()
+    swum_of(claims=["swim_s_shape", "swim_tail_sine"])
+    assert {name for _, name in swum} == {"trunk and tail"}
+    read = {name for rule in RULES for name in (rule.measure, *(one.measure for one in rule.holds))}
+    assert all(sum(name.startswith(start) for start in ladder._READ_OF) == 1 for name in read)

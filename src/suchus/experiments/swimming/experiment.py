@@ -153,7 +153,7 @@ class PlaneSwims(Experiment):
         held, free = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
         printed_swim = self._held("as printed", printed, staged(progress, "as printed", 0.3, 0.35))
         conditions = self._conditions(printed, slices, staged(progress, "directions", 0.35, 0.45))
-        rungs = climbed(climb, slices, staged(progress, "", 0.45, 0.92))
+        rungs = climbed(climb, staged(progress, "", 0.45, 0.92), slices=slices)
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
@@ -174,12 +174,15 @@ class PlaneSwims(Experiment):
         return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of the ladder nothing else swims."""
+        """Return measures, those that are wanted at least; for those of the ladder nothing else swims.
+
+        Nor does what no word needs: where rungs disagree on a claim, those that take longer are not asked for it any
+        more, and what they would have measured is NaN.
+        """
         if not all(name.endswith(_OF_RUNGS) for name in wanted):
             return super(PlaneSwims, self).measured(wanted, progress)
-        climb = self.climb()
-        slices = swims(climb, "slice", motions(climb.fitted.gait), staged(progress, "slice", 0.0, 0.3))
-        return Measures(measures(climbed(climb, slices, staged(progress, "", 0.3, 1.0)), self.robot.length))
+        claims = [rule.claim for rule in RULES if rule.needs & set(wanted)]
+        return Measures(measures(climbed(self.climb(), progress, claims=claims), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return why rungs of the ladder could not be run, in a sentence, by name."""

@@ -1,7 +1,7 @@
 """The rungs of the ladder: one motion and its parts in six models of the water, each until it is settled."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from hashlib import sha256
@@ -43,6 +43,13 @@ from suchus.water.samples import kept_in
 
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
 """What swims on every rung."""
+SWIMS = (*MOTIONS, "held")
+"""The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
+_READ_OF: Mapping[str, tuple[str, ...]] = {
+    "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
+    "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
+}  # fmt: skip
+"""Of which swims measures are read, by how their names begin."""
 FEWEST = 6
 """Cycles without which a rung is not settled [-]; two halves of three."""
 _QUARTERS = ("difference", "thrust", "aside")
@@ -95,38 +102,60 @@ Swims = Mapping[str, xr.Dataset]
 """Free swims by motion, and the one that is held at its snout as ``held``."""
 
 
-def climbed(climb: Climb, slices: Swims, progress: Progress) -> xr.Dataset:
+def climbed(
+    climb: Climb, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
+) -> xr.Dataset:
     """Return what every rung did; why one could not be run stands in ``unable``, as JSON by its name.
 
     Args:
         climb: what is asked.
-        slices: the slice's swims with the commanded midline, which the experiment itself shows.
         progress: told the share that is done.
+        slices: the slice's swims with the commanded midline, where they were swum already.
+        claims: keys of the claims for whose words alone swims are swum. What none of them needs is left out: rungs that
+            disagree stay at odds, whatever the next one says. None swims everything.
     """
     unable: dict[str, str] = {}
     sections = _attempt("sections", unable, lambda: _in_sections(climb, staged(progress, "sections", 0.0, 0.1)))
     bent = None if sections is None else _attempt("slice_taken", unable, lambda: _bent(climb, sections))
-    rungs: dict[str, Callable[[], dict[str, Any]]] = {
-        **{model: partial(_of_theory, climb, model) for model in MODELS},
-        "slice": lambda: _of_swims(climb, slices),
-        "slice_taken": lambda: _of_swims(
-            climb, swims(climb, "slice_taken", bent or {}, staged(progress, "taken", 0.1, 0.45))
-        ),
-        "sections": lambda: _of_sections(climb, sections),
-        "space": lambda: _of_swims(climb, space_swims(climb, staged(progress, "three dimensions", 0.45, 1.0))),
-    }
-    lost = {"slice_taken": bent is None, "sections": sections is None}
-    told = {name: None if lost.get(name) else _attempt(name, unable, run) for name, run in rungs.items()}
+    told = {model: _attempt(model, unable, partial(_of_theory, climb, model)) for model in MODELS}
     if sections is None:
         unable["slice_taken"] = unable["sections"]
+    else:
+        told["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
+    meant = motions(climb.fitted.gait)
+
+    def resolved(rung: str, moved: Mapping[str, Motion], part: Progress) -> None:
+        wanted = SWIMS if claims is None else _needed(_ladder(climb, told, unable), climb, claims)
+        told[rung] = _attempt(rung, unable, lambda: _of_swims(climb, swims(climb, rung, moved, part, wanted=wanted)))
+
+    if slices is None:
+        resolved("slice", meant, staged(progress, "slice", 0.1, 0.35))
+    else:
+        told["slice"] = _of_swims(climb, slices)
+    if bent is not None:
+        resolved("slice_taken", bent, staged(progress, "taken", 0.35, 0.6))
+    resolved("space", meant, staged(progress, "three dimensions", 0.6, 1.0))
+    named = {"units": "1", "long_name": "rms angle of the joints' midline off the commanded, over that"}
+    data = _ladder(climb, told, unable)
+    data["taken_away"] = "ladder_motion", _away(climb, bent), named
+    return data
+
+
+def _ladder(climb: Climb, told: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
+    """Return what the rungs told so far, as a record; NaN of the others."""
     data = xr.Dataset(
-        {key: _stacked(key, [told[name] or {} for name in LADDER], climb.cycles) for key in _SHAPES},
+        {key: _stacked(key, [told.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
         coords={"rung": list(LADDER), "ladder_motion": list(MOTIONS)},
     )
-    named = {"units": "1", "long_name": "rms angle of the joints' midline off the commanded, over that"}
-    data["taken_away"] = "ladder_motion", _away(climb, bent), named
-    data.attrs |= {"unable": json.dumps(unable), "grids": json.dumps(kept_grids(climb))}
-    return data
+    return data.assign_attrs(unable=json.dumps(unable), grids=json.dumps(kept_grids(climb)))
+
+
+def _needed(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
+    """Return the swims that some claims need of the next rung: those claims on which the rungs do not disagree yet."""
+    numbers = {name: float(one.value) for name, one in _of_rungs(record, climb.robot.length)}
+    rules = [rule for rule in RULES if rule.claim in claims and not ladder.disagree(ladder.voices(rule, numbers))]
+    read = {name for rule in rules for name in (rule.measure, *(clause.measure for clause in rule.holds))}
+    return {swim for name in read for start, of in _READ_OF.items() if name.startswith(start) for swim in of}
 
 
 def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
@@ -172,15 +201,15 @@ def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
 
 
 def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
-    """Return what the swims of a rung that resolves the water did."""
-    held, whole = swims["held"], swims[MOTIONS[0]]
-    first = np.full((climb.cycles - held.sizes["settled"], 4), np.nan)
-    return {
-        "ladder_speed": [swims[name].speed.values for name in MOTIONS],
-        "ladder_centre": whole.course_centre.values,
-        "ladder_course": whole.course.values,
-        **{f"ladder_{name}": np.vstack([first, held[f"quarter_{name}"].values]) for name in _QUARTERS},
-    }
+    """Return what the swims of a rung that resolves the water did; NaN of those that were left out."""
+    still = np.full(climb.cycles, np.nan)
+    found: dict[str, Any] = {"ladder_speed": [swims[one].speed.values if one in swims else still for one in MOTIONS]}
+    if (whole := swims.get(MOTIONS[0])) is not None:
+        found |= {"ladder_centre": whole.course_centre.values, "ladder_course": whole.course.values}
+    if (held := swims.get("held")) is not None:
+        first = np.full((climb.cycles - held.sizes["settled"], 4), np.nan)
+        found |= {f"ladder_{name}": np.vstack([first, held[f"quarter_{name}"].values]) for name in _QUARTERS}
+    return found
 
 
 def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
@@ -212,7 +241,15 @@ def space_swims(climb: Climb, progress: Progress) -> Swims:
     return swims(climb, "space", motions(climb.fitted.gait), progress)
 
 
-def swims(climb: Climb, rung: str, moved: Mapping[str, Motion], progress: Progress, *, frames: int = 0) -> Swims:
+def swims(
+    climb: Climb,
+    rung: str,
+    moved: Mapping[str, Motion],
+    progress: Progress,
+    *,
+    frames: int = 0,
+    wanted: Collection[str] = SWIMS,
+) -> Swims:
     """Return the free swims of a rung by motion, and the first held at its snout.
 
     Args:
@@ -221,16 +258,21 @@ def swims(climb: Climb, rung: str, moved: Mapping[str, Motion], progress: Progre
         moved: the motions by name.
         progress: told the share that is done.
         frames: pictures of the first that are kept [-].
+        wanted: names of the swims, the others are left out.
     """
-    free, held = (climb.setting(space=rung == "space", held=one) for one in (False, True))
-    found, first, count = {}, next(iter(moved)), len(moved) + 1
-    for i, (name, motion) in enumerate(moved.items()):
-        setting = replace(free, frames=frames) if name == first else free
-        kept, part = kept_in(climb.keep, f"{rung} {name}"), portion(progress, i, count)
-        found[name] = resolved_swim(climb.robot, motion, setting, checkpoint=kept, progress=part)
-    kept, part = kept_in(climb.keep, f"{rung} held"), portion(progress, count - 1, count)
-    turn = climb.fitted.head
-    found["held"] = resolved_swim(climb.robot, moved[first], held, turn=turn, checkpoint=kept, progress=part)
+    found: dict[str, xr.Dataset] = {}
+    asked = [name for name in SWIMS if name in wanted]
+    for i, name in enumerate(asked):
+        held, first = name == "held", name == MOTIONS[0]
+        setting = climb.setting(space=rung == "space", held=held)
+        found[name] = resolved_swim(
+            climb.robot,
+            moved[MOTIONS[0] if held else name],
+            replace(setting, frames=frames) if first else setting,
+            turn=climb.fitted.head if held else 0j,
+            checkpoint=kept_in(climb.keep, f"{rung} {name}"),
+            progress=portion(progress, i, len(asked)),
+        )
     return found
 
 
@@ -338,6 +380,14 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
         record: with what ``climbed`` returned.
         length: of the robot [m].
     """
+    yield from _of_rungs(record, length)
+    for motion in MOTIONS:
+        away = float(record.taken_away.sel(ladder_motion=motion))
+        yield f"misfit_{motion.replace(' ', '_')}_as_taken", Measure(away, "-")
+    yield "space_grids", Measure(float(len(json.loads(record.attrs["grids"]).get("cells", [0]))), "-")
+
+
+def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]:
     grids = json.loads(record.attrs["grids"])
     for name in record.rung.values:
         rung = record.sel(rung=name)
@@ -349,10 +399,6 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
             whole = {"": value, "_low": min(low, *ends, low), "_high": max(high, *ends, high), "_apart": apart}
             for end, one in whole.items():
                 yield f"{what}_{name}{end}", Measure(one, "rad" if "angle" in what and end != "_apart" else "-")
-    for motion in MOTIONS:
-        away = float(record.taken_away.sel(ladder_motion=motion))
-        yield f"misfit_{motion.replace(' ', '_')}_as_taken", Measure(away, "-")
-    yield "space_grids", Measure(float(len(grids.get("cells", [0]))), "-")
 
 
 def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
