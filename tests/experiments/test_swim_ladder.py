@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord, InvalidDesign
+from suchus.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swimming import ladder
 from suchus.experiments.swimming.ladder import FEWEST, MOTIONS, Settled, climbed, kept_grids, measures, motions, settle
@@ -247,3 +247,9 @@ def test_only_what_the_claims_are_read_of_swims(swum):
     assert {name for _, name in swum} == {"trunk and tail"}
     read = {name for rule in RULES for name in (rule.measure, *(one.measure for one in rule.holds))}
     assert all(sum(name.startswith(start) for start in ladder._READ_OF) == 1 for name in read)
+
+
+def test_a_motion_that_the_servos_cannot_follow_is_no_swim_for_theories_to_judge(swum):
+    with pytest.raises(OutsideLimits, match="tail_cable"):
+        replace(SWIMMING.quick(), frequency=3.0).measured(RULES[-1].needs)
+    assert swum == []

@@ -29,7 +29,7 @@ from pages import passages
 from suchus import experiment
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import AUTHORS, CLAIMS, TITLE
-from suchus.verdict import RULES, SHARES, UNRULED, Verdict, counted, judge, ladder
+from suchus.verdict import RULES, SHARES, TOO_FEW, UNRULED, Verdict, counted, judge, ladder
 from suchus.verdict.judging import ROBUST
 
 ROOT = Path(__file__).parents[2]
@@ -151,8 +151,9 @@ def elsewhere() -> dict[str, Verdict]:
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the shelves hold, its words in ``docs/stated/pages``."""
     verdicts = json.loads(VERDICTS.read_text(encoding="utf-8")) if VERDICTS.is_file() else {}
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "verdicts": verdicts,
-             "elsewhere": elsewhere(), "unruled": UNRULED, "rules": RULES, "servo_loads": kept("servo_loads"),
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": TOO_FEW,
+             "verdicts": verdicts, "elsewhere": elsewhere(), "unruled": UNRULED,
+             "rules": RULES, "servo_loads": kept("servo_loads"),
              "count": counted({claim: row["verdict"] for claim, row in verdicts.items()},
                               [claim for claim, row in verdicts.items() if row["fragile"]])}  # fmt: skip
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"

@@ -129,6 +129,8 @@ def _share(verdict: Mapping[str, Any]) -> str:
     """Return in a sentence how many plausible designs agree."""
     share = verdict.get("share")
     if not share:
+        if few := str(verdict.get("too_few", "")):
+            return few
         unswept = str(verdict.get("unswept", ""))
         return f"Not tried on other designs: {unswept}." if unswept else ""
     text = (

@@ -56,6 +56,7 @@ class _Verdict(_Described):
     fragile: bool = False
     share: _Share | None = None
     unswept: str = ""
+    too_few: str = ""
 
 
 class _Provenance(_Described):

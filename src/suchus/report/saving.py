@@ -132,6 +132,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "fragile": verdict.fragile,
         "share": None if share is None else record.plain(asdict(share)),
         "unswept": rule.unswept,
+        "too_few": "" if verdict.too_few is None else str(verdict.too_few),
         "why": " ".join(verdict.why.split()),
     }
 

@@ -9,7 +9,7 @@ from suchus.design import LEGS
 from suchus.errors import IncompatibleRecord
 from suchus.gaits import CONDITIONS
 from suchus.land import FAILED_JOINTS
-from suchus.verdict import RULES, Rule, ladder, varied_of
+from suchus.verdict import RULES, Rule, Word, ladder, varied_of, word_of
 
 FAULTY = ("coordinated", "limbs_only")
 """Conditions in which joints fail, too: the article's two groups."""
@@ -149,8 +149,7 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
         rule: the claim's.
         measures: of all samples, see ``measures_of``.
     """
-    needed = once(rule, measures)
-    rows = [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]
+    needed, rows = once(rule, measures), _rows(rule, measures)
     if rule.rungs:
         said = [ladder.voices(rule, row) for row in rows]
         number = np.array([ladder.spread(voices)[0] for voices in said], dtype=float)
@@ -160,3 +159,19 @@ def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np
         answers = [rule.held(row) if rule.testable(row) else None for row in rows]
     number = np.where([answer is None for answer in answers], np.nan, number)
     return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)
+
+
+def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
+    """Return the word of a claim in every sample.
+
+    Args:
+        rule: the claim's.
+        measures: of all samples, see ``measures_of``.
+    """
+    return [word_of(rule, row) for row in _rows(rule, measures)]
+
+
+def _rows(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
+    """Return what a rule needs of each sample."""
+    needed = once(rule, measures)
+    return [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]

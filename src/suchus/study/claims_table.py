@@ -13,6 +13,7 @@ import xarray as xr
 from suchus.figures.sensitivity import spoken
 from suchus.record import code_digest
 from suchus.study.answers import Index, first_order, share_interval
+from suchus.study.varied import LEAST
 from suchus.verdict import RULES
 from suchus.verdict.judging import ROBUST, digest
 
@@ -46,6 +47,7 @@ def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
     return {
         "claim": claim,
         "samples": count,
+        "words": dict(Counter(word for word in one.word.values.tolist() if word)) if "word" in one else {},
         "true": true / count if count else float("nan"),
         "interval": share_interval(true, count),
         "number": (float(low), float(middle), float(high)),
@@ -123,7 +125,7 @@ def turned(rows: Sequence[Mapping[str, Any]]) -> dict[str, str]:
 
 
 def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> dict[str, dict[str, Any]]:
-    """Return the rows in the form of ``verdict.Share``, by claim; a claim that no design could judge has none.
+    """Return the rows in the form of ``verdict.Share``, by claim, or of ``verdict.TooFew`` where few could judge it.
 
     Args:
         rows: of ``claim_row``.
@@ -132,7 +134,11 @@ def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) 
     of = {str(claim): name for name, one in varied.items() for claim in one.claim.values}
     found = {}
     for row in rows:
-        if row["samples"]:
+        if row["samples"] < LEAST:
+            if row["words"]:
+                named = {"words": row["words"], "of": of[row["claim"]], "rule": RULES[row["claim"]].asked}
+                found[row["claim"]] = named
+        else:
             edge = row["border"]
             found[row["claim"]] = {
                 "share": round(row["true"], 6),

@@ -19,7 +19,7 @@ from suchus.jobs.store import MARK, made_by, together
 from suchus.progress import Progress, silent
 from suchus.robots import ROBOTS
 from suchus.study.answers import answered
-from suchus.study.claim_measures import held
+from suchus.study.claim_measures import held, words
 from suchus.study.plan import evenly, only_forbids, value_of
 from suchus.study.study import Vary
 from suchus.verdict import RULES, Rule, listed, varied_of
@@ -121,7 +121,7 @@ def conduct_varied(
         jobs: number of processes of this machine.
 
     Returns:
-        Number and truth of each claim at every point, see ``answers.answered``, ``value`` over ``sample`` and
+        Number, truth and word of each claim at every point, see ``answers.answered``, ``value`` over ``sample`` and
         ``parameter``, and ``status``.
 
     Raises:
@@ -203,6 +203,9 @@ def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
         },
     )
     found = {rule.claim: held(rule, measures) for rule in study.rules}
+    said = np.array([words(rule, measures) for rule in study.rules], dtype=object)
+    said[:, record.status.values != "asked"] = ""
+    record["word"] = ("claim", "sample"), said.astype(str), {"units": "1", "long_name": "what it says of the claim"}
     return record.merge(answered(found, value))
 
 

@@ -1,7 +1,7 @@
 """Verdicts on the article's claims: rules as data, what they say of measures, and how many designs agree."""
 
 from suchus.verdict.counting import EvidenceCount, Standing, counted, standings
-from suchus.verdict.judging import SHARES, Examples, Share, Verdict, Word, judge
+from suchus.verdict.judging import SHARES, TOO_FEW, Examples, Share, TooFew, Verdict, Word, judge, word_of
 from suchus.verdict.rule import (
     Clause,
     ControlGroup,
@@ -20,6 +20,7 @@ from suchus.verdict.table import RULES, UNRULED, examples_of, rules_of, varied_o
 __all__ = [
     "RULES",
     "SHARES",
+    "TOO_FEW",
     "UNRULED",
     "Clause",
     "ControlGroup",
@@ -31,6 +32,7 @@ __all__ = [
     "Rung",
     "Share",
     "Standing",
+    "TooFew",
     "Varied",
     "Verdict",
     "Word",
@@ -44,4 +46,5 @@ __all__ = [
     "rules_of",
     "standings",
     "varied_of",
+    "word_of",
 ]

@@ -8,14 +8,14 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from math import isfinite, nan
+from math import isfinite
 from types import MappingProxyType
-from typing import Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 from suchus.errors import IncompatibleRecord
 from suchus.paper import CLAIMS, Claim
 from suchus.verdict import ladder
-from suchus.verdict.rule import Rule, interval
+from suchus.verdict.rule import Rule, interval, listed
 
 ROBUST = 0.9
 """A verdict is fragile if fewer plausible designs than this share agree with it [-].
@@ -60,13 +60,36 @@ class Share:
         return (self.share if held else 1.0 - self.share) >= ROBUST
 
 
-def _shipped() -> Mapping[str, Share]:
-    """Return the table that stands beside this module, empty where none was made yet."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TooFew:
+    """What plausible designs say of a claim that too few of them could judge to know a share."""
+
+    claim: str
+    """Its key."""
+    words: Mapping[str, int]
+    """Number of designs by the word that each says [-]."""
+    of: str
+    """The experiment that was asked again for it."""
+    rule: str
+    """Digest of the rule that judged the designs, ``Rule.asked``."""
+
+    def __str__(self) -> str:
+        """Return it as a sentence."""
+        told = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
+        number = sum(self.words.values())
+        return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {told}."
+
+
+_Row = TypeVar("_Row", Share, TooFew)
+
+
+def _shipped() -> Mapping[str, Mapping[str, Any]]:
+    """Return the rows of the table that stands beside this module, none where it was not made yet."""
     file = resources.files("suchus.verdict") / _FILE
     if not file.is_file():
         return MappingProxyType({})
-    table = json.loads(file.read_text(encoding="utf-8"))
-    return MappingProxyType({key: Share(claim=key, **row) for key, row in table["claims"].items()})
+    rows: Mapping[str, Mapping[str, Any]] = json.loads(file.read_text(encoding="utf-8"))["claims"]
+    return rows
 
 
 def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
@@ -74,8 +97,14 @@ def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
     return hashlib.sha256(json.dumps(claims, sort_keys=True).encode()).hexdigest()
 
 
-SHARES: Mapping[str, Share] = _shipped()
+SHARES: Mapping[str, Share] = MappingProxyType(
+    {key: Share(claim=key, **row) for key, row in _shipped().items() if "share" in row}
+)
 """By claim."""
+TOO_FEW: Mapping[str, TooFew] = MappingProxyType(
+    {key: TooFew(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
+)
+"""By claim, of those that too few designs could judge."""
 
 
 Word = Literal[
@@ -117,6 +146,8 @@ class Verdict:
     """Fraction of plausible designs for which the statement holds; None where that is not known."""
     voices: tuple[ladder.Voice, ...] = ()
     """What each model says; none where one measure decides."""
+    too_few: TooFew | None = None
+    """What designs say that are too few to know a share; None where a share is known, or no design was asked."""
 
     @property
     def fragile(self) -> bool:
@@ -165,16 +196,14 @@ def judge(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
         )
     said = ladder.voices(rule, measures, unable)
-    value, low, high = nan, None, None
+    value, low, high = _value(rule, measures, said), None, None
     why = " ".join(part for part in (rule.reason(measures), rule.unable(measures)) if part)
     if said:
-        value, least, greatest = ladder.spread(said)
+        _, least, greatest = ladder.spread(said)
         low, high = (least, greatest) if isfinite(value) else (None, None)
         why = f"{why} {ladder.sentence(said, rule.form)}"
-    else:
-        value = float(measures[rule.measure])
-        if rule.measure in rule.spread and isfinite(value):
-            low, high = interval(rule.measure, measures, rule.spread)
+    elif rule.measure in rule.spread and isfinite(value):
+        low, high = interval(rule.measure, measures, rule.spread)
     return Verdict(
         claim=claim,
         rule=rule,
@@ -185,12 +214,28 @@ def judge(
         why=why,
         share=_of_this(rule, shares.get(rule.claim)),
         voices=said,
+        too_few=_of_this(rule, TOO_FEW.get(rule.claim)),
     )
 
 
-def _of_this(rule: Rule, share: Share | None) -> Share | None:
-    """Return a share if it is of this rule; one that another rule made says nothing of it."""
-    return None if share is None or share.rule not in ("", rule.asked) else share
+def word_of(rule: Rule, measures: Mapping[str, float]) -> Word:
+    """Return the word of a rule on measures, those that it needs alone.
+
+    Args:
+        rule: the claim's.
+        measures: those of ``Rule.needs``.
+    """
+    said = ladder.voices(rule, measures)
+    return _word(rule, CLAIMS[rule.claim], _value(rule, measures, said), measures, said)
+
+
+def _value(rule: Rule, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> float:
+    return ladder.spread(said)[0] if said else float(measures[rule.measure])
+
+
+def _of_this(rule: Rule, row: _Row | None) -> _Row | None:
+    """Return a row if it is of this rule; one that another rule made says nothing of it."""
+    return None if row is None or row.rule not in ("", rule.asked) else row
 
 
 def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:

@@ -19,7 +19,7 @@ from suchus.experiment import Measure
 from suchus.experiments._taken import bare, swum_in_sections
 from suchus.experiments.swimming.rules import LADDER, RULES, SEEN, SETTLED
 from suchus.fingerprint import fingerprint
-from suchus.motion import Gait
+from suchus.motion import Gait, check_limits, check_speeds
 from suchus.progress import Progress, portion, staged
 from suchus.verdict import ladder
 from suchus.water import (
@@ -113,6 +113,9 @@ def climbed(
         slices: the slice's swims with the commanded midline, where they were swum already.
         claims: keys of the claims for whose words alone swims are swum. What none of them needs is left out: rungs that
             disagree stay at odds, whatever the next one says. None swims everything.
+
+    Raises:
+        OutsideLimits: joints or servos cannot follow the motion, so that it is no swim of this robot.
     """
     unable: dict[str, str] = {}
     sections = _attempt("sections", unable, lambda: _in_sections(climb, staged(progress, "sections", 0.0, 0.1)))
@@ -129,6 +132,8 @@ def climbed(
         told[rung] = _attempt(rung, unable, lambda: _of_swims(climb, swims(climb, rung, moved, part, wanted=wanted)))
 
     if slices is None:
+        check_limits(climb.robot, climb.fitted.gait)  # theories would swim all the same
+        check_speeds(climb.robot, climb.fitted.gait)
         resolved("slice", meant, staged(progress, "slice", 0.1, 0.35))
     else:
         told["slice"] = _of_swims(climb, slices)
