@@ -33,7 +33,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "paper_map.md": article.paper_map(),
         "misprints.md": article.misprints(),
         "questions.md": stated_page("questions"),
-        "verdicts.md": stated_page("verdicts"),
+        "verdicts.md": article.verdicts(),
     }
     for path, text in (made | reference.pages() | gallery.pages()).items():
         files.append(File.generated(config, path, content=text))

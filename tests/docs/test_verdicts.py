@@ -5,9 +5,9 @@ import json
 import pytest
 
 import verdict_table
-from pages.stated import page as stated_page
+from pages import article
 from suchus.experiments import EXPERIMENTS
-from suchus.paper import CLAIMS
+from suchus.paper import CLAIMS, ERRATA
 from suchus.verdict import RULES
 from suchus.verdict.judging import WORDS
 
@@ -40,12 +40,22 @@ def test_the_readme_counts_what_the_table_says():
 
 
 def test_the_page_gives_the_words_the_rule_and_the_verdict_of_every_claim():
-    page = stated_page("verdicts")
+    page = article.verdicts()
     for claim, rule in RULES.items():
         entry = page.split(f"{{#{claim}}}")[1].split("\n###")[0]
         assert CLAIMS[claim].quote in entry
         assert f"**{TABLE[claim]['verdict']}" in entry
         assert all(str(clause) in entry for clause in rule.holds)
+
+
+def test_every_table_equation_and_misprint_has_a_line_and_what_is_right_says_so():
+    lines = article.verdicts().split("## Equation by equation")[1].split("\n## ")[0]
+    rows = {line.split(" | ")[0].removeprefix("| "): line for line in lines.splitlines() if line.startswith("| ")}
+    assert {f"({n})" for n in range(1, 21)} <= set(rows)
+    assert all(f"misprints.md#{key}" in lines for key in ERRATA)
+    assert "| nothing |" in rows["(6)"]
+    assert "#spine_forward" in rows["(15)"]
+    assert all("| nothing |" not in row for row in rows.values() if "misprints.md" in row)
 
 
 @pytest.mark.parametrize("name", QUICKLY)

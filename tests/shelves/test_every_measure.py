@@ -163,7 +163,7 @@ def walked_on(record: xr.Dataset) -> xr.Dataset:
     ]
     longer = xr.concat([timed, *later], "time").transpose(*timed.limb_phase.dims)
     back = longer.time > float(longer.time[-1]) - 0.6 * gait.period
-    kicked = dict(disturbance="kick", arm="closed")
+    kicked = {"disturbance": "kick", "arm": "closed"}
     right = xr.zeros_like(longer.limb_phase.loc[kicked]) + np.array(gait.limb_phases)
     longer.limb_phase.loc[kicked] = longer.limb_phase.loc[kicked].where(~back, right)
     return xr.merge([record.drop_dims("time"), longer], join="exact").assign_attrs(record.attrs)

@@ -15,11 +15,11 @@ from suchus.experiments import EXPERIMENTS
 from suchus.record import read_json
 from suchus.robots import ROBOTS
 from suchus.study.answers import share_interval
-from suchus.study.claim_measures import asked_rules, claims_varied, held
-from suchus.study.claims_table import claim_row, renewed
+from suchus.study.claim_measures import asked_rules, claims_varied, held, words
+from suchus.study.claims_table import claim_row, renewed, shares
 from suchus.study.study import Vary
-from suchus.study.varied import LEAST, VariedStudy, conduct_varied, varied_finished, varied_study
-from suchus.verdict import RULES, Varied, varied_of
+from suchus.study.varied import LEAST, VariedStudy, answer_varied, conduct_varied, varied_finished, varied_study
+from suchus.verdict import RULES, TooFew, Varied, examples_of, varied_of
 from suchus.verdict.judging import digest
 
 CLAIM = "tail_quadratic_small"
@@ -91,6 +91,29 @@ def test_what_is_refused_is_counted_apart_and_judges_nothing(tmp_path):
     assert np.isnan(record.number.sel(claim=CLAIM).values[refused]).all()
     assert claim_row(record, CLAIM)["samples"] == 32 - refused.sum()
     assert claim_row(record, CLAIM)["true"] == 1.0
+
+
+def test_too_few_designs_make_no_share_but_their_words_are_told():
+    def of(asked):
+        error = ["" if i < asked else "OutsideLimits: too wide a gap" for i in range(12)]
+        numbers = np.where(np.arange(12) < asked, 0.03, np.nan)
+        columns = {"error_of_eq_17_max": ("sample", numbers), "error": ("sample", error)}
+        return answer_varied(study(samples=12), xr.Dataset(columns, coords={"sample": range(12)}))
+
+    record = of(LEAST - 1)
+    assert set(record.word.sel(claim=CLAIM).values[LEAST - 1 :]) == {""}
+    few, enough = (shares([claim_row(one, CLAIM)], {"gap": one})[CLAIM] for one in (record, of(LEAST)))
+    assert few == {"words": {"reproduced": LEAST - 1}, "of": "gap", "rule": RULES[CLAIM].asked}
+    assert enough["designs"] == LEAST
+    told = TooFew(claim=CLAIM, words={"contradicted": 2, "reproduced": 1}, of="gap", rule="")
+    assert str(told).endswith("too few of which could judge it to know a share: 1 reproduced and 2 contradicted.")
+
+
+def test_a_word_of_a_design_is_that_of_the_verdict():
+    for claim, rows in examples_of("tail_bending").items():
+        for measures, word in rows:
+            if measures.keys() >= RULES[claim].needs:
+                assert words(RULES[claim], {name: np.array([value]) for name, value in measures.items()}) == [word]
 
 
 def test_a_study_goes_on_where_it_was_stopped_and_answers_from_what_is_there(tmp_path):

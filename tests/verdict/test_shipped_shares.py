@@ -11,7 +11,7 @@ from suchus.gaits import GAITS
 from suchus.robots import ROBOTS
 from suchus.study.claim_measures import claims_varied
 from suchus.study.varied import LEAST
-from suchus.verdict import RULES, SHARES, Share, examples_of, judge
+from suchus.verdict import RULES, SHARES, TOO_FEW, Share, examples_of, judge
 from suchus.verdict.judging import digest
 
 FILE = resources.files("suchus.verdict") / "claims.json"
@@ -58,8 +58,8 @@ def test_its_digest_is_that_of_its_rows():
 
 @shipped
 def test_every_rule_without_an_excuse_has_a_row_and_every_row_a_rule():
-    assert not set(SHARES) & WAITING
-    assert set(SHARES) | WAITING == {claim for claim, rule in RULES.items() if not rule.unswept}
+    assert len({*SHARES, *TOO_FEW, *WAITING}) == len(SHARES) + len(TOO_FEW) + len(WAITING)
+    assert set(SHARES) | set(TOO_FEW) | WAITING == {claim for claim, rule in RULES.items() if not rule.unswept}
 
 
 @shipped
@@ -70,6 +70,16 @@ def test_a_row_is_of_the_rule_of_today_and_says_what_was_asked_and_by_which_sour
         made = TOLD["varied"][share.of] if share.of else TOLD
         assert set(made["source"]) == {"runs", "answers"}
         assert share.designs <= made["samples"] == sum(made["became"].values())
+
+
+@shipped
+def test_what_too_few_designs_could_judge_says_what_they_say():
+    for claim, few in TOO_FEW.items():
+        assert few.rule == RULES[claim].asked, f"{claim}: renew it with suchus study claims"
+        assert few.of == RULES[claim].experiment
+        assert LEAST <= sum(few.words.values()) == TOLD["varied"][few.of]["became"]["asked"]
+        judged = sum(few.words.get(word, 0) for word in ("reproduced", "same sense", "contradicted"))
+        assert judged < LEAST
 
 
 def test_a_share_of_another_rule_says_nothing_of_this_one():

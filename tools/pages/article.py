@@ -130,6 +130,21 @@ def misprints() -> str:
     return page("misprints", misprints=shown)
 
 
+def verdicts() -> str:
+    """Return the page of the verdicts, with every table and equation, and what else is wrong as printed."""
+    flaws = misprints_of()
+    rows = [
+        (_label(key), text, flaws[key], _claims_at(key)) for key, text in items().items() if not key.startswith("fig ")
+    ]
+    shown = {key for _, _, found, _ in rows for key in found}
+    rows += [(one.where, key.replace("_", " "), [key], []) for key, one in ERRATA.items() if key not in shown]
+    return page("verdicts", audited=rows)
+
+
+def _claims_at(item: str) -> list[str]:
+    return [key for key, claim in CLAIMS.items() if not claim.of and item in named(claim.where)]
+
+
 def _value(claim: Claim) -> str:
     if claim.value is None:
         return ""

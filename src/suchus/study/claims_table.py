@@ -135,7 +135,7 @@ def shares(rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) 
     found = {}
     for row in rows:
         if row["samples"] < LEAST:
-            if row["words"]:
+            if row.get("words"):
                 named = {"words": row["words"], "of": of[row["claim"]], "rule": RULES[row["claim"]].asked}
                 found[row["claim"]] = named
         else:
