@@ -33,14 +33,15 @@ def added_mass(
     axes, cut = water.axes, water.cut[body]
     kept = symmetric(cut)
     if wanted is not None:  # in open water the body's whole momentum counts, that along other axes too
-        unbounded = water.border.water is not None and axes == 3
+        unbounded = water.layers[-1].border.water is not None and axes == 3
         asked = [bool(one) or (unbounded and k < axes) for k, one in enumerate(wanted)]
         kept = [keep and one for keep, one in zip(kept, asked, strict=True)]
     modes = [mode for mode, keep in zip(_rigid(water, about, body), kept, strict=True) if keep]
     answers = _Answers.of(water, modes)
     volume, both = water.grid.cell**axes, np.ix_(kept, kept)
     whole = np.full((len(kept), len(kept)), np.nan)
-    held = _in_open_water(volume * answers.held, volume * answers.own, answers.shores, answers.inward, volume)
+    shore = water.layers[-1].grid.cell ** axes
+    held = _in_open_water(volume * answers.held, volume * answers.own, answers.shores, answers.inward, shore)
     of_body = slice(water.rows[body].start, water.rows[body].stop)
     mine = [_part(mode, of_body) for mode in modes]
     whole[both] = 2 ** sum(cut) * density * (held + _rim(water, [markers], [mine], [cut]))
@@ -173,7 +174,7 @@ def _in_open_water(
         own: mass of the body's region, over the density, shape (mode, mode).
         shores: potential along each side, per mode [m/s^2 cells].
         inward: velocity that each mode induces on each side, per mode; empty in other water [m/s^2].
-        volume: of a cell [m^2, m^3].
+        volume: of a cell at the sides [m^2, m^3].
     """
     if not inward[0]:
         return held

@@ -4,6 +4,7 @@ Each side is seen with its normal first: ``normal[k]`` and ``tangent[k]`` are li
 kind of side is written once.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -243,7 +244,7 @@ class Border:
     """The sides at work; ``prepare`` once a step, ``fill`` whenever the velocity changed."""
 
     edges: list[Edge]
-    """Left, right, bottom, top, and in space low and high."""
+    """Left, right, bottom, top, and in space low and high; without those at which the domain does not end."""
     water: OpenWater | FarField | None
     """The water around the domain, if it has no end."""
     stream: tuple[float, ...] = (0.0, 0.0)
@@ -252,6 +253,8 @@ class Border:
     """Steps prepared so far [-]."""
     span: float = 0.0
     """Length of the last step [cells per (m/s)]."""
+    beyond: Callable[[np.ndarray], None] | None = None
+    """Writes the velocity on and beyond the sides of a patch at which the domain does not end."""
 
     @classmethod
     def of(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
@@ -259,6 +262,8 @@ class Border:
         edges, unbounded = [], sides.unbounded(grid.axes)
         for k, (name, side) in enumerate(zip(NAMES, sides.around(grid.axes), strict=False)):
             axis = k // 2
+            if not side.ends:
+                continue
             prescribed: np.ndarray = np.zeros([n for d, n in enumerate(grid.cells) if d != axis][::-1], dtype)
             places = np.meshgrid(*(grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis))
             moves = unbounded and isinstance(side, Stream)
@@ -289,7 +294,7 @@ class Border:
 
     def fastest(self, time: float) -> float:
         """Return the fastest speed that a side itself imposes at a time, a wall or an inflow [m/s]."""
-        return max(edge.fastest(time) for edge in self.edges)
+        return max((edge.fastest(time) for edge in self.edges), default=0.0)
 
     def prepare(
         self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...], time: float = 0.0
@@ -382,5 +387,7 @@ class Border:
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
+        if self.beyond is not None:
+            self.beyond(velocity)
         for edge in self.edges:
             edge.fill(velocity, self.stream)

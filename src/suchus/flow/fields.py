@@ -6,7 +6,6 @@ import numpy as np
 
 from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
-from suchus.flow.force import edge_mean
 from suchus.flow.log import Log
 from suchus.flow.rake import Sample, read
 from suchus.flow.record import Record
@@ -29,6 +28,11 @@ class Fields:
     def record(self) -> Record:
         """The time series so far."""
         return self._log.record
+
+    @property
+    def domain(self) -> "Fields":
+        """The fields of the whole domain: around a patch, and in it, on the coarser cells; else these themselves."""
+        return self if len(self.water.layers) == 1 else _Domain(self)
 
     def probe(self, points: np.ndarray | tuple[float, ...]) -> Sample:
         """Return velocity and pressure at points of the world, shape (point, axis) or one (x, y) or (x, y, z) [m].
@@ -55,7 +59,7 @@ class Fields:
     def pressure(self) -> np.ndarray:
         """Pressure at the cell centres, zero on the average along the sides, shape (ny, nx) or (nz, ny, nx) [Pa]."""
         p = self.water.p
-        return self.setup.density * (p[(slice(PAD, -PAD),) * p.ndim] - self.water.dtype(edge_mean(p)))
+        return self.setup.density * (p[(slice(PAD, -PAD),) * p.ndim] - self.water.dtype(self.water.level))
 
     @property
     def vorticity(self) -> np.ndarray:
@@ -67,7 +71,7 @@ class Fields:
         self._plane_only("the vorticity at corners", "vorticity_at_centres")
         u, v = self.water.u, self.water.v
         a, b = PAD + 1, -PAD
-        return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.setup.grid.cell
+        return ((v[a:b, a:b] - v[a:b, a - 1 : b - 1]) - (u[a:b, a:b] - u[a - 1 : b - 1, a:b])) / self.water.grid.cell
 
     @property
     def vorticity_at_centres(self) -> np.ndarray:
@@ -93,7 +97,7 @@ class Fields:
         spin = (corners(v, -1) - corners(v, d)) - (corners(u, -1) - corners(u, e))
         spin = np.moveaxis(spin, (axes - 1 - e, axes - 1 - d), (0, 1))
         sums = (spin[1:, 1:] + spin[1:, :-1]) + (spin[:-1, 1:] + spin[:-1, :-1])
-        values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.setup.grid.cell)
+        values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.water.grid.cell)
         return values
 
     def _plane_only(self, what: str, instead: str) -> None:
@@ -108,3 +112,11 @@ class Fields:
         for low, high in faces[1:]:
             total = total + low + high
         return 0.5 / self.water.axes * total
+
+
+class _Domain(Fields):
+    """What there is to see on the coarser cells around a patch."""
+
+    def __init__(self, patch: Fields) -> None:
+        self.setup, self.water, self.time, self.frame = patch.setup, patch.water.layers[-1], patch.time, patch.frame
+        self._log = patch._log

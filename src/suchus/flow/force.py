@@ -92,17 +92,10 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
         water.velocity.reshape(water.axes, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
         np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(TURNS[water.axes]), GAP, shear,
     )  # fmt: skip
-    level = float(edge_mean(water.p))
+    level = water.level
     return Surface(
         markers=markers, pressure=density * (pressure - level), shear=density * float(water.nu) * shear
     )  # fmt: skip
-
-
-def edge_mean(p: np.ndarray) -> float:
-    """Return the mean along the outermost cells of the domain: the level from which pressures count."""
-    cells = p[(slice(PAD, -PAD),) * p.ndim]
-    edges = [np.moveaxis(cells, axis, 0)[end] for axis in range(p.ndim) for end in (0, -1)]
-    return float(sum(e.sum(dtype=np.float64) for e in edges) / sum(e.size for e in edges))
 
 
 def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The grid: square cells in a rectangle or cubic ones in a box, and where its staggered values sit."""
 
 from dataclasses import dataclass
-from math import ceil, isfinite
+from math import ceil, floor, isfinite
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,9 @@ MOST = 2**16
 
 HELD = 1e-6
 """Share of a cell by which a side of the domain may lie off the place that is asked for [-]."""
+
+RATIOS = 2, 4, 8
+"""Fine cells of a patch along a cell of the grid around it [-]."""
 
 NARROW = 8
 """Most cells across a channel on the coarsest level that may be long [-]."""
@@ -148,6 +151,52 @@ class Grid:
                 )
             origin.append(start - (n * cell - side) * (0.0 if low else 1.0 if high else 0.5))
         return cls(cells=cells, cell=cell, origin=tuple(origin))  # type: ignore[arg-type]
+
+    def patch(
+        self, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] | None = None, *, ratio: int = 4
+    ) -> "Grid":  # fmt: skip
+        """Return a grid of finer cells that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m], nested in this one.
+
+        It fills whole cells of this one, as many as multigrid needs; what it is larger goes evenly to both ends of each
+        axis, as far as this grid reaches.
+
+        Args:
+            x: first and last place along x [m].
+            y: the same along y.
+            z: the same along z, in space.
+            ratio: fine cells along a coarse one [-].
+
+        Raises:
+            InvalidDesign: another number of axes, or a place outside this grid.
+        """
+        pairs = (x, y) if z is None else (x, y, z)
+        if len(pairs) != self.axes:
+            raise InvalidDesign(f"the grid has {self.axes} axes and the patch {len(pairs)}; give a pair for each axis.")
+        if ratio not in RATIOS:
+            raise InvalidDesign(f"the ratio is {show(ratio)}; give {RATIOS[0]}, {RATIOS[1]} or {RATIOS[2]}.")
+        first, counts = [], []
+        for pair, low, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
+            a, b = ((place - low) / self.cell for place in pair)
+            if not -HELD <= a < b <= n + HELD:
+                raise InvalidDesign(
+                    f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from {low:.6g} "
+                    f"to {low + n * self.cell:.6g} m; give rising places in it."
+                )
+            first.append(floor(a + HELD))
+            counts.append(ceil(b - HELD) - first[-1])
+        fine = _fitting(tuple(ratio * max(n, ceil(8 / ratio)) for n in counts))
+        wide = [ceil(n / ratio) for n in fine]
+        if any(a > b for a, b in zip(wide, self.cells, strict=True)):
+            raise InvalidDesign(
+                f"a patch of {_times(tuple(ratio * n for n in wide))} cells, as multigrid needs, is larger than the "
+                f"grid around it; take a smaller patch or a larger grid."
+            )
+        corner = [
+            min(max(a - (n - asked) // 2, 0), most - n)
+            for a, asked, n, most in zip(first, counts, wide, self.cells, strict=True)
+        ]
+        origin = tuple(low + self.cell * k for low, k in zip(self.origin, corner, strict=True))
+        return Grid(cells=tuple(ratio * n for n in wide), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
 
     @property
     def axes(self) -> int:

@@ -33,7 +33,7 @@ def snapshot(sim: Fields) -> xr.Dataset:
     The velocity has the dimension ``component`` as well, and so has the vorticity in space.
     The coordinates are those of the world: those of a grid that follows a body travel.
     """
-    grid, (place, drift) = sim.setup.grid, sim.frame
+    grid, (place, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
     names = tuple("xyz"[: grid.axes])
     cells = names[::-1]
@@ -64,7 +64,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 
 def _vti(sim: Fields) -> bytes:
-    data, grid, frame = snapshot(sim), sim.setup.grid, sim.frame[0]
+    data, grid, frame = snapshot(sim), sim.water.grid, sim.frame[0]
     flat, h = grid.axes == 2, float(grid.cell)
     x, y, z = (*(float(value) for value in np.array(grid.origin) + frame), 0)[:3]
     nx, ny, nz = (*grid.cells, 0)[:3]
@@ -159,7 +159,7 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
             raise UnreadableFile(
                 f"{path} holds no fields of this run, so none are added to it; give another name or delete it."
             ) from error
-    for name in (*"xyz"[: sim.setup.grid.axes], "time"):
+    for name in (*"xyz"[: sim.water.grid.axes], "time"):
         new[name].attrs["units"] = "s" if name == "time" else "m"
     _write(path, bytes(new.to_netcdf(engine="h5netcdf")))
 

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from suchus.errors import InvalidDesign
-from suchus.flow.force import edge_mean, interpolate, padded, steps_of
+from suchus.flow.force import interpolate, padded, steps_of
 from suchus.flow.grid import Grid
 from suchus.flow.water import Fluid
 
@@ -54,23 +54,33 @@ def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) ->
         raise InvalidDesign(
             f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:axes])}) for each point."
         )
-    grid, local = water.grid, where - frame[0]
-    _check(grid, where, local, frame[0])
-    places, steps = padded(local.T, grid), steps_of(water.p)
+    local = where - frame[0]
+    _check(water.layers[-1].grid, where, local, frame[0])
     pressure, velocity = np.empty(len(where)), np.empty((axes, len(where)))
-    interpolate(water.p.reshape(-1), steps, places, pressure)
-    for d, part in enumerate(water.velocity):
-        on_faces = places.copy()
-        on_faces[d] += 0.5
-        interpolate(part.reshape(-1), steps, on_faces, velocity[d])
-    level = float(edge_mean(water.p))
-    return Sample(points=where, velocity=velocity.T + frame[1], pressure=density * (pressure - level))
+    for layer in reversed(water.layers):  # what the finest has at a point counts
+        here = np.flatnonzero(_inside(layer.grid, local))
+        places, steps = padded(local[here].T, layer.grid), steps_of(layer.p)
+        found = np.empty(len(here))
+        interpolate(layer.p.reshape(-1), steps, places, found)
+        pressure[here] = found
+        for d, part in enumerate(layer.velocity):
+            on_faces = places.copy()
+            on_faces[d] += 0.5
+            interpolate(part.reshape(-1), steps, on_faces, found)
+            velocity[d, here] = found
+    return Sample(points=where, velocity=velocity.T + frame[1], pressure=density * (pressure - water.level))
+
+
+def _inside(grid: Grid, local: np.ndarray) -> np.ndarray:
+    """Return which points, shape (point, axis), lie in a grid."""
+    low = np.array(grid.origin)
+    return np.asarray(((local >= low) & (local <= low + grid.size)).all(axis=1))
 
 
 def _check(grid: Grid, where: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
-    low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
-    outside = np.flatnonzero(~((local >= low) & (local <= high)).all(axis=1))
+    outside = np.flatnonzero(~_inside(grid, local))
     if outside.size:
+        low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
         point = ", ".join(f"{part:.4g}" for part in where[outside[0]])
         ends = ", ".join(
             f"{axis} = {first:.4g} to {last:.4g} m"

@@ -15,6 +15,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.markers import Markers
+from suchus.flow.nest import sides_of
 from suchus.flow.pose import speeds
 from suchus.flow.resolution import DOUBTED, REFUSED, cells_across, estimate, needed
 from suchus.flow.scheme import QUICK, Scheme
@@ -41,7 +42,9 @@ class Setup:
     """
 
     grid: Grid
-    """The cells."""
+    """The cells, or of a patch in coarser ones the fine cells around the bodies; see ``Grid.patch``."""
+    around: Grid | None = None
+    """Coarser cells of the whole domain, in which ``grid`` is a patch; None lets ``grid`` be the whole domain."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
     density: float = 1.0
@@ -116,6 +119,9 @@ class Setup:
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
             self.sides.check_travel(self.grid.axes, (x, y, z), self.follow)
+        if self.around is not None:
+            sides_of(self.grid, self.around, self.sides)
+            check_memory(self.around, self.dtype)
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
@@ -154,15 +160,15 @@ class Setup:
             stream = self.stream
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
-    def began(self, component: int) -> np.ndarray | float:
-        """Return the water's velocity along an axis at time 0, on all faces across it, the last axis first [m/s].
+    def began(self, component: int, grid: Grid) -> np.ndarray | float:
+        """Return the water's velocity along an axis at time 0, on all faces of a grid across it [m/s].
 
         Raises:
             InvalidDesign: ``start`` gives something that is no velocity there.
         """
         if self.start is None:
             return self.far(0.0)[component]
-        grid, ends = self.grid, [n + 2 * PAD for n in self.grid.cells]
+        ends = [n + 2 * PAD for n in grid.cells]
         along = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
         points = np.meshgrid(*along[::-1], indexing="ij")[::-1]
         given = self.start(*points)
@@ -193,12 +199,18 @@ class Setup:
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             pose = pose.along(self.grid.axes)
-            window = window_of(body, pose, self.grid, 0.0, self.sides.mirrors(self.grid.axes))
+            window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
             thin[body.name] = thin_share(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
         return thin
+
+    @property
+    def _mirrors(self) -> tuple[bool, ...]:
+        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.mirrors``."""
+        sides = self.sides if self.around is None else sides_of(self.grid, self.around, self.sides)
+        return sides.mirrors(self.grid.axes)
 
     def _check_weight(self, body: FreeBody, cut: tuple[bool, ...]) -> None:
         """Refuse a weight that would draw a body through a mirror that cuts it.

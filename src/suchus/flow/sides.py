@@ -26,6 +26,8 @@ class Side:
     """Whether water can go through the side; what is through it must leave by a side that ``opens``."""
     opens: ClassVar[bool] = False
     """Whether as much water goes through as the others leave over, and the side's place does not count."""
+    ends: ClassVar[bool] = True
+    """Whether the domain ends here; beyond the side of a patch it may go on in coarser cells."""
     travels: ClassVar[tuple[bool, bool]] = False, True
     """Whether a grid that travels may take the side along: across it, and along it."""
 

@@ -27,6 +27,7 @@ from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.markers import Markers
 from suchus.flow.memory import Snapshot, give, take
 from suchus.flow.midline import Midline, Remembered
+from suchus.flow.nest import Nested
 from suchus.flow.pose import Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
@@ -92,9 +93,8 @@ class Simulation(Fields):
         self.thin = setup.check()
         compile_ahead(setup.grid.axes, setup.dtype)
         self.time = 0.0
-        self.water = Fluid(
-            setup.grid, setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
-        )  # fmt: skip
+        more = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
+        self.water = Fluid(setup.grid, *more) if setup.around is None else Nested(setup.grid, setup.around, *more)
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
@@ -104,9 +104,10 @@ class Simulation(Fields):
         self._last = 0.0
         self._frame_velocity_at(0.0)
         stream = self._stream(0.0)
-        for c, component in enumerate(self.water.velocity):
-            component[:] = setup.began(c) - self.frame[1, c]
-        self.water.border.stream = stream
+        for layer in self.water.layers:
+            for c, component in enumerate(layer.velocity):
+                component[:] = setup.began(c, layer.grid) - self.frame[1, c]
+            layer.border.stream = stream
         self._placed = False
         self._taken: _Taken | None = None
         self._loads: list[FlowLoads] = []
@@ -216,7 +217,7 @@ class Simulation(Fields):
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
-            self._speed = max(self._speed, self._reference, self.water.border.fastest(self.time))
+            self._speed = max(self._speed, self._reference, self.water.imposed(self.time))
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
@@ -247,7 +248,7 @@ class Simulation(Fields):
                 for b, m in zip(self._bodies, markers, strict=True)
             ]
         )
-        ahead = max(length(self._stream(time)), self.water.border.fastest(time))
+        ahead = max(length(self._stream(time)), self.water.imposed(time))
         self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
@@ -305,7 +306,7 @@ class Simulation(Fields):
             along += part_columns(body, parts, point, poses[k], self.time, taken.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        self._reference = max(self._reference, length(water.border.stream), body_speed, water.border.fastest(self.time))
+        self._reference = max(self._reference, length(water.border.stream), body_speed, water.imposed(self.time))
         solves = water.solves
         row = np.array(
             [self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values, *along]

@@ -8,7 +8,7 @@ import numpy as np
 from suchus.errors import Doubtful
 from suchus.flow.compiled import PAD
 from suchus.flow.setup import Setup
-from suchus.flow.sides import NAMES, Stream
+from suchus.flow.sides import Stream
 from suchus.flow.water import Fluid
 
 EVERY = 256
@@ -83,8 +83,9 @@ class Watch:
 
     def sides(self, water: Fluid, time: float) -> None:
         """Warn of vortices at a side that is held to the far stream, which they should move."""
+        water = water.layers[-1]
         held = [
-            (edge, name) for edge, name in zip(water.border.edges, NAMES, strict=False)
+            edge for edge in water.border.edges
             if isinstance(edge.side, Stream) and not edge.unbounded and edge.leaves < 0.5
         ]  # fmt: skip
         if not held:
@@ -92,16 +93,17 @@ class Watch:
         inner = (slice(PAD + 1, -PAD),) * water.axes
         spin = vorticity_size(water.velocity)
         largest, fastest = float(spin.max()), max(float(np.abs(part[inner]).max()) for part in water.velocity)
-        for edge, name in held:
+        for edge in held:
             lines = edge.across(spin)
             near = lines[:2] if edge.low else lines[-2:]
             at = float(near.max())
             if at > STRONG * largest and at > FELT * fastest:
                 self._say(
-                    f"side {name}",
-                    f"at t = {time:.4g} s there is a vortex at the {name} side of the domain ({100 * at / largest:.0f} "
-                    f"% of the largest vorticity), which is held to the far stream and turns it back. Enlarge the "
-                    f"domain there, or leave all four sides Stream(), which then move as in an unbounded domain.",
+                    f"side {edge.name}",
+                    f"at t = {time:.4g} s there is a vortex at the {edge.name} side of the domain "
+                    f"({100 * at / largest:.0f} % of the largest vorticity), which is held to the far stream and turns "
+                    f"it back. Enlarge the domain there, or leave all four sides Stream(), which then move as in an "
+                    f"unbounded domain.",
                 )
 
     def _say(self, key: str, what: str | Doubtful) -> None:

@@ -6,7 +6,7 @@ Inside, lengths are in cells: a time step is ``dt / cell``, a viscosity ``viscos
 density [m^2/s^2].
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,6 +66,13 @@ class Taken(NamedTuple):
     """Share of ``blend`` [-]."""
     dt: float
     """How far it goes from ``base`` [cells per (m/s)]."""
+    beyond: Any = None
+    """The same stage of the coarser water around a patch; see ``nest``."""
+
+    @property
+    def solved(self) -> float:
+        """How long the pressure that is solved for acts on ``out`` [cells per (m/s)]."""
+        return (1 - self.keep) * self.dt
 
 
 class Fluid:
@@ -188,6 +195,22 @@ class Fluid:
         """Return the window of an array, with the faces behind its last cells."""
         return tuple(slice(a, b + 1) for a, b in zip(window[::2], window[1::2], strict=True))
 
+    @property
+    def layers(self) -> "list[Fluid]":
+        """This water alone; of a patch also the coarser water around it, which is the last."""
+        return [self]
+
+    @property
+    def level(self) -> float:
+        """Mean pressure along the outermost cells of the domain, from which pressures count [m^2/s^2]."""
+        cells = self.p[(slice(PAD, -PAD),) * self.axes]
+        sides = [np.moveaxis(cells, axis, 0)[end] for axis in range(self.axes) for end in (0, -1)]
+        return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
+
+    def imposed(self, time: float) -> float:
+        """Return the fastest speed that a side of the domain itself imposes at a time, a wall or an inflow [m/s]."""
+        return self.border.fastest(time)
+
     def state(self) -> dict[str, np.ndarray]:
         """Return what changes and cannot be placed anew, by name."""
         return {"velocity": self.velocity, "p": self.p, "offset": np.array(self.offset), **self.border.state()}
@@ -303,42 +326,78 @@ class Fluid:
 
         On return the velocity is divergence-free to ``limits`` outside the bodies and fits the sides.
         """
-        real, h = self.dtype, self.grid.cell
-        step = real(dt / h)
-        force = tuple(real(part * h) for part in push)
-        first = self.border.steps == 0 and self.border.water is not None
+        span, force = self._begin(dt, stream, push, time)
+        first, plan = self.border.steps == 1 and self._learns, self._plan(span)
         start = self.p.copy() if first else self.p
-        self.border.prepare(self.velocity, self.window, float(step), stream, time)
-        self._stages(step, force, limits)
+        self._stages(plan, force, limits)
         if first:  # a body that starts at once moves the far water at once
             for _ in range(MOST_ROUNDS):
-                if self.border.update_induced(self._corrected, self.window) <= limits[1]:
+                if self._settled(plan[-1], limits):
                     break
-                self.p[:] = start
-                self._stages(step, force, limits)
-        self.velocity, self._corrected = self._corrected, self.velocity
+                self._again(start)
+                self._stages(plan, force, limits)
+        self._swap()
 
-    def _stages(self, step: float, push: tuple[float, ...], limits: tuple[float, float]) -> None:
-        """Take the stages of a step, each immersed and its divergence projected out; with Heun's method two.
+    def _begin(
+        self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
+    ) -> tuple[float, tuple[float, ...]]:
+        """Prepare the sides for a step; return its length [cells per (m/s)] and the push on a cell [(m/s)^2]."""
+        real, h = self.dtype, self.grid.cell
+        span = real(dt / h)
+        self.border.prepare(self.velocity, self.window, float(span), stream, time)
+        return span, tuple(real(part * h) for part in push)
+
+    def _plan(self, span: float) -> list[Taken]:
+        """Return the stages of a step of a length [cells per (m/s)]; with Heun's method two."""
+        plan, last, rooms = [], self.velocity, (self._corrected, self._predicted)
+        stages = self.integrator.stages
+        for left, stage in zip(reversed(range(len(stages))), stages, strict=True):
+            out, dt = rooms[left % 2], self.dtype(stage.span) * span
+            plan.append(Taken(out, last, self.velocity, last, self.dtype(stage.keep), dt))
+            last = out
+        return plan
+
+    def _stages(self, plan: list[Taken], push: tuple[float, ...], limits: tuple[float, float]) -> None:
+        """Take the stages of a step, each immersed and its divergence projected out.
 
         On return ``_corrected`` is the velocity at the step's end, ``p`` its pressure, and ``given`` what the immersion
         gave to the water.
         """
         self.solves = []
         self.given[:] = 0
-        last, rooms = self.velocity, (self._corrected, self._predicted)
-        stages, weights = self.integrator.stages, self.integrator.weights
-        for left, stage, weight in zip(reversed(range(len(stages))), stages, weights, strict=True):
-            if last is not self.velocity:
-                self.border.update_induced(last, self.window)
-            keep, dt = self.dtype(stage.keep), self.dtype(stage.span) * step
-            taken = Taken(rooms[left % 2], last, self.velocity, last, keep, dt)
-            self._advance(taken, push)
-            self._project(taken.out, (1 - keep) * dt, limits)
+        for k, (taken, weight) in enumerate(zip(plan, self.integrator.weights, strict=True)):
+            if k > 0:
+                self._hear(plan[k - 1])
+            self._take(taken, push, limits)
             self._collect(taken, weight)
-            last = taken.out
-        if len(stages) == 1:  # else the sides would go on from what they have never seen
-            self.border.update_induced(last, self.window)
+        if len(plan) == 1:  # else the sides would go on from what they have never seen
+            self._hear(plan[0])
+
+    def _take(self, stage: Taken, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+        """Take one stage."""
+        self._advance(stage, push)
+        self._project(stage.out, stage.solved, limits)
+
+    def _hear(self, stage: Taken) -> float:
+        """Let the water beyond the sides know what a stage came to; return by how much it moves them [m/s]."""
+        return self.border.update_induced(stage.out, self.window)
+
+    @property
+    def _learns(self) -> bool:
+        """Whether water beyond the sides, or around a patch, has to come to terms with a first step."""
+        return self.border.water is not None
+
+    def _settled(self, last: Taken, limits: tuple[float, float]) -> bool:
+        """Return whether the first step would be the same again, whose last stage is given."""
+        return self._hear(last) <= limits[1]
+
+    def _again(self, start: np.ndarray) -> None:
+        """Make ready to take the first step once more, from the pressure that it started with."""
+        self.p[:] = start
+
+    def _swap(self) -> None:
+        """Let the velocity be that at the step's end."""
+        self.velocity, self._corrected = self._corrected, self.velocity
 
     def _advance(self, stage: Taken, push: tuple[float, ...]) -> None:
         """On return ``out`` of the stage is what ``Taken`` says, and fits the sides; its divergence is left."""
@@ -436,12 +495,20 @@ class Fluid:
         Raises:
             NotConverged: the pressure solver got stuck.
         """
+        return self._answering(given, None, limit)
+
+    def _answering(self, given: np.ndarray, through: np.ndarray | None, limit: float) -> np.ndarray:
+        """Return ``potential``, also of what flows in through the sides, given as a velocity of the whole grid."""
         r = self._part(multigrid.B)
         r[:] = 0
         net = sum(np.moveaxis(_inflow(part, self.axes - 1 - c), 0, self.axes - 1 - c) for c, part in enumerate(given))
         inside = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
         field = r.reshape(self.p.shape)
         field[inside] = net
+        if through is not None:
+            for c, part in enumerate(through):
+                lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(part, self.axes - 1 - c, 0)
+                lines[:-1] += faces[:-1] - faces[1:]
         for axis in range(self.axes):  # a body that a mirror cuts has cells beyond it
             lines = np.moveaxis(field, axis, 0)
             lines[:PAD], lines[-PAD:] = 0, 0
@@ -489,15 +556,19 @@ class Fluid:
         """
         if self.border.water is None:
             return []
+        sides = self.border.water.inward(self._gained(given), self.window, [])
+        moves = [float(edge.unbounded) for edge in self.border.edges]
+        level = sum(float(s.sum()) for s in sides) / sum(m * s.size for m, s in zip(moves, sides, strict=True))
+        return [s - m * level for m, s in zip(moves, sides, strict=True)]
+
+    def _gained(self, given: np.ndarray) -> np.ndarray:
+        """Return the acceleration of the water in ``potential``'s last answer, shape (axis, ...) [m/s^2]."""
         here, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
         for c, work in enumerate(gained):
             axis = self.axes - 1 - c
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
             work[here] = given[c] + self.passage[c][here] * work[here]
-        sides = self.border.water.inward(gained, self.window, [])
-        moves = [float(edge.unbounded) for edge in self.border.edges]
-        level = sum(float(s.sum()) for s in sides) / sum(m * s.size for m, s in zip(moves, sides, strict=True))
-        return [s - m * level for m, s in zip(moves, sides, strict=True)]
+        return gained
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""

@@ -1,0 +1,385 @@
+"""A patch of fine cells around the bodies, nested in a coarser grid that reaches as far as the domain does.
+
+Both grids lie still to each other and take the same steps. In each stage of a step the fine cells advance first, before
+the pressure; what they come to is put in the place of the coarse velocities inside the patch, and the coarse pressure
+is solved for on the whole domain. Its velocities on the patch's sides, spread over the fine faces so that each coarse
+face passes the same flux, are what the fine pressure is solved with; velocity and pressure of the fine cells then
+replace the coarse ones inside. So neither grid loses water to the other, the pressure of both fits at the patch's
+sides up to what the coarse pressure gets wrong of a stage's change, and of the bodies the coarse cells know only where
+no pressure acts.
+
+Source: the composite projection of Almgren, Bell, Colella, Howell and Welcome 1998, J. Comput. Phys. 142, 1-46, with
+one cycle a stage of McCormick's fast adaptive composite grids (1989).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import ClassVar
+
+import numpy as np
+from scipy import sparse
+
+from suchus.errors import InvalidDesign
+from suchus.flow.body import AnyBody
+from suchus.flow.compiled import PAD
+from suchus.flow.grid import RATIOS, Grid
+from suchus.flow.integrator import Integrator
+from suchus.flow.pose import Pose
+from suchus.flow.scheme import Scheme
+from suchus.flow.sides import NAMES, Side, Sides
+from suchus.flow.water import Fluid, Taken
+
+MARGIN = 4
+"""Coarse cells that a patch keeps from the sides of the domain that it does not share [-]: what is read around it must
+lie inside."""
+
+CLEAR = 2
+"""Coarse cells that the surroundings of a body keep from the patch's sides [-]."""
+
+NOT_HELD = 1e-6
+"""Share of a coarse cell by which a patch may lie off the coarse cells [-]: what rounding leaves."""
+
+TIGHTER = 0.25
+"""Share of the divergence that fine cells may keep which the coarse ones may [-]. What they keep reaches the patch as a
+flux through its sides, other in every step: with all of it the force on a cylinder that oscillates, of 32 cells a
+diameter in cells of twice the size, shakes by 0.35 % of its rms, with a quarter by 0.1 %."""
+
+_SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wall_offset``
+
+
+@dataclass(frozen=True, slots=True)
+class Beyond(Side):
+    """Where a patch ends and the coarser cells go on."""
+
+    ends: ClassVar[bool] = False
+
+
+def place_of(grid: Grid, around: Grid) -> tuple[int, tuple[int, ...]]:
+    """Return how many fine cells lie along a coarse one, and the coarse cell in the patch's low corner, x first.
+
+    Raises:
+        InvalidDesign: the cells of both do not fit, or the patch reaches out of the domain.
+    """
+    if around.axes != grid.axes:
+        raise InvalidDesign(f"the patch has {grid.axes} axes and the grid around it {around.axes}; give both the same.")
+    ratio = round(around.cell / grid.cell)
+    low = [(a - b) / around.cell for a, b in zip(grid.origin, around.origin, strict=True)]
+    fits = abs(around.cell / grid.cell - ratio) < NOT_HELD and all(n % ratio == 0 for n in grid.cells)
+    if ratio not in RATIOS or not fits or any(abs(part - round(part)) > NOT_HELD * ratio for part in low):
+        raise InvalidDesign(
+            f"the patch of {' x '.join(map(str, grid.cells))} cells of {grid.cell:.6g} m from {grid.origin} m on does "
+            f"not fill whole cells, {around.cell:.6g} m wide, of the grid around it, {RATIOS[0]} to {RATIOS[-1]} to "
+            f"one; take around.patch(x, y, ratio=4), in space with z."
+        )
+    corner = tuple(map(round, low))
+    if any(a < 0 or a + n // ratio > m for a, n, m in zip(corner, grid.cells, around.cells, strict=True)):
+        raise InvalidDesign("the patch reaches out of the grid around it; take around.patch(x, y, ratio=4).")
+    return ratio, corner
+
+
+def sides_of(grid: Grid, around: Grid, sides: Sides) -> Sides:
+    """Return the sides of a patch: those of the domain where it reaches them, else where coarser cells go on.
+
+    Raises:
+        InvalidDesign: it comes near a side of the domain and does not reach it, or reaches one that is open.
+    """
+    ratio, corner = place_of(grid, around)
+    found: dict[str, Side] = {}
+    for d, (first, n, m) in enumerate(zip(corner, grid.cells, around.cells, strict=True)):
+        for k, room in enumerate((first, m - first - n // ratio)):
+            name = NAMES[2 * d + k]
+            side: Side = getattr(sides, name)
+            shared = room == 0 and not side.opens and not side.passes
+            if not shared and room < MARGIN:
+                raise InvalidDesign(
+                    f"the patch comes within {room * around.cell:.4g} m of the {name} side of the domain; keep "
+                    f"{MARGIN * around.cell:.4g} m away, {MARGIN} coarse cells, or end on it where it is a wall, a "
+                    f"mirror or periodic."
+                )
+            found[name] = side if shared else Beyond()
+    return replace(sides, **found)
+
+
+def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return from which coarse places values of a patch are taken along one axis, and by which weights.
+
+    On faces along their own axis a cubic goes through four coarse values; else a parabola over three, whose mean over
+    the fine values in a coarse cell is the coarse value.
+
+    Args:
+        index: of the fine values, padded [-].
+        ratio: fine cells along a coarse one [-].
+        on_faces: whether the values lie on faces across this axis.
+
+    Returns:
+        Coarse indices, counted from the patch's first cell, and weights, each of shape (value, 4 or 3).
+    """
+    cell, part = np.divmod(index - PAD, ratio)
+    if on_faces:
+        t = part / ratio
+        weights = [
+            -t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+            (t + 1) * t * (t - 1) / 6,
+        ]  # fmt: skip
+    else:
+        middles = (np.arange(ratio) + 0.5) / ratio - 0.5
+        at = middles[part]
+        bend = at**2 - np.mean(middles**2)
+        weights = [(bend - at) / 2, 1 - bend, (bend + at) / 2]
+    return cell[:, None] + np.arange(-1, len(weights) - 1), np.stack(weights, axis=1)
+
+
+class Rim:
+    """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
+
+    def __init__(self, patch: Grid, around: Grid, sides: Sides, dtype: type) -> None:
+        ratio, corner = place_of(patch, around)
+        axes = patch.axes
+        shape, wide = (tuple(n + 2 * PAD for n in reversed(grid.cells)) for grid in (patch, around))
+        goes_on = [isinstance(getattr(sides, name), Beyond) for name in NAMES[: 2 * axes]]
+        self._places, self._reads = [], []
+        for c in range(axes):
+            outside, beyond = np.zeros(shape, bool), np.zeros(shape, bool)
+            for d, n in enumerate(patch.cells):
+                lines, no = np.moveaxis(outside, axes - 1 - d, 0), np.moveaxis(beyond, axes - 1 - d, 0)
+                low, high = slice(0, PAD + (c == d)), slice(PAD + n, None)
+                for end, on in zip((low, high), goes_on[2 * d :], strict=False):
+                    if on:
+                        lines[end] = True
+                    else:
+                        no[end] = True
+            places = np.flatnonzero(outside & ~beyond)
+            count, reads, weights = len(places), np.zeros((len(places), 1), np.int64), np.ones((len(places), 1))
+            for axis, index in enumerate(np.unravel_index(places, shape)):
+                d = axes - 1 - axis
+                where, share = _weights(index, ratio, on_faces=c == d)
+                where = where + corner[d] + PAD
+                reads = (reads[:, :, None] * wide[axis] + where[:, None, :]).reshape(count, -1)
+                weights = (weights[:, :, None] * share[:, None, :]).reshape(count, -1)
+            rows = np.repeat(np.arange(count), reads.shape[1])
+            matrix = sparse.csr_matrix((weights.ravel(), (rows, reads.ravel())), shape=(count, int(np.prod(wide))))
+            matrix.eliminate_zeros()
+            self._places.append(places)
+            self._reads.append(matrix.astype(dtype))
+
+    def read(self, coarse: np.ndarray) -> list[np.ndarray]:
+        """Return what the velocity around the patch is, component by component, by that on the coarse faces."""
+        return [read @ part.reshape(-1) for read, part in zip(self._reads, coarse, strict=True)]
+
+    def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
+        """Write what was read to the padded velocity of the patch."""
+        for part, places, found in zip(velocity, self._places, values, strict=True):
+            part.reshape(-1)[places] = found
+
+
+class Nested(Fluid):
+    """The water on a patch of fine cells, and around it on coarser ones; what it shows as a ``Fluid`` is the patch.
+
+    Attributes:
+        coarse: the water on the whole domain, which inside the patch holds means over the fine cells.
+    """
+
+    def __init__(
+        self, grid: Grid, around: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme,
+        integrator: Integrator,
+    ) -> None:  # fmt: skip
+        own = sides_of(grid, around, sides)
+        super().__init__(grid, own, viscosity, dtype, scheme, integrator)
+        self.coarse = Fluid(around, sides, viscosity, dtype, scheme, integrator)
+        self.ratio, corner = place_of(grid, around)
+        self._rim = Rim(grid, around, own, dtype)
+        self._values: list[np.ndarray] = []
+        self._first: list[np.ndarray] = []
+        self._counts = [n // self.ratio for n in grid.cells]
+        self._cells = tuple(
+            slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], self._counts[::-1], strict=True)
+        )  # fmt: skip
+        self._faces = []
+        for c in range(grid.axes):
+            here = list(self._cells)
+            at = grid.axes - 1 - c
+            here[at] = slice(here[at].start + 1, here[at].stop)
+            self._faces.append(tuple(here))
+        self._push: tuple[float, ...] = ()
+        self._span = 0.0
+        self._given: np.ndarray = np.zeros(0)
+        self.border.beyond = self._write_rim
+
+    @property
+    def layers(self) -> list[Fluid]:
+        """The patch, and the water on the whole domain."""
+        return [self, self.coarse]
+
+    @property
+    def level(self) -> float:
+        """Mean pressure along the sides of the domain [m^2/s^2]."""
+        return self.coarse.level
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return what changes of both; see ``Fluid``."""
+        return {**super().state(), **{f"coarse.{name}": value for name, value in self.coarse.state().items()}}
+
+    def resume(self, state: dict[str, np.ndarray]) -> None:
+        """Set what changes of both."""
+        super().resume(state)
+        ahead = "coarse."
+        self.coarse.resume({name.removeprefix(ahead): state[name] for name in state if name.startswith(ahead)})
+
+    def imposed(self, time: float) -> float:
+        """Return the fastest speed that a side of the domain imposes; see ``Fluid``."""
+        return self.coarse.imposed(time)
+
+    def fastest(self) -> float:
+        """Return the largest sum of the sizes of the components in a cell, of a coarse one in fine cells [m/s]."""
+        return max(super().fastest(), self.coarse.fastest() / self.ratio)
+
+    def place(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
+        """Write the bodies into the equations of both grids; see ``Fluid``.
+
+        Raises:
+            InvalidDesign: a body comes too near to the patch's sides.
+        """
+        super().place(bodies, poses, time)
+        self._refuse_near(bodies, time)
+        self.coarse.offset = self.offset * self.ratio**_SHIFT
+        self.coarse.place(bodies, poses, time)
+
+    def _refuse_near(self, bodies: list[AnyBody], time: float) -> None:
+        """Refuse bodies that come too near to where the coarser cells begin."""
+        if self.window[1] <= self.window[0]:
+            return
+        apart, sides = CLEAR * self.ratio, self.sides.around(self.axes)
+        for d, n in enumerate(self.grid.cells):
+            first, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
+            for k, room in enumerate((first - PAD, n + PAD - end)):
+                if isinstance(sides[2 * d + k], Beyond) and room < apart:
+                    names = ", ".join(body.name for body in bodies)
+                    raise InvalidDesign(
+                        f"at t = {time:.4g} s the cells around {names} come within {max(room, 0)} fine cells of the "
+                        f"{NAMES[2 * d + k]} side of the patch, and {apart} are needed, {CLEAR} coarse ones; give a "
+                        f"patch that is {(apart - room) * self.grid.cell:.3g} m larger there, or let the grid follow "
+                        f"the body."
+                    )
+
+    def _write_rim(self, velocity: np.ndarray) -> None:
+        self._rim.write(velocity, self._values)
+
+    def _give(self, fine: np.ndarray, coarse: np.ndarray) -> None:
+        """Put the mean velocity through the fine faces of each coarse face inside the patch in its place."""
+        r = self.ratio
+        for c, (part, whole) in enumerate(zip(fine, coarse, strict=True)):
+            starts = [(r,) if d == c else tuple(range(r)) for d in reversed(range(self.axes))]
+            sums = sum(
+                part[tuple(slice(PAD + at, PAD + r * n, r) for at, n in zip(first, self._counts[::-1], strict=True))]
+                for first in product(*starts)
+            )
+            whole[self._faces[c]] = sums * self.dtype(r ** (1 - self.axes))
+
+    def _give_pressure(self) -> None:
+        """Put the mean pressure of the fine cells in the place of the coarse one, and make both count from one level.
+
+        The level is that at which the outermost coarse cells of the patch have the mean that they had.
+        """
+        r, cells = self.ratio, self._counts[::-1]
+        sums = sum(
+            self.p[tuple(slice(PAD + at, PAD + r * n, r) for at, n in zip(first, cells, strict=True))]
+            for first in product(range(r), repeat=self.axes)
+        )
+        mean = sums * self.dtype(r**-self.axes)
+        inside = self.coarse.p[self._cells]
+        rise = inside - mean
+        core = rise[(slice(1, -1),) * self.axes]
+        level = self.dtype(
+            (rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size)
+        )  # fmt: skip
+        self.p += level
+        inside[:] = mean + level
+        self.coarse._seal(self.coarse.p)
+
+    # --- one step ----------------------------------------------------------------------------------------------
+
+    def _begin(
+        self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
+    ) -> tuple[float, tuple[float, ...]]:
+        self._span, self._push = self.coarse._begin(dt, stream, push, time)
+        if not self._values:  # of a stage before its pressure is known they only have to be there
+            self._values = self._rim.read(self.coarse.velocity)
+        return super()._begin(dt, stream, push, time)
+
+    def _plan(self, span: float) -> list[Taken]:
+        both = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
+        return [stage._replace(beyond=beyond) for stage, beyond in both]
+
+    def _take(self, stage: Taken, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+        coarse, beyond = self.coarse, stage.beyond
+        self._advance(stage, push)
+        coarse._advance(beyond, self._push)
+        self._give(stage.out, beyond.out)
+        coarse._project(beyond.out, beyond.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
+        self._values = self._rim.read(beyond.out)
+        self.border.fill(stage.out)
+        self._project(stage.out, stage.solved, limits)
+        self._give(stage.out, beyond.out)
+        self._give_pressure()
+
+    def _hear(self, stage: Taken) -> float:
+        return self.coarse._hear(stage.beyond)
+
+    @property
+    def _learns(self) -> bool:
+        return True
+
+    def _settled(self, last: Taken, limits: tuple[float, float]) -> bool:
+        far, before, self._first = self._hear(last), self._first, self._values
+        if not before:
+            return False
+        change = max(float(np.abs(a - b).max()) for a, b in zip(before, self._first, strict=True))
+        return max(far, change) <= limits[1]
+
+    def _again(self, start: np.ndarray) -> None:
+        """Go on from the pressure that was found: both grids come to agree on it round by round."""
+
+    def _swap(self) -> None:
+        super()._swap()
+        self.coarse._swap()
+
+    # --- what bodies that are accelerated meet -----------------------------------------------------------------
+
+    def _coarsened(self, given: np.ndarray) -> np.ndarray:
+        """Return what is given on the faces of the fine window on those of the coarse one."""
+        fine, coarse = np.zeros(self.velocity.shape), np.zeros(self.coarse.velocity.shape)
+        fine[:, *self.here] = given
+        self._give(fine, coarse)
+        return coarse[:, *self.coarse.here]
+
+    def potential(self, given: np.ndarray, limit: float) -> np.ndarray:
+        """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
+        self._given = self._coarsened(given)
+        self.coarse.potential(self._given, TIGHTER * limit)
+        through = np.zeros(self.velocity.shape)
+        self._rim.write(through, self._rim.read(self.coarse._gained(self._given)))
+        return self._answering(given, through, limit)
+
+    def press(self, given: np.ndarray, dt: float, limit: float) -> np.ndarray:
+        """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``."""
+        before = self.p.copy()
+        self.coarse.press(self._coarsened(given), dt, TIGHTER * limit)
+        self._values = self._rim.read(self.coarse.velocity)
+        self.velocity[:, *self.here] += given.astype(self.dtype)
+        self.border.fill(self.velocity)
+        span = self.dtype(dt / self.grid.cell)
+        self._project(self.velocity, span, (limit, 10 * limit))
+        self._give(self.velocity, self.coarse.velocity)
+        self._give_pressure()
+        return (self.p - before) * span
+
+    def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
+        """Return the values of ``potential``'s last answer along the sides of the domain; see ``Fluid``."""
+        del x
+        return self.coarse.along_sides(self.coarse._x.reshape(self.coarse.p.shape))
+
+    def answer(self, given: np.ndarray) -> list[np.ndarray]:
+        """Return the acceleration into the domain on each side that ``potential``'s last answer induces."""
+        del given
+        return self.coarse.answer(self._given)
