@@ -22,6 +22,7 @@ KEPT = {
     "tests/docs/test_verdicts.py::test_what_runs_quickly_still_says_the_same": "the verdicts themselves",
     "tests/flow/test_forces.py::test_the_torque_of_a_turning_cylinder_is_the_exact_one": "an exact answer of the flow",
     "tests/flow/test_free.py::test_a_spring_mounted_cylinder_rings_as_stokes_says": "an exact answer of a free body",
+    "tests/flow/test_nest.py::test_its_force_is_that_of_fine_cells_everywhere": "a patch of fine cells",
     "tests/flow/test_solver.py::test_channel_flow_keeps_its_parabola": "an exact answer of the flow",
     "tests/flow/test_solver.py::test_taylor_green_decays_at_second_order": "the order of the solver",
     "tests/flow/test_surface_in_space.py::test_three_accounts_of_the_force_on_a_sphere_agree": "the flow in space",

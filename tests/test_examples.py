@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
 BENCHES = sorted((ROOT / "bench").glob("bench_*.py"))
-LONG = ("02", "03", "05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19")
+LONG = ("02", "03", "05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19", "21")
 """Flows, searches, studies and replays, and walks of 3 s and more of processor time in a process of their own."""
 
 

@@ -240,7 +240,7 @@ def test_a_motion_that_outgrows_the_grid_is_refused_when_it_does():
                     bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Pose(position=(1.8, 0.0))),)
                 )
             ),
-            "outside the domain",
+            "outside the grid",
         ),
         (lambda: flow.Simulation(still_setup(stream=(1.0, 0.0), viscosity=1e-5)), "take cells of at most"),
     ],

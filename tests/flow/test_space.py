@@ -439,7 +439,7 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
         (lambda: ball().probe((0.0, 0.0)), r"the shape \(2,\); give one row \(x, y, z\)"),
         (lambda: ball().probe((0.0, 0.0, 9.0)), r"the point \(0, 0, 9\) m is outside .*z = "),
         (lambda: ball().vorticity, "take vorticity_at_centres"),
-        (lambda: ball(bodies=moved(position=(0.0, 0.0, 1.0))), r"z = 0.5 to 1.5 m, outside the domain.*enlarge"),
+        (lambda: ball(bodies=moved(position=(0.0, 0.0, 1.0))), r"z = 0.5 to 1.5 m, outside the grid.*enlarge"),
         (lambda: ball(grid=HALF, sides=CUT, bodies=moved(position=(0.0, 0.0, 0.1))), "middle of body is at z = 0.1 m"),
         (lambda: ball(grid=HALF, sides=CUT, bodies=moved(velocity=(0.0, 0.0, 0.1))), "moves with 0.1 m/s along z"),
         (

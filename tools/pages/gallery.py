@@ -16,6 +16,7 @@ _SHARED = {
     "14_heaving_foil": ("flow_foil.png",),
     "16_falling_ellipse": ("flow_falling.png",),
     "18_flutter": ("flow_flutter.png",),
+    "21_patch_of_fine_cells": ("flow_patch.png",),
     "09_replay": ("replay.png",),
     "10_optimise": ("optimised_crawl.png",),
 }

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import Polygon, Rectangle
 
 from suchus.errors import InvalidDesign, UnknownName
 from suchus.figures.data import carry
@@ -19,6 +19,7 @@ from suchus.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth, span
 from suchus.figures.film import film
 from suchus.figures.style import COLOURS, WIDTH, panels, styled
 from suchus.flow import ALONG_THE_SKIN, Record, Simulation, Surface
+from suchus.flow.fields import Fields
 from suchus.flow.pose import speeds
 from suchus.flow.rake import due_after
 from suchus.writing import write
@@ -38,33 +39,47 @@ def _panel(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 class _Picture:
-    """A field of a plane flow and the bodies in it, which can be moved on in time."""
+    """A field of a plane flow and the bodies in it, which can be moved on in time; a patch lies on what is around."""
 
-    def __init__(self, sim: Simulation, values: np.ndarray, limit: float, label: str, cmap: str, shift: float) -> None:
-        self._cell, wide, high = sim.setup.grid.cell, *sim.setup.grid.size
-        self._origin = np.array(sim.setup.grid.origin) + shift * self._cell
+    def __init__(
+        self, sim: Simulation, fields: list[np.ndarray], limit: float, label: str, cmap: str, shift: float
+    ) -> None:
+        self._images = []
+        wide, high = sim.domain.water.grid.size
         with styled(axes__grid=False):
             self.figure, self._axes = _panel(WIDTH, 1.2 + 0.76 * WIDTH * high / wide)
-            (x0, y0), (rows, columns) = self._origin, values.shape
-            self._image = self._axes.imshow(
-                smooth(values, _PIXELS), origin="lower", cmap=cmap, vmin=-limit, vmax=limit,
-                extent=(x0, x0 + columns * self._cell, y0, y0 + rows * self._cell),
-            )  # fmt: skip
+            for view, values in zip(_views(sim), fields, strict=True):
+                grid = view.water.grid
+                (x0, y0), (rows, columns) = np.array(grid.origin) + shift * grid.cell, values.shape
+                image = self._axes.imshow(
+                    smooth(values, _PIXELS), origin="lower", cmap=cmap, vmin=-limit, vmax=limit,
+                    extent=(x0, x0 + columns * grid.cell, y0, y0 + rows * grid.cell),
+                )  # fmt: skip
+                self._images.append(image)
+                if view is not sim.domain:
+                    self._axes.add_patch(
+                        Rectangle(
+                            (grid.origin[0], grid.origin[1]), *grid.size, fill=False, edgecolor=EDGE, linewidth=0.6
+                        )
+                    )
+            x0, y0 = sim.domain.water.grid.origin
+            self._axes.set(xlim=(x0, x0 + wide), ylim=(y0, y0 + high))
             self._bodies = [
                 Polygon(edge, facecolor=SKIN, edgecolor=EDGE, label=body.name)
                 for body, edge in zip(sim.setup.bodies, _edges(sim), strict=True)
             ]
             for outline in self._bodies:
                 self._axes.add_patch(outline)
-            carry(self._image, values)
+            carry(self._images[-1], fields[-1])
             self._axes.set_xlabel("x [m]")
             self._axes.set_ylabel("y [m]")
             self._axes.set_title(f"t = {sim.time:.3g} s", loc="left")
-            self.figure.colorbar(self._image, ax=self._axes, label=label, shrink=0.85, extend="both")
+            self.figure.colorbar(self._images[-1], ax=self._axes, label=label, shrink=0.85, extend="both")
 
-    def move_on(self, time: float, values: np.ndarray, edges: list[np.ndarray]) -> None:
+    def move_on(self, time: float, fields: list[np.ndarray], edges: list[np.ndarray]) -> None:
         """Show another instant."""
-        self._image.set_data(smooth(values, _PIXELS))
+        for image, values in zip(self._images, fields, strict=True):
+            image.set_data(smooth(values, _PIXELS))
         self._axes.set_title(f"t = {time:.3g} s", loc="left")
         for body, edge in zip(self._bodies, edges, strict=True):
             body.set_xy(edge)
@@ -81,21 +96,28 @@ _FIELDS: Mapping[FieldName, tuple[str, str, float]] = MappingProxyType(
 )
 
 
-def _of(sim: Simulation, what: FieldName) -> np.ndarray:
-    values: np.ndarray = sim.vorticity if what == "vorticity" else sim.pressure
-    return values
+def _views(sim: Simulation) -> list[Fields]:
+    """Return what is drawn one upon the other: the whole domain, and on it a patch if there is one."""
+    return [sim] if sim.domain is sim else [sim.domain, sim]
+
+
+def _of(sim: Simulation, what: FieldName) -> list[np.ndarray]:
+    return [view.vorticity if what == "vorticity" else view.pressure for view in _views(sim)]
 
 
 def vorticity(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the vorticity, red counter-clockwise; ``limit`` is the end of the scale [1/s]."""
-    values = sim.vorticity
-    return _Picture(sim, values, span(values, 0.99) if limit is None else limit, *_FIELDS["vorticity"]).figure
+    return _shown(sim, "vorticity", limit)
 
 
 def pressure(sim: Simulation, *, limit: float | None = None) -> Figure:
     """Return a picture of the pressure; ``limit`` is the end of the scale [Pa]."""
-    values = sim.pressure
-    return _Picture(sim, values, span(values, 0.99) if limit is None else limit, *_FIELDS["pressure"]).figure
+    return _shown(sim, "pressure", limit)
+
+
+def _shown(sim: Simulation, what: FieldName, limit: float | None) -> Figure:
+    fields = _of(sim, what)
+    return _Picture(sim, fields, span(fields[-1], 0.99) if limit is None else limit, *_FIELDS[what]).figure
 
 
 @dataclass(slots=True)
@@ -113,7 +135,7 @@ class FieldFilm:
     """End of the scale [1/s, Pa]; None takes what 99 % of the values stay below."""
     speed: float = 1.0
     """Seconds of the flow in a second of the film [-]."""
-    _frames: list[tuple[float, np.ndarray, list[np.ndarray]]] = field(default_factory=list)
+    _frames: list[tuple[float, list[np.ndarray], list[np.ndarray]]] = field(default_factory=list)
     _due: float = 0.0
     _sim: Simulation | None = None
 
@@ -134,7 +156,8 @@ class FieldFilm:
             raise InvalidDesign("this film is of plane flows, and this one has three axes; see suchus view swim.")
         if sim.time >= self._due:
             self._due, self._sim = due_after(sim.time, self.every), sim
-            self._frames.append((sim.time, _of(sim, self.what).astype(np.float32), _edges(sim)))
+            fields = [values.astype(np.float32) for values in _of(sim, self.what)]
+            self._frames.append((sim.time, fields, _edges(sim)))
 
     def save(self, path: Path | str) -> Path:
         """Write the film as a GIF, which every browser plays, and return its place.
@@ -148,9 +171,7 @@ class FieldFilm:
             raise InvalidDesign(f"a film is a GIF; give {where.name!r} the ending .gif.")
         if self._sim is None:
             raise InvalidDesign("the film holds no frame; give it to a run first: sim.run(until, watch=film).")
-        limit = (
-            self.limit if self.limit is not None else span(np.stack([values for _, values, _ in self._frames]), 0.99)
-        )
+        limit = self.limit if self.limit is not None else span(np.stack([f[-1] for _, f, _ in self._frames]), 0.99)
         shown = _Picture(self._sim, self._frames[0][1], limit, *_FIELDS[self.what])
         shown.figure.set_dpi(_FILM_DPI)
         times = [time for time, _, _ in self._frames]

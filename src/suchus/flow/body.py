@@ -83,8 +83,8 @@ def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: f
         for axis, low, size in zip("xyz", grid.origin, grid.size, strict=False)
     )
     return InvalidDesign(
-        f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the domain {domain} "
-        f"(less {(REACH + 2) * grid.cell:.2g} m on each side); enlarge the grid, or let the frame follow the body."
+        f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the grid {domain} "
+        f"(less {(REACH + 2) * grid.cell:.2g} m on each side); enlarge the grid, or let it follow the body."
     )
 
 

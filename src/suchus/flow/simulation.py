@@ -466,7 +466,7 @@ class Simulation(Fields):
         if path is not None and path.exists():
             store.load(self, path)
             self._refuse_past(until, f"the run of the checkpoint {path}", "another file")
-        cells = prod(self.setup.grid.cells)
+        cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
         watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
         due = due_after(self.time, every)
         saver = store.Saver(path, checkpoint_every)
