@@ -1,5 +1,6 @@
 """What a run could go on from is there until its result is."""
 
+import os
 import sys
 from dataclasses import replace
 
@@ -32,3 +33,12 @@ def test_nothing_is_forgotten_before_its_successor_is_on_disk(tmp_path, monkeypa
     perform(wave, "wave", tmp_path / "out", silent, "again")
     assert not kept.exists()
     assert others.is_file()
+
+
+@pytest.mark.parametrize("name", ["swimming", "swim_free", "swim_3d", "swim_sweep"])
+def test_a_place_that_keeps_nothing_is_refused_before_anything_swims(name, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    told = []
+    with pytest.raises(Unwritable, match=r"pipe cannot be written: not a directory\."):
+        replace(EXPERIMENTS[name].quick(), keep=str(tmp_path / "pipe")).simulate(lambda *said: told.append(said))
+    assert not told

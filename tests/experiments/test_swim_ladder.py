@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
+from suchus.errors import IncompatibleRecord, InvalidDesign, OutsideLimits, UnreadableFile, Unwritable
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swimming import ladder
 from suchus.experiments.swimming.ladder import FEWEST, MOTIONS, Settled, climbed, kept_grids, measures, motions, settle
@@ -179,6 +179,17 @@ def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
     assert 0.0 < found["wave_envelope_tip_sections"] < 0.3
     verdict = judge(RULES[-1], found, unable=unable)
     assert [voice.why for voice in verdict.voices if voice.rung.name == "space"] == [unable["space"]]
+
+
+@pytest.mark.parametrize("error", [Unwritable("no space left."), UnreadableFile("a bit is flipped.")])
+def test_a_rung_whose_kept_swims_are_lost_is_no_rung_that_cannot_run(error):
+    def lost():
+        raise error
+
+    unable = {}
+    with pytest.raises(type(error), match=str(error)):
+        ladder._attempt("space", unable, lost)
+    assert not unable
 
 
 def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monkeypatch):

@@ -14,6 +14,7 @@ from suchus.fingerprint import fingerprint
 from suchus.land.readings import with_equal_variables
 from suchus.land.run import Run
 from suchus.progress import Progress, portion, silent
+from suchus.water.samples import check_kept
 
 
 def simulate(
@@ -53,6 +54,7 @@ def simulate(
     solved = [i for i, run in enumerate(runs) if run.solved is not None]
     if not solved:
         return land.simulate(runs, duration=duration, timestep=timestep, every=every, progress=progress)
+    check_kept("" if keep is None else str(keep))
     swims = [Swim(runs[i], duration, timestep=timestep) for i in solved]  # refused before any is computed
     periods = {swim.stepper.period for swim in swims}
     if len(periods) > 1:

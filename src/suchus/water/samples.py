@@ -20,7 +20,7 @@ from suchus.flow.progress import Bar
 from suchus.progress import Progress
 from suchus.reading import check_file
 from suchus.record.store import holds, sealed
-from suchus.writing import keep
+from suchus.writing import check_writable, keep
 
 _KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
 
@@ -108,6 +108,16 @@ def _short(about: str) -> str:
 def kept_in(folder: str, name: str) -> Path | None:
     """Return the file in which an experiment keeps an unfinished swim in a folder; None if that is empty."""
     return Path(folder) / f"{name.replace(' ', '_')}{_KEPT}" if folder else None
+
+
+def check_kept(folder: str) -> None:
+    """Refuse a folder for unfinished swims before any is begun, if they could not be kept there.
+
+    Raises:
+        Unwritable: it is no folder, or cannot be written to.
+    """
+    if folder:
+        check_writable(Path(folder))
 
 
 def all_kept(folder: str, names: Iterable[str]) -> tuple[Path, ...]:

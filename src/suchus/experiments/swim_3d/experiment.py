@@ -34,7 +34,7 @@ from suchus.water import (
     swim,
 )
 from suchus.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
-from suchus.water.samples import all_kept, kept_in
+from suchus.water.samples import all_kept, check_kept, kept_in
 from suchus.water.setting import BESIDE
 
 MOST_REYNOLDS = 2e4
@@ -165,6 +165,7 @@ class Swim3d(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        check_kept(self.keep)
         ours, printed = (self._motion(sign) for sign in (-1, 1))
         bent = midlines(self.robot, ours, self.compared_cells + 1) if self.taken else []
         runs = self._runs(ours, printed, bent)

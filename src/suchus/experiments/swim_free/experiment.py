@@ -36,7 +36,7 @@ from suchus.motion import LIMBS_BACK, Gait, suits
 from suchus.record import WATER
 from suchus.robots import ROBOTS
 from suchus.water import Outline, swim, swim_of
-from suchus.water.samples import all_kept
+from suchus.water.samples import all_kept, check_kept
 from suchus.water.sections import likely
 from suchus.water.slender import cruise, cycle, reactive
 
@@ -164,6 +164,7 @@ class SwimFree(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
+        check_kept(self.keep)
         check_floats(self.robot, Lake(level=self.level))
         motion = swim_of(
             self.robot, frequency=self.frequency, reading=self.reading, limbs=(LIMBS_BACK[0], self.limb_pitch)

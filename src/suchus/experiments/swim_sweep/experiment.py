@@ -22,6 +22,7 @@ from suchus.motion import Gait, movement
 from suchus.robots import ROBOTS
 from suchus.water import MODELS, Swum, fit, greatest, printed_wave, survey
 from suchus.water.resolved import SwimSetting, resolved_swim
+from suchus.water.samples import check_kept
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),
@@ -127,6 +128,7 @@ class SwimSweep(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        check_kept(self.keep)
         fitted = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(fitted[1.0].bent(a), period=1 / f))
         progress("slender-body models", 0.15)

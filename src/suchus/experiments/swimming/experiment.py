@@ -45,7 +45,7 @@ from suchus.water import (
     swim,
 )
 from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
-from suchus.water.samples import all_kept, kept_in
+from suchus.water.samples import all_kept, check_kept, kept_in
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
@@ -208,7 +208,12 @@ class PlaneSwims(Experiment):
         return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if held else FREE)
 
     def climb(self) -> Climb:
-        """Return what is asked of every rung."""
+        """Return what is asked of every rung.
+
+        Raises:
+            Unwritable: unfinished swims cannot be kept where they are to be.
+        """
+        check_kept(self.keep)
         return Climb(
             robot=self.robot, fitted=self._fit(-1), viscosity=self.frequency * self.robot.length**2 / self.reynolds,
             cycles=self.cycles, cells=self.cells, space_cells=self.space_cells, keep=self.keep,

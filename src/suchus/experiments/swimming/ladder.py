@@ -14,7 +14,7 @@ import xarray as xr
 
 from suchus import rotation
 from suchus.design import Robot
-from suchus.errors import IncompatibleRecord, SuchusError
+from suchus.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable
 from suchus.experiment import Measure
 from suchus.experiments._taken import bare, swum_in_sections
 from suchus.experiments.swimming.rules import LADDER, RULES, SEEN, SETTLED
@@ -164,9 +164,16 @@ def _needed(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[st
 
 
 def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
-    """Return what a rung did, or None, and then the reason is kept by its name."""
+    """Return what a rung did, or None, and then the reason is kept by its name.
+
+    Raises:
+        Unwritable: it could not be kept, which says nothing of the rung.
+        UnreadableFile: what was kept of it is damaged, or is of another swim.
+    """
     try:
         return run()
+    except (Unwritable, UnreadableFile):
+        raise
     except SuchusError as refused:
         unable[name] = f"Not run: {' '.join(str(refused).split())}"
         return None
