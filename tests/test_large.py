@@ -11,11 +11,13 @@ import pytest
 from suchus import large
 from suchus.cli import main
 from suchus.cli.entry import LEAST
-from suchus.errors import InvalidDesign
+from suchus.errors import InvalidDesign, NoMemory
 from suchus.gaits import GAITS
+from suchus.jobs import processes
 from suchus.land import Run, simulate
 from suchus.land.extent import processor_seconds, record_bytes
 from suchus.robots import ROBOTS
+from suchus.study import read_study, run_chunk
 
 CRAWL = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])
 STUDY = """
@@ -151,6 +153,56 @@ def test_memory_that_runs_out_is_a_sentence(monkeypatch, capsys):
     monkeypatch.setattr(sys.modules["suchus.cli.entry"], "_dispatch", hungry)
     assert main(["list"]) == 2
     assert "the memory does not suffice" in capsys.readouterr().err
+
+
+def test_memory_that_mujoco_does_not_get_is_told_as_such(monkeypatch):
+    said = ["Could not allocate memory"]
+
+    def full(*_, **__):
+        raise ValueError(said[0])
+
+    monkeypatch.setattr("suchus.land.batch.Batch", full)
+    with pytest.raises(NoMemory, match="the memory does not suffice"):
+        simulate([CRAWL], duration=0.02)
+    said[0] = "nsim must be positive"
+    with pytest.raises(ValueError, match="nsim"):
+        simulate([CRAWL], duration=0.02)
+
+
+def test_a_batch_that_does_not_fit_is_halved_and_a_run_that_does_not_is_no_result(tmp_path, monkeypatch):
+    (tmp_path / "s.toml").write_text(STUDY.format(duration=1.1, samples=4))
+    study, most, walked = read_study(tmp_path / "s.toml"), [4], simulate
+
+    def narrow(runs, **options):
+        if len(runs) > most[0]:
+            raise NoMemory
+        return walked(runs, **options)
+
+    monkeypatch.setattr("suchus.study.chunk.simulate", narrow)
+    whole = run_chunk(study, 0)
+    most[0] = 1
+    assert run_chunk(study, 0).identical(whole)
+    most[0] = 0
+    with pytest.raises(NoMemory):
+        run_chunk(study, 0)
+
+
+def test_memory_that_runs_out_in_another_process_is_the_same_sentence(monkeypatch):
+    class Pipe(list):
+        send = list.append
+
+        def recv(self):
+            if self:
+                raise EOFError
+            return "a piece"
+
+    def hungry(item, tell):
+        raise MemoryError
+
+    monkeypatch.setenv("SUCHUS_THREADS", "1")
+    said = Pipe()
+    processes._work(said, hungry, 1)
+    assert [type(one.error) for one in said] == [NoMemory]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="address space is limited on Linux")

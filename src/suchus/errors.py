@@ -44,6 +44,15 @@ class Unwritable(SuchusError, OSError):
     """A place that nothing can be written to."""
 
 
+class NoMemory(SuchusError, MemoryError):
+    """The memory does not suffice."""
+
+    def __init__(
+        self, message: str = "the memory does not suffice for this; ask for less at a time, or give more."
+    ) -> None:
+        super().__init__(message)
+
+
 class IncompatibleRecord(SuchusError, ValueError):
     """A record that lacks what is asked of it, or was written by another version."""
 

@@ -11,7 +11,16 @@ from shutil import get_terminal_size
 from unicodedata import category
 
 from suchus import large
-from suchus.errors import BusFailure, Diverged, NotConverged, SuchusError, UnknownName, Unwritable, plain_warnings
+from suchus.errors import (
+    BusFailure,
+    Diverged,
+    NoMemory,
+    NotConverged,
+    SuchusError,
+    UnknownName,
+    Unwritable,
+    plain_warnings,
+)
 from suchus.sources import within
 from suchus.stopping import Stopped, stopping
 from suchus.writing import is_text, replacing
@@ -194,7 +203,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except SuchusError as error:
         return _complain(str(error), 2)
     except MemoryError:
-        return _complain("the memory does not suffice for this; ask for less at a time, or give more.", 2)
+        return _complain(str(NoMemory()), 2)
     except KeyboardInterrupt as stop:
         number = stop.number if isinstance(stop, Stopped) else signal.SIGINT
         return _complain("stopped; what was finished is kept, nothing half-written is left.", 128 + number)

@@ -14,7 +14,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, NamedTuple
 
 from suchus import threads
-from suchus.errors import Doubtful, SuchusError
+from suchus.errors import Doubtful, NoMemory, SuchusError
 from suchus.jobs.job import Died
 from suchus.progress import Progress
 from suchus.stopping import end_with_parent
@@ -192,6 +192,8 @@ def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> 
                 said: Done | _Refused = Done(work(item, _sender(pipe)))
             except SuchusError as error:
                 said = _Refused(error)
+            except MemoryError:
+                said = _Refused(NoMemory())
             pipe.send(said)
 
 

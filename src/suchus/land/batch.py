@@ -13,6 +13,7 @@ from suchus import hydro, threads
 from suchus.design import Robot, layout
 from suchus.design.ground import Ground, Relief
 from suchus.design.pieces import pieces
+from suchus.errors import NoMemory
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.lake import Waters, gravity, up
@@ -104,7 +105,10 @@ class SimulationBatch:
         self._owned: set[int] = set()
         self._written = False
         self._timestep, self._robots = timestep, [run.robot for run in runs]
-        self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        try:
+            self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        except ValueError as error:  # which is what MuJoCo raises for it
+            raise (NoMemory() if "allocate memory" in str(error) else error) from error
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)

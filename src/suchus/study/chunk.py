@@ -49,7 +49,11 @@ def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Data
 def _walk(
     study: Study, runs: Mapping[int, Run], rows: dict[int, dict[str, float]], errors: dict[int, str], progress: Progress
 ) -> None:
-    """Simulate runs together; if one of them spoils the batch, halve it until the one is found."""
+    """Simulate runs together; if one of them spoils the batch, or it is too large, halve it until the one is found.
+
+    Raises:
+        MemoryError: there is no room even for a single run, which says nothing of the run.
+    """
     if not runs:
         return
     try:
@@ -60,8 +64,10 @@ def _walk(
             every=study.every,
             progress=progress,
         )
-    except SuchusError as error:
+    except (SuchusError, MemoryError) as error:
         if len(runs) == 1:
+            if isinstance(error, MemoryError):
+                raise
             errors[next(iter(runs))] = _say(error)
             return
         middle, items = len(runs) // 2, list(runs.items())
