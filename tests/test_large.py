@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 
+import mujoco
 import pytest
 
 from suchus import large
@@ -167,6 +168,15 @@ def test_memory_that_mujoco_does_not_get_is_told_as_such(monkeypatch):
     said[0] = "nsim must be positive"
     with pytest.raises(ValueError, match="nsim"):
         simulate([CRAWL], duration=0.02)
+
+
+def test_a_command_that_gets_no_memory_of_mujoco_says_so(monkeypatch, capsys):
+    def hungry(words):
+        raise mujoco.FatalError("Could not allocate memory")
+
+    monkeypatch.setattr(sys.modules["suchus.cli.entry"], "_dispatch", hungry)
+    assert main(["list"]) == 2
+    assert "the memory does not suffice" in capsys.readouterr().err
 
 
 def test_a_batch_that_does_not_fit_is_halved_and_a_run_that_does_not_is_no_result(tmp_path, monkeypatch):

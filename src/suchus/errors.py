@@ -53,6 +53,17 @@ class NoMemory(SuchusError, MemoryError):
         super().__init__(message)
 
 
+@contextmanager
+def out_of_memory() -> Iterator[None]:
+    """While the block runs, raise ``NoMemory`` where MuJoCo gets no memory, which raises errors of several kinds."""
+    try:
+        yield
+    except Exception as error:
+        if isinstance(error, SuchusError) or "Could not allocate memory" not in str(error):
+            raise
+        raise NoMemory from error
+
+
 class IncompatibleRecord(SuchusError, ValueError):
     """A record that lacks what is asked of it, or was written by another version."""
 

@@ -19,6 +19,7 @@ from suchus.errors import (
     SuchusError,
     UnknownName,
     Unwritable,
+    out_of_memory,
     plain_warnings,
 )
 from suchus.sources import within
@@ -192,7 +193,15 @@ def main(words: Sequence[str] | None = None) -> int:
         words, folder = _apart(words)
         replace, mixed, any_size = (option in words for option in (REPLACE, MIXED, large.OPTION))
         words = [word for word in words if word not in (REPLACE, MIXED, large.OPTION)]
-        with stopping(), plain_warnings(), within(folder), replacing(replace), _mixing(mixed), large.allowing(any_size):
+        with (
+            stopping(),
+            out_of_memory(),
+            plain_warnings(),
+            within(folder),
+            replacing(replace),
+            _mixing(mixed),
+            large.allowing(any_size),
+        ):
             _check_words(words)
             _check_room()
             return _flushed(words)

@@ -13,7 +13,6 @@ from suchus import hydro, threads
 from suchus.design import Robot, layout
 from suchus.design.ground import Ground, Relief
 from suchus.design.pieces import pieces
-from suchus.errors import NoMemory
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
 from suchus.land.lake import Waters, gravity, up
@@ -105,10 +104,7 @@ class SimulationBatch:
         self._owned: set[int] = set()
         self._written = False
         self._timestep, self._robots = timestep, [run.robot for run in runs]
-        try:
-            self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
-        except ValueError as error:  # which is what MuJoCo raises for it
-            raise (NoMemory() if "allocate memory" in str(error) else error) from error
+        self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)

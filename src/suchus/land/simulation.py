@@ -11,7 +11,7 @@ from suchus.design import Robot
 from suchus.design.checks import require
 from suchus.design.ground import Ground
 from suchus.design.scale import check_step, control_period, physics_step
-from suchus.errors import Diverged, InvalidDesign
+from suchus.errors import Diverged, InvalidDesign, out_of_memory
 from suchus.fault import Fault, check_faults
 from suchus.gaits import gait_of
 from suchus.land.extent import check_extent
@@ -52,6 +52,7 @@ def simulate(
         Contact forces are means over the control period before each sample, torques those of its last physics step.
 
     Raises:
+        NoMemory: the memory does not suffice.
         InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears.
         OutsideLimits: a gait that a robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
@@ -67,7 +68,8 @@ def simulate(
     groups = _groups(runs)
     for number, members in enumerate(groups):
         grouped = [runs[i] for i in members]
-        parts.append(_simulate_group(grouped, ticks, timestep, every, portion(progress, number, len(groups))))
+        with out_of_memory():
+            parts.append(_simulate_group(grouped, ticks, timestep, every, portion(progress, number, len(groups))))
         order.extend(members)
     parts = with_equal_variables(parts)
     record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")

@@ -70,6 +70,8 @@ def _walk(
                 raise
             errors[next(iter(runs))] = _say(error)
             return
+        record = None
+    if record is None:  # the error is gone by now, and with it what filled the memory
         middle, items = len(runs) // 2, list(runs.items())
         _walk(study, dict(items[:middle]), rows, errors, progress)
         _walk(study, dict(items[middle:]), rows, errors, progress)
