@@ -15,13 +15,16 @@ from suchus.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.salamander_swim import own_size
 from suchus.experiments.salamander_swim.animal_swim import FREQUENCIES, STRIDE, envelope, played
+from suchus.experiments.salamander_swim.rules import LADDER
 from suchus.kinematics.tree import landmarks
 from suchus.model.hydrostatics import hydrostatics
 from suchus.motion import check_limits, cycle_targets
 from suchus.robots import ROBOTS
+from suchus.water import MODELS, Outline, Water, cruise
 
 CATSHARK = Path(suchus.contestants.__file__).parent / "data" / "catshark_midlines.csv"
 ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]
+RUNGS = [[[0.21, 0.21], [0.23, 0.23]], [[0.0, 0.0], [np.nan, np.nan]], [[0.2, 0.22], [0.28, 0.3]]]
 
 
 def test_the_wave_runs_from_the_neck_to_the_tail_and_grows():
@@ -84,13 +87,37 @@ def record():
         {
             "stride": ("swim", [0.2, 0.3]),
             "stride_other": ("water", [0.3, 0.22, 0.4]),
+            "stride_rung": (("rung", "swim", "half"), RUNGS),
             "swing": (("swim", "point"), [[0.2, 0.1, 0.4], [0.2, 0.1, 0.6]]),
             "missed": ("swim", [0.01, 0.02]),
             "under": ("swim", [0.6, 0.7]),
             "heel": ("swim", [0.5, 0.2]),
         },
-        coords={"frequency": ("swim", [2.6, 3.0]), "place": ("point", [0.0, 0.4, 1.0])},
+        coords={"frequency": ("swim", [2.6, 3.0]), "rung": list(LADDER), "place": ("point", [0.0, 0.4, 1.0])},
     )
+
+
+def test_a_rung_has_the_mean_of_its_swims_and_says_how_far_its_halves_are_apart(record):
+    m = {name: one.value for name, one in SWIM.measure(record).items()}
+    assert (m["stride_sections"], m["stride_sections_low"], m["stride_sections_high"]) == pytest.approx(
+        (0.25, 0.24, 0.26)
+    )
+    assert m["stride_off_sections_low"] == pytest.approx(0.24 / STRIDE - 1)
+    assert m["stride_sections_apart"] == m["stride_off_sections_apart"] == pytest.approx(0.02 / 0.25)
+    assert (m["stride_resistive"], m["stride_resistive_apart"]) == pytest.approx((0.22, 0.0))
+    assert np.isnan(m["stride_reactive"])  # a theory that knows no such body in one of the swims has no word
+
+
+def test_theories_are_asked_of_the_swim_itself_and_sections_of_halves_of_its_cycles(quick_outcome):
+    record = quick_outcome("salamander_swim").record
+    outline, gait = Outline(ROBOT), played(ROBOT, FREQUENCIES[0])
+    speed = cruise(outline, gait, MODELS["resistive"], Water()).speed
+    stride = record.stride_rung.isel(swim=0)
+    assert stride.sel(rung="resistive").values == pytest.approx([speed / FREQUENCIES[0] / ROBOT.length] * 2)
+    assert (stride.sel(rung="reactive") == 0.0).all()  # its tail ends in a point
+    halves = stride.sel(rung="sections")
+    assert float(halves.mean()) == pytest.approx(float(record.stride[0]), rel=0.05, abs=1e-3)
+    assert float(abs(halves[1] - halves[0])) > 0.0
 
 
 def test_measures_are_read_from_strides_and_swings(record):

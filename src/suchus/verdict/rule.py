@@ -196,20 +196,6 @@ class Rule:
         """Return what decided it, with its numbers."""
         return " ".join(self.why.format_map({name: Reading(value) for name, value in measures.items()}).split())
 
-    def near(self, printed: float, rounding: float, measures: Mapping[str, float]) -> bool:
-        """Return whether the measured number is the printed one, as rounded.
-
-        Asked is the middle alone. A wide interval would reach more printed numbers, so that little knowledge would make
-        a word kinder; of a narrow one that shrinks to the printed number the same could be said of much.
-
-        Args:
-            printed: the article's number.
-            rounding: half of its last digit, in the same unit.
-            measures: of the experiment.
-        """
-        slack = 1e-9 * max(1.0, abs(printed))  # a value on the edge of its own rounding is inside
-        return abs(measures[self.measure] - printed) <= rounding + slack
-
     def held(self, measures: Mapping[str, float]) -> bool | None:
         """Return whether the statement, apart from its number, holds.
 

@@ -1,6 +1,7 @@
 """How does a salamander's own swim, played joint by joint on its model, swim?"""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -12,15 +13,18 @@ from suchus import rotation
 from suchus.design import Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
+from suchus.errors import SuchusError
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._similar import similar
 from suchus.experiments.salamander_swim import animal_swim as animal
 from suchus.experiments.salamander_swim import own_size
+from suchus.experiments.salamander_swim.rules import LADDER
 from suchus.figures.style import COLOURS, captioned, panels, styled
 from suchus.land import Lake, Run, simulate
 from suchus.metrics import SwimNumbers, swim_numbers
 from suchus.robots import ROBOTS
+from suchus.water import MODELS, Outline, cruise
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +35,9 @@ class SalamanderSwim(Experiment):
     surface, and nothing holds it upright but the water. Beside the coefficients as they are, the swim at the highest
     frequency is repeated with factors on each of them. Beside the model, which is 0.1 m long and lighter than the
     animal, swim the animal and others at their own length, mass and volume, each with its own wave.
+
+    Of how far it comes, the two slender-body theories are asked too (``rules.LADDER``), a body in line with its mean
+    course. ``stride_sections`` is the mean of two halves of the measured cycles, ``_apart`` how far these are apart.
     """
 
     title = "How does a salamander's own swim, played joint by joint on its model, swim?"
@@ -106,7 +113,7 @@ class SalamanderSwim(Experiment):
         strides, envelopes, turned, under, heel = [], [], [], [], []
         for record, frequency in zip(records, self.frequencies, strict=True):
             start = self.settle / frequency
-            strides.append([self._stride(record.isel(run=i), start) for i in range(record.sizes["run"])])
+            strides.append([self._stride(record.isel(run=i), start, self.cycles) for i in range(record.sizes["run"])])
             envelopes.append(animal.envelope(self.robot, record.isel(run=0), start, 1.0 / frequency))
             names = [name for name in record.servo.values if name in record.joint.values]
             missed = record.joint_angle.sel(joint=names).values - record.servo_target.sel(servo=names).values
@@ -119,6 +126,7 @@ class SalamanderSwim(Experiment):
             {
                 "stride": ("swim", [lengths[0] for lengths in strides], units),
                 "stride_other": ("water", strides[-1], units),
+                "stride_rung": (("rung", "swim", "half"), self._rungs(records), units),
                 "swing": (("swim", "point"), [one.swing for one in envelopes], units),
                 "missed": ("swim", turned, {"units": "rad"}),
                 "under": ("swim", under, {"units": "1"}),
@@ -126,16 +134,32 @@ class SalamanderSwim(Experiment):
             },
             coords={
                 "frequency": ("swim", list(self.frequencies), {"units": "Hz"}),
+                "rung": list(LADDER),
                 "place": ("point", envelopes[0].place, units),
             },
         )
 
-    def _stride(self, record: xr.Dataset, start: float) -> float:
+    def _rungs(self, records: list[xr.Dataset]) -> np.ndarray:
+        """Return the strides by rung, swim and half of the measured cycles; NaN where a theory knows no such body."""
+        found = np.full((len(LADDER), len(records), 2), np.nan)
+        outline, long = Outline(self.robot), self.robot.length
+        for i, (record, frequency) in enumerate(zip(records, self.frequencies, strict=True)):
+            gait, half = animal.played(self.robot, frequency), self.cycles // 2 / frequency
+            for rung, model in MODELS.items():
+                with suppress(SuchusError):
+                    found[list(LADDER).index(rung), i] = cruise(outline, gait, model, Water()).speed / frequency / long
+            for j in (0, 1) if self.cycles > 1 else ():
+                start = self.settle / frequency + j * half
+                part = record.isel(run=0).sel(time=slice(None, start + half + 1e-9))
+                found[list(LADDER).index("sections"), i, j] = self._stride(part, start, self.cycles // 2)
+        return found
+
+    def _stride(self, record: xr.Dataset, start: float, cycles: int) -> float:
         """Return how far the centre of mass of one run comes in a cycle, less than 0 tail first [body length]."""
         part = record.sel(time=slice(start - 1e-9, None))
         way = part.centre_of_mass.transpose("time", "xyz").values[[0, -1], :2]
         facing = rotation.rotate(part.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
-        distance = float(np.hypot(*(way[1] - way[0]))) / self.cycles / self.robot.length
+        distance = float(np.hypot(*(way[1] - way[0]))) / cycles / self.robot.length
         return float(np.copysign(distance, (way[1] - way[0]) @ facing[:, :2].mean(axis=0)))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
@@ -173,6 +197,7 @@ class SalamanderSwim(Experiment):
             "heel": Measure(float(record.heel.max()), "rad"),
             "angle_missed": Measure(float(record.missed.max()), "rad"),
             "trim_submerged": Measure(own_size.trim_submerged(self.robot), "rad"),
+            **dict(_of_rungs(record)),
             **own_size.measures(record),
         }
 
@@ -193,6 +218,19 @@ class SalamanderSwim(Experiment):
         record = outcome.record
         figures = {"strides": draw_strides(record, animal.STRIDE), "envelope": draw_envelope(record)}
         return figures | ({"own_size": own_size.draw(record, animal.STRIDE)} if "animal" in record.dims else {})
+
+
+def _of_rungs(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Return every rung's stride and how far it is off the animal's, with the two halves of the cycles."""
+    for rung in record.rung.values:
+        halves = record.stride_rung.sel(rung=rung).mean("swim", skipna=False).values
+        apart = float(np.ptp(halves)) / max(abs(float(halves.mean())), 1e-9)
+        ends = {"": halves.mean(), "_low": halves.min(), "_high": halves.max()}
+        for end, one in ends.items():
+            yield f"stride_{rung}{end}", Measure(float(one), "body length")
+            yield f"stride_off_{rung}{end}", Measure(float(one) / animal.STRIDE - 1.0, "-")
+        yield f"stride_{rung}_apart", Measure(apart, "-")
+        yield f"stride_off_{rung}_apart", Measure(apart, "-")
 
 
 def draw_strides(record: xr.Dataset, animal: float) -> Figure:
