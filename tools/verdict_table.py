@@ -12,7 +12,7 @@ from typing import Any
 
 from pages.stated import KEPT, elsewhere, kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
-from suchus.verdict import RULES, SHARES, counted, judge, ladder
+from suchus.verdict import RULES, SHARES, TOO_FEW, counted, judge, ladder
 from suchus.verdict.judging import fragile
 
 ROOT = Path(__file__).parents[1]
@@ -37,7 +37,9 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
             found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
     for claim, row in found.items():  # of the shares that ship today, whatever shipped when it was run
-        row["fragile"] = claim in RULES and fragile(RULES[claim], row["verdict"], SHARES.get(claim))
+        row["fragile"] = claim in RULES and fragile(
+            RULES[claim], row["verdict"], SHARES.get(claim) or TOO_FEW.get(claim)
+        )
     missing = [claim for claim in RULES if claim not in found]
     if missing:
         raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce in full first.")

@@ -14,8 +14,8 @@ import suchus.experiments
 from suchus.errors import IncompatibleRecord, InvalidDesign
 from suchus.experiment import estimated
 from suchus.paper import CLAIMS
-from suchus.verdict import RULES, UNRULED, Clause, Share, between, examples_of, judge, rules_of
-from suchus.verdict.judging import ROBUST
+from suchus.verdict import RULES, UNRULED, Clause, Share, TooFew, between, examples_of, judge, rules_of
+from suchus.verdict.judging import ROBUST, fragile
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
@@ -136,6 +136,24 @@ def test_a_verdict_is_fragile_where_other_designs_say_otherwise():
         verdict = judge(RULES["tail_swing"], contradicted, {"tail_swing": replace(SHARE, share=share)})
         assert verdict.fragile is held
     assert not judge(RULES["tail_swing"], measures, {}).fragile
+
+
+@pytest.mark.parametrize(
+    ("words", "reproduced", "contradicted"),
+    [
+        ({"reproduced": 3, "undecided": 9}, False, True),
+        ({"reproduced": 3, "same sense": 3, "contradicted": 1}, True, True),
+        ({"contradicted": 2, "not testable": 5}, True, False),
+        ({"models disagree": 12}, False, False),  # none says otherwise
+    ],
+)
+def test_few_designs_make_a_verdict_fragile_too(words, reproduced, contradicted):
+    rule = RULES["tail_swing"]
+    few = TooFew(claim="tail_swing", words=words, of="", rule=rule.asked)
+    assert fragile(rule, "reproduced", few) is reproduced
+    assert fragile(rule, "contradicted", few) is contradicted
+    assert not fragile(rule, "undecided", few)
+    assert not fragile(rule, "reproduced", replace(few, rule="another"))
 
 
 @pytest.mark.parametrize(

@@ -73,6 +73,15 @@ class TooFew:
     rule: str
     """Digest of the rule that judged the designs, ``Rule.asked``."""
 
+    def robust(self, held: bool) -> bool:
+        """Return whether enough of those few designs that have a word agree with a verdict.
+
+        Args:
+            held: whether the statement held in the run that was judged.
+        """
+        answers = [(_HELD[word] is held, count) for word, count in self.words.items() if word in _HELD]
+        return sum(count for same, count in answers if same) >= ROBUST * sum(count for _, count in answers)
+
     def __str__(self) -> str:
         """Return it as a sentence."""
         told = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
@@ -120,6 +129,8 @@ an input, a count or a commanded shape that is read back, or an identity of form
 chosen so that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
+_HELD: Mapping[str, bool] = MappingProxyType({"reproduced": True, "same sense": True, "contradicted": False})
+"""Whether the statement held, by the words that say so of a run."""
 Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
 """By claim: measures, and the word that its rule must say of them, on both sides of everything that it looks at."""
 
@@ -155,21 +166,21 @@ class Verdict:
 
         What was chosen for one design, or follows from how it was made, is no answer that others could shake.
         """
-        return fragile(self.rule, self.verdict, self.share)
+        return fragile(self.rule, self.verdict, self.share or self.too_few)
 
 
-def fragile(rule: Rule, word: str, share: Share | None) -> bool:
+def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
     """Return whether other plausible designs give another answer too often to rely on a word.
 
     Args:
         rule: the claim's.
         word: of its verdict.
-        share: in how many designs the statement holds; None where that is not known.
+        designs: in how many the statement holds, or what few of them say; None where that is not known.
     """
-    if rule.kind not in ("measured", "animals") or share is None or share.rule not in ("", rule.asked):
+    if rule.kind not in ("measured", "animals") or designs is None or designs.rule not in ("", rule.asked):
         return False
-    held = {"reproduced": True, "same sense": True, "contradicted": False}.get(word)
-    return held is not None and not share.robust(held)
+    held = _HELD.get(word)
+    return held is not None and not designs.robust(held)
 
 
 def judge(
