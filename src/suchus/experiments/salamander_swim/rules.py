@@ -52,7 +52,7 @@ VARIED = Varied(
 
 def _of(rungs: Mapping[str, float], *, apart: float = 0.01, unsettled: str = "") -> dict[str, float]:
     """Return measures of rungs by how far they are off the animal's stride."""
-    found = {}
+    found: dict[str, float] = {}
     for rung, off in rungs.items():
         for name, value in (("stride", 0.225 * (1.0 + off)), ("stride_off", off)):
             found |= {f"{name}_{rung}{end}": value for end in ("", "_low", "_high")}
