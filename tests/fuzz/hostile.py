@@ -9,6 +9,7 @@ import inspect
 import io
 import json
 import math
+import shutil
 import signal
 import time
 import warnings
@@ -28,7 +29,7 @@ from suchus.capture.tracks import NEEDED
 from suchus.cli import main
 from suchus.cli.entry import COMMANDS
 from suchus.design import Robot, layout, servo_names, value_at, with_values
-from suchus.errors import SuchusError
+from suchus.errors import OutsideLimits, SuchusError
 from suchus.hardware import read_map, straight, write_map
 from suchus.jobs.store import Store
 from suchus.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
@@ -37,7 +38,7 @@ from suchus.optimise import read_optimisation
 from suchus.record import load, save
 from suchus.replay.frames import checked
 from suchus.report import load_result, render_page
-from suchus.study import Plan, Study, Vary, read_study
+from suchus.study import MEASURES, Arm, Plan, Study, Vary, conduct, conducted, read_study
 from suchus.viewer.replay import Player, takes
 from suchus.viewer.swim import films
 
@@ -483,14 +484,75 @@ def designs(self: Range, dice: Random) -> None:
     check_limits(made.robot, made.gait)
 
 
-def studies(self: Range, dice: Random) -> None:
-    asked = self.study
-    if dice.random() < 0.7:
-        asked = replace(asked, **{dice.choice(fields(Study)).name: dice.choice(THINGS)})
-    Plan(asked)
-    some = dice.sample(fields(Vary), dice.randrange(4))
-    vary = {f.name: dice.choice((*THINGS, "gait.stroke", "robot.tail.joints")) for f in some}
-    Plan(replace(asked, vary=(Vary(**{"field": "gait.stroke", "low": 0.0, "high": 0.1, **vary}),)))
+def studies(self: Range, dice: Random) -> int:
+    """Small studies of every design, conducted; in a third of them a field is of another kind or size."""
+    vary = [_varied(dice, field) for field in dice.sample(list(_VARIED), dice.choice((1, 1, 2)))]
+    design = dice.choice(("factorial", "latin", "sobol"))
+    given = {
+        "vary": tuple(vary),
+        "design": design,
+        "samples": None if design == "factorial" else dice.choice((1, 2, 3)),
+        "measure": tuple(dice.sample(list(MEASURES), dice.choice((1, 2)))),
+        "seed": dice.choice((0, 7, 2**32 - 1)),
+        "seeds": dice.choice((1, 1, 2)),
+        "chunk": dice.choice((1, 2, 32)),
+        "every": dice.choice((1, 1, 2)),
+        "duration": 1.1,
+        "timestep": 0.01,
+        "arms": dice.choice(((), (), (Arm(name="a"), Arm(name="b", values={"gait.trunk_bend": 0.1})))),
+    }
+    if dice.random() < 0.2:
+        given[dice.choice(fields(Study)).name] = dice.choice(THINGS)
+    if dice.random() < 0.15:
+        given["vary"] = (replace(vary[0], **{dice.choice(fields(Vary)).name: dice.choice((*THINGS, "gait.stroke"))}),)
+    asked = replace(self.study, **given)
+    plan = Plan(asked)
+    if len(plan) > _RUNS or asked.duration > 2.0:
+        return 0
+    kept = dice.random() < 0.25
+    results = conduct(asked, _emptied(self.place / "conducted")) if kept else conducted(asked)
+    if results.sizes["sample"] != len(plan):
+        raise Silent(f"{results.sizes['sample']} results of {len(plan)} runs")
+    told = [str(error) for error in results.error.values]
+    for error in filter(None, told):
+        judge(error)
+    if any(told):
+        raise OutsideLimits(next(filter(None, told)))
+    if dice.random() < 0.1 and not results.equals(conducted(replace(asked, chunk=1))):
+        raise Silent("other results in other batches")
+    return 1
+
+
+_RUNS = 6  # of a study that is conducted, at most
+_VARIED: dict[str, tuple[float, float]] = {
+    "ground.friction_scale": (0.3, 2.0),
+    "ground.uphill": (-0.1, 0.1),
+    "gait.stroke": (0.05, 0.3),
+    "gait.trunk_bend": (0.0, 0.4),
+    "robot.contact.foot_friction": (0.3, 1.5),
+    "robot.tail.joints": (4, 8),
+    "supply": (0.8, 1.2),
+}
+"""Fields that a study of the fuzzer's varies, and between what."""
+
+
+def _varied(dice: Random, field: str) -> Vary:
+    """Return a field with values, a range or a distribution, all of them possible."""
+    low, high = _VARIED[field]
+    if field == "robot.tail.joints":
+        return Vary(field=field, values=tuple(dice.sample(range(int(low), int(high)), dice.choice((1, 2)))))
+    one, other = sorted((dice.uniform(low, high), dice.uniform(low, high) + 1e-3))
+    steps = {"steps": 2, "each": dice.random() < 0.3}
+    ways: list[dict[str, Any]] = [{"values": (one,)}, {"values": (one, other)}, {"low": one, "high": other, **steps}]
+    ways.append({"mean": 0.5 * (one + other), "spread": other - one, "low": low, "high": high + 1e-3, **steps})
+    if one > 0.0:
+        ways.append({"low": one, "high": other, "scale": "log", **steps})
+    return Vary(field=field, **dice.choice(ways))
+
+
+def _emptied(folder: Path) -> Path:
+    shutil.rmtree(folder, ignore_errors=True)
+    return folder
 
 
 def runs(self: Range, dice: Random) -> None:

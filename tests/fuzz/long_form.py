@@ -2,7 +2,8 @@
 
 ``python tests/fuzz/long_form.py [COUNT]``; stopped early, what was run until then counts, and the next call goes on
 behind it if neither suchus nor the cases have changed. The cases run in processes of their own, see ``farm.py``.
-``python tests/fuzz/long_form.py --again`` runs those that failed once more, after they were mended.
+``python tests/fuzz/long_form.py --again`` runs those that failed once more, after they were mended, and ``--kind NAME``
+those of one kind, after that became another.
 """
 
 import hashlib
@@ -80,6 +81,32 @@ def again(place: Path, found: dict[str, Any]) -> dict[str, Any]:
     return {**found, "failures": left, "mended": [*found.get("mended", []), *mended]}
 
 
+def renewed(place: Path, found: dict[str, Any], kind: str) -> dict[str, Any]:
+    """Return what was found with the cases of one kind run again, as it is now.
+
+    Args:
+        place: an empty folder.
+        found: what ``run`` found.
+        kind: whose cases.
+    """
+    numbers = [number for number in range(found["next"]) if kind_of(number).__name__ == kind]
+    came = list(carried_out(Doors(place), numbers))
+    about = {name: _about()[name] for name in ("date", "source")}
+    failures = [{"case": one.number, "kind": kind, "error": one.error} for one in came if one.error]
+    refused = {**found["refused"], kind: sum(one.count * one.refused for one in came)}
+    return _rounded(
+        {
+            **found,
+            "kinds": Counter({**found["kinds"], kind: sum(one.count for one in came)}),
+            "refused": refused,
+            "failures": [*(one for one in found["failures"] if one["kind"] != kind), *failures],
+            "renewed": {**found.get("renewed", {}), kind: about},
+            "longest_seconds": max(found["longest_seconds"], *(one.seconds for one in came)),
+            "processor_seconds": found["processor_seconds"] + sum(one.seconds for one in came),
+        }
+    )
+
+
 def kept() -> dict[str, Any] | None:
     """Return what an earlier call found, if it was of the same code and versions; None otherwise."""
     about = {name: value for name, value in _about().items() if name != "date"}
@@ -129,6 +156,10 @@ def passage(found: dict[str, Any]) -> str:
     refused, cases, asked = found["refused"], *(f"{found[name]:,}".replace(",", " ") for name in ("cases", "asked"))
     begin = f"Of the long form {cases}" + f" of the {asked}" * (found["cases"] < found["asked"])
     rows = "\n".join(f"| {name.replace('_', ' ')} | {count} | {count - refused[name]} |" for name, count in kinds)
+    renewed = "".join(
+        f"Those of the kind {kind.replace('_', ' ')} ran again on {about['date']} (source {about['source']}).\n"
+        for kind, about in found.get("renewed", {}).items()
+    )
     passed = found["cases"] - sum(refused.values())
     mended = [f"case {one['case']} ({one['kind'].replace('_', ' ')})" for one in found.get("mended", [])]
     told = ""
@@ -137,7 +168,7 @@ def passage(found: dict[str, Any]) -> str:
         told = f"{len(mended)} more had failed, were mended and pass (source {source}): {', '.join(mended)}.\n"
     return (
         f"{begin} cases have run, on {found['date']} with\n{made_by} (source {found['source']}).\n"
-        f"{passed} of them got through the door and did what they asked for, the others ended in a sentence.\n"
+        f"{renewed}{passed} of them got through the door and did what they asked for, the others ended in a sentence.\n"
         f"**{len(found['failures'])}** of them failed. {told}They took {found['processor_seconds']} s of a processor, "
         f"the\nlongest {found['longest_seconds']} s.\n\n| kind | cases | through the door |\n|---|---|---|\n{rows}"
     )
@@ -148,6 +179,9 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as folder:
         if "--again" in sys.argv:
             came = again(Path(folder), json.loads(OUTCOME.read_text()))
+            write(came)
+        elif "--kind" in sys.argv:
+            came = renewed(Path(folder), json.loads(OUTCOME.read_text()), sys.argv[sys.argv.index("--kind") + 1])
             write(came)
         else:
             came = run(Path(folder), int(sys.argv[1]) if len(sys.argv) > 1 else COUNT, keep=True, so_far=kept())

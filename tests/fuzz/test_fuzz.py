@@ -15,7 +15,7 @@ import pytest
 from doors import WEIGHTS
 from farm import Came
 from hostile import KINDS, Hang, Range
-from long_form import COUNT, OUTCOME, PAGE, again, passage, run
+from long_form import COUNT, OUTCOME, PAGE, again, passage, renewed, run
 
 SHORT, SAMPLE = 2_000, 1_000
 """Numbers of the cases of the short form, which run in this process, and of the sample of the long one."""
@@ -169,6 +169,26 @@ def test_what_was_mended_is_run_again_and_told(tmp_path, monkeypatch):
     assert f"case 3 ({failed[0]['kind'].replace('_', ' ')})" in passage(found)
     with pytest.raises(ValueError, match="are others"):
         again(tmp_path, {**found, "failures": [{"case": 3, "kind": "another", "error": ""}]})
+
+
+def test_a_kind_that_became_another_is_run_again_and_told(tmp_path, monkeypatch):
+    asked = []
+
+    def carried_out(place, numbers):
+        asked.extend(numbers)
+        return [Came(n, 1, n == numbers[0], "studies", 0.5, "IndexError: new" * (n == numbers[1])) for n in numbers]
+
+    monkeypatch.setattr(long_form, "Doors", lambda place: None)
+    monkeypatch.setattr(long_form, "carried_out", carried_out)
+    before = {**json.loads(OUTCOME.read_text()), "failures": [{"case": 1, "kind": "studies", "error": "old"}]}
+    found = renewed(tmp_path, before, "studies")
+    assert {long_form.kind_of(number).__name__ for number in asked} == {"studies"}
+    assert max(asked) < before["next"]
+    assert (found["kinds"]["studies"], found["refused"]["studies"]) == (len(asked), 1)
+    others = {kind: count for kind, count in before["kinds"].items() if kind != "studies"}
+    assert found["cases"] == sum(others.values()) + len(asked)
+    assert [(one["case"], one["error"]) for one in found["failures"]] == [(asked[1], "IndexError: new")]
+    assert "Those of the kind studies ran again on " in passage(found)
 
 
 @pytest.mark.validate

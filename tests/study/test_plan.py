@@ -155,6 +155,7 @@ BAD = [
     ([Vary(field="gait.stroke", low=0.0, high=0.1)], {"design": "random"}, "factorial, sobol, latin"),
     ([Vary(field="gait.stroke", low=0.0, high=0.1)] * 2, {}, "twice"),
     ([Vary(field="seed", values=(1, 2))], {}, "choose seed and seeds"),
+    ([Vary(field="gait.stroke", values=(0.1,))], {"seed": 2**32 - 1, "seeds": 2}, "choose a smaller seed"),
     ([], {}, "name at least one field"),
 ]
 

@@ -150,6 +150,11 @@ class Study:
 
     def _check_fields(self) -> None:
         """Refuse fields that do not exist, and values that the run refuses alone."""
+        if self.seed + self.seeds > 2**32:
+            raise InvalidDesign(
+                f"study {self.name!r} has seed {self.seed} and {self.seeds} seeds from it on; the last may be "
+                f"{2**32 - 1}: choose a smaller seed."
+            )
         paths = [vary.field for vary in self.vary]
         for vary in self.vary:
             if paths.count(vary.field) > 1:
