@@ -19,6 +19,11 @@ from pages.passages import put
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "reliability.md"
 KEPT, CASES = ROOT / "tests" / "batteries.json", ROOT / "tests" / "fuzz" / "long_form.json"
+GUIDED = ROOT / "tests" / "fuzz" / "guided.json"
+WAYS = {"blind": "blindly", "targets": "hypothesis' `target`", "atheris": "atheris"}
+"""How cases are chosen, see ``tests/fuzz/guided.py``: first without guidance."""
+PAYS = 1.1
+"""How many times as many lines guided cases would have to reach to be worth their trouble [-]."""
 BATTERIES = {
     "failed writes": (
         "every n-th open, write, close, rename, fsync, link and mkdir of a command fails; what was kept is whole, and "
@@ -67,10 +72,35 @@ def table(kept: Mapping[str, Mapping[str, Any]], cases: Mapping[str, Any]) -> st
     return "\n".join([*rows, f"| fuzzer | {what} | {done} | {_FOUND} |"]) + "\n"
 
 
+def guided(kept: Mapping[str, Mapping[str, Mapping[str, Any]]]) -> str:
+    """Return what guidance by coverage is worth, a row for each number of cases.
+
+    Args:
+        kept: what each way reached, see ``tests/fuzz/guided.py``.
+    """
+    ways = [way for way in WAYS if way in kept]
+    rows = [f"| cases | {' | '.join(WAYS[way] for way in ways)} |", f"|---:|{'---:|' * len(ways)}"]
+    for count in sorted({int(count) for way in ways for count in kept[way]}):
+        found = [kept[way].get(str(count)) for way in ways]
+        told = [f"{one['lines']} lines, {one['robots'] / count:.0%} robots" if one else "" for one in found]
+        rows.append(f"| {count} | {' | '.join(told)} |")
+    ratios = [
+        kept[way][count]["lines"] / kept[ways[0]][count]["lines"]
+        for way in ways[1:]
+        for count in kept[way].keys() & kept[ways[0]].keys()
+    ]
+    days = sorted({one["date"] for way in ways for one in kept[way].values()})
+    best = f"at most {max(ratios):.2f} times as many as blind ones, where {PAYS:g} would be worth it"
+    pays = max(ratios) >= PAYS
+    verdict = "so they should be guided" if pays else "so the cases are drawn blindly, and most are nearly right"
+    return "\n".join([*rows, "", f"On {' and '.join(days)} guided cases reached {best}: {verdict}."]) + "\n"
+
+
 def write() -> None:
-    """Write the table of what is kept into the page."""
-    kept, cases = (json.loads(file.read_text(encoding="utf-8")) for file in (KEPT, CASES))
-    PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), {"batteries": table(kept, cases)}), encoding="utf-8")
+    """Write the passages of what is kept into the page."""
+    kept, cases, ways = (json.loads(file.read_text(encoding="utf-8")) for file in (KEPT, CASES, GUIDED))
+    passages = {"batteries": table(kept, cases), "guided": guided(ways)}
+    PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), passages), encoding="utf-8")
 
 
 def tests() -> list[str]:

@@ -33,7 +33,7 @@ KEPT = 4
 
 
 def folder(home: Path, files: Iterable[Path], prefix: str) -> Path | None:
-    """Return where the code of some sources is kept; None where no place can be written to.
+    """Return where the code of some sources is kept; None where no place can be written to, and then we say so.
 
     That is below ``NUMBA_CACHE_DIR`` if it is set; else beside the sources; else in the user's cache folder.
 
@@ -42,7 +42,10 @@ def folder(home: Path, files: Iterable[Path], prefix: str) -> Path | None:
         files: the sources, any of which may be a part of any other.
         prefix: how the names of their folders begin.
     """
-    return _first_writable([place / f"{prefix}{digest(files)}" for place in places(home)], prefix)
+    found = _first_writable([place / f"{prefix}{digest(files)}" for place in places(home)], prefix)
+    if found is None:
+        _say_unkept("no folder for it can be written to, and NUMBA_CACHE_DIR may name another")
+    return found
 
 
 def places(home: Path) -> list[Path]:

@@ -65,8 +65,9 @@ CASES = {"cases": 100, "kinds": {"walks": 90, "runs": 10}, "failures": [{"case":
 
 def test_the_page_counts_what_the_batteries_did():
     """Renew with ``make reliability``, or with ``python tools/reliability.py --table`` what is kept."""
-    kept, cases = (json.loads(file.read_text("utf-8")) for file in (reliability.KEPT, reliability.CASES))
-    assert put(PAGE, {"batteries": reliability.table(kept, cases)}) == PAGE
+    files = reliability.KEPT, reliability.CASES, reliability.GUIDED
+    kept, cases, ways = (json.loads(file.read_text("utf-8")) for file in files)
+    assert put(PAGE, {"batteries": reliability.table(kept, cases), "guided": reliability.guided(ways)}) == PAGE
     assert {one["battery"] for one in kept.values()} <= reliability.BATTERIES.keys()
     files = {test.partition("::")[0] for test in kept}
     assert files <= {str(Path(file).relative_to(ROOT)) for file in reliability.tests()}
@@ -134,6 +135,24 @@ def test_a_whole_run_takes_the_place_of_what_was_kept_and_a_part_is_added(tmp_pa
     batteries.keep("a.py::test_a", "kills", 1, failed=False, kept=kept)
     assert reliability.main([]) == 2
     assert list(json.loads(kept.read_text())) == ["a.py::test_a", "b.py::test_b"]
+
+
+def reached(lines):
+    return {"lines": lines, "robots": 125, "date": "2031-01-02"}
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [(109, "at most 1.09 times as many as blind ones, where 1.1 would be worth it: so the cases are drawn blindly"),
+     (110, "at most 1.10 times as many as blind ones, where 1.1 would be worth it: so they should be guided")],
+)  # fmt: skip
+def test_what_guidance_is_worth_follows_from_what_was_reached(lines, said):
+    ways = {"blind": {"250": reached(100)}, "atheris": {"250": reached(lines), "500": reached(300)}}
+    text = reliability.guided(ways)
+    assert said in text
+    assert "| cases | blindly | atheris |" in text
+    assert f"| 250 | 100 lines, 50% robots | {lines} lines, 50% robots |" in text
+    assert "| 500 |  | 300 lines, 25% robots |" in text
 
 
 def test_the_days_of_a_battery_are_told():

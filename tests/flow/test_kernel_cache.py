@@ -73,10 +73,15 @@ def test_where_the_package_cannot_be_written_the_users_folder_is_taken(room, tmp
     assert compiled.folder().parent == tmp_path / "the user's" / "suchus"
 
 
-def test_where_nothing_can_be_written_there_is_none(room, monkeypatch):
+def test_where_nothing_can_be_written_there_is_none_and_it_is_said_once(room, monkeypatch, capsys):
+    kernel_cache._say_unkept.cache_clear()
     (room / "__pycache__").write_text("no folder")
     monkeypatch.setenv("XDG_CACHE_HOME", "/dev/null")
-    assert compiled.folder() is None
+    assert compiled.folder() is compiled.folder() is None
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "compiled code is not kept" in told
+    assert "NUMBA_CACHE_DIR" in told
 
 
 def test_numbas_own_setting_comes_first_and_alone(room, tmp_path, monkeypatch):

@@ -2,13 +2,16 @@
 
 ``python tests/fuzz/guided.py blind|targets|atheris [COUNT]``. The cases are those of ``doors.altered`` over three small
 robots; ``targets`` lets hypothesis look for cases that reach new lines, ``atheris`` lets libFuzzer, with the same
-changes as its mutations (it is in no extra: ``pip install atheris``). The results stand in docs/reliability.md.
+changes as its mutations (it is in no extra: ``pip install atheris``). The results are kept in ``guided.json``, of which
+``tools/reliability.py`` makes the passage of docs/reliability.md.
 """
 
+import json
 import os
 import sys
 import tempfile
 from collections.abc import Callable
+from datetime import date
 from pathlib import Path
 from random import Random
 from types import FrameType
@@ -19,6 +22,10 @@ from doors import altered, pendulum, quadruped
 from suchus.errors import SuchusError
 from suchus.model.importing import Words, import_robot
 
+KEPT = Path(__file__).with_name("guided.json")
+"""By way and number of cases: the lines that they reached, how many of them were robots, and when."""
+COUNTS = (250, 500)
+"""Numbers of cases after which that is noted."""
 ROOM = str(Path(sys.modules[import_robot.__module__].__file__ or "").parent)
 SEEDS = [text.encode() for text in (quadruped(), pendulum(), pendulum(3, axis="0 1 0"))]
 
@@ -26,13 +33,13 @@ SEEDS = [text.encode() for text in (quadruped(), pendulum(), pendulum(3, axis="0
 class Reached:
     """The lines of the importer that cases reached so far."""
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, way: str, count: int) -> None:
         self.file, self.left, self.lines = Path(tempfile.mkdtemp()) / "it.urdf", count, set[tuple[str, int]]()
-        self.passed = 0
+        self.way, self.done, self.passed = way, 0, 0
 
     def case(self, data: bytes) -> int:
         """Read a robot, and return how many lines nobody had reached before."""
-        before, self.left = len(self.lines), self.left - 1
+        before, self.left, self.done = len(self.lines), self.left - 1, self.done + 1
         self.file.write_bytes(data)
         sys.settrace(self._trace)
         try:
@@ -42,9 +49,16 @@ class Reached:
             pass
         finally:
             sys.settrace(None)
-        if self.left % 100 == 0:
-            print(f"{self.left} left: {len(self.lines)} lines, {self.passed} robots", flush=True)
+        if self.done in COUNTS:
+            self.note()
         return len(self.lines) - before
+
+    def note(self) -> None:
+        """Keep what was reached by now."""
+        kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+        told = {"lines": len(self.lines), "robots": self.passed, "date": date.today().isoformat()}
+        kept[self.way] = {**kept.get(self.way, {}), str(self.done): told}
+        KEPT.write_text(json.dumps(kept, indent=1, sort_keys=True) + "\n", encoding="utf-8")
 
     def _trace(self, frame: FrameType, event: str, _: Any) -> Callable[..., Any] | None:
         return self._line if frame.f_code.co_filename.startswith(ROOM) else None
@@ -99,4 +113,5 @@ def atheris(reached: Reached, count: int) -> None:
 
 if __name__ == "__main__":
     number_of_cases = int(sys.argv[2]) if len(sys.argv) > 2 else 500
-    {"blind": blind, "targets": targets, "atheris": atheris}[sys.argv[1]](Reached(number_of_cases), number_of_cases)
+    reached = Reached(sys.argv[1], number_of_cases)
+    {"blind": blind, "targets": targets, "atheris": atheris}[sys.argv[1]](reached, number_of_cases)
