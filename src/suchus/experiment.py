@@ -180,7 +180,12 @@ class Outcome(Simulated):
     unjudged: str = ""
     """Why there are no verdicts, in a sentence; empty where the claims were judged."""
     seconds: float = 0.0
-    """Wall-clock duration of the run [s]."""
+    """Wall-clock duration of the run [s]; of its last part where it went on from what an earlier one had kept."""
+
+
+CONDUCT = ("keep", "jobs", "scheduler")
+"""Names of fields that say where and by how many processes an experiment is conducted: they decide nothing of what
+comes out, and stand in no result."""
 
 
 class Experiment(ABC):
@@ -401,8 +406,8 @@ class Experiment(ABC):
         return ""
 
     def settings(self) -> dict[str, Any]:
-        """Return the fields as plain values."""
-        return asdict(self)  # type: ignore[call-overload]
+        """Return the fields as plain values, without those of ``CONDUCT``."""
+        return {name: value for name, value in asdict(self).items() if name not in CONDUCT}  # type: ignore[call-overload]
 
     @classmethod
     def name(cls) -> str:

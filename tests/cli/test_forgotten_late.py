@@ -2,14 +2,16 @@
 
 import os
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import pytest
 
 from suchus.cli.run import perform
 from suchus.errors import Unwritable
-from suchus.experiment import silent
+from suchus.experiment import CONDUCT, silent
 from suchus.experiments import EXPERIMENTS
+from suchus.record.provenance import digest
+from suchus.robots import ROBOTS
 
 run = sys.modules["suchus.cli.run"]
 
@@ -42,3 +44,14 @@ def test_a_place_that_keeps_nothing_is_refused_before_anything_swims(name, tmp_p
     with pytest.raises(Unwritable, match=r"pipe cannot be written: not a directory\."):
         replace(EXPERIMENTS[name].quick(), keep=str(tmp_path / "pipe")).simulate(lambda *said: told.append(said))
     assert not told
+
+
+def test_where_and_by_how_many_processes_it_is_computed_stands_in_no_result():
+    for name in ("swimming", "swim_free", "swim_3d", "swim_sweep"):
+        experiment = EXPERIMENTS[name]
+        there = {one.name for one in fields(experiment)} & set(CONDUCT)
+        elsewhere = {"keep": "/tmp/scratch", "jobs": 7, "scheduler": "tcp://127.0.0.1:8786"}
+        other = replace(experiment, **{field: elsewhere[field] for field in there})
+        assert "keep" in there
+        assert digest(other.settings()) == digest(experiment.settings())
+        assert digest(replace(other, robot=ROBOTS["long_tail"]).settings()) != digest(experiment.settings())

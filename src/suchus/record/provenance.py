@@ -23,7 +23,7 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
 
     Args:
         settings: the fields of the experiment; ``seed`` among them, if it has one.
-        seconds: how long the run took [s].
+        seconds: how long the run took, its last part where it went on from what was kept [s].
     """
     return {
         "config_hash": digest(settings),
