@@ -155,6 +155,45 @@ def tell_outline(cells=96, corners=240, steps=12, rounds=6):
     return {"shape_ellipse": ellipse, "shape_outline": outline, "shape_bent": bent}
 
 
+def tell_patch(steps=6, rounds=4):
+    """Print what a step takes on a patch of fine cells, over that on fine cells everywhere, on one thread [-]."""
+    found = {}
+    plane = flow.Grid.covering((-3.0, 5.0), (-2.0, 2.0), cell=1 / 64), ((-0.3, 1.5), (-0.4, 0.4)), 4
+    space = (
+        flow.Grid.covering((-2.0, 3.0), (-2.0, 2.0), (-2.0, 2.0), cell=1 / 8),
+        ((-0.95, 1.2), *[(-0.95, 0.95)] * 2),
+        4,
+    )
+    aerofoil, sphere = flow.foil(1.0, thickness=0.12), flow.Sphere(diameter=1.0)
+    for (whole, box, ratio), shape in ((plane, aerofoil), (space, sphere)):
+        fine = flow.Grid(cells=tuple(ratio * n for n in whole.cells), cell=whole.cell / ratio, origin=whole.origin)
+        patch, key = whole.patch(*box, ratio=ratio), f"patch_{whole.axes}"
+        more = {
+            "viscosity": 1e-2, "stream": (1.0, 0.0), "bodies": (flow.Body(shape=shape),), "coarse": True
+        }  # fmt: skip
+        sims = [
+            flow.Simulation(flow.Setup(**grids, **more), thread_count=1)
+            for grids in ({"grid": fine}, {"grid": patch, "around": whole})
+        ]
+        every = []
+        for _ in range(rounds):
+            for sim in sims:
+                start = perf_counter()
+                for _ in range(steps):
+                    sim.advance()
+                every.append((perf_counter() - start) / steps)
+        everywhere, alone = min(every[2::2]), min(every[3::2])
+        share = (prod(patch.cells) + prod(whole.cells)) / prod(fine.cells)
+        found[key], found[f"{key}_cells"] = alone / everywhere, share
+        sizes = [" x ".join(map(str, grid.cells)) for grid in (patch, whole, fine)]
+        print(
+            f"{sizes[0]} fine cells in {sizes[1]} coarse ones: a step {1e3 * alone:.1f} ms, {alone / everywhere:.2f} "
+            f"of {1e3 * everywhere:.1f} ms on {sizes[2]} (asked: {0.35 if whole.axes == 2 else 0.2}), with "
+            f"{share:.2f} of the cells"
+        )
+    return found
+
+
 def tell_pieces(make, cells, threads, steps):
     """Print what each piece of a step takes, the faster half of its calls counting, and those of a pressure solve."""
     calls, inside, kept = defaultdict(list), [], []
@@ -253,7 +292,7 @@ def main():
             else:
                 found |= tell_speed(label, make, cells, steps, far)
     if not chosen.pieces:
-        found |= tell_outline()
+        found |= tell_outline() | tell_patch()
         for cells in (96, 128):
             found |= tell_swim(cells, far)
     if chosen.keep and many > 1 and not chosen.pieces:

@@ -74,6 +74,12 @@ GROUPS = (
         cases=("free eel", "tethered eel", "held eel"),
     ),
     Group(
+        title="Fine cells around a body alone",
+        about="The same flow on a patch of fine cells nested in coarser ones, and on fine cells everywhere, which the "
+        "column of exact numbers holds.",
+        cases=("patch",),
+    ),
+    Group(
         title="In three dimensions",
         about="Decaying vortices, spheres and spheroids against exact and published numbers, budgets of momentum. The "
         "robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",

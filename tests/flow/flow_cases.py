@@ -280,3 +280,15 @@ def heaving_plate(cells, thick, *, angle=0.3, amplitude=0.1):
     terms = -np.stack([pushed, dragged], axis=1) * weight[:, None]
     fitted = np.linalg.lstsq(terms, (record.force() @ across) * weight, rcond=None)[0]
     return float(fitted[0]), float(record.column("power") @ record.step)
+
+
+def in_patch(setup, whole, x, y, *, until, ratio=4, z=None):
+    """Records of one flow on fine cells everywhere and on a patch of them in cells ``ratio`` times as wide.
+
+    ``whole`` is the grid of the wide cells; of ``setup`` the grid is not looked at.
+    """
+    fine = flow.Grid(cells=tuple(ratio * n for n in whole.cells), cell=whole.cell / ratio, origin=whole.origin)
+    patch = whole.patch(x, y, z, ratio=ratio)
+    grids = {"grid": fine}, {"grid": patch, "around": whole}
+    sims = [flow.Simulation(replace(setup, **those)) for those in grids]
+    return [sim.run(until, progress=False) for sim in sims]

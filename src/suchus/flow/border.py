@@ -4,7 +4,6 @@ Each side is seen with its normal first: ``normal[k]`` and ``tangent[k]`` are li
 kind of side is written once.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -253,8 +252,6 @@ class Border:
     """Steps prepared so far [-]."""
     span: float = 0.0
     """Length of the last step [cells per (m/s)]."""
-    beyond: Callable[[np.ndarray], None] | None = None
-    """Writes the velocity on and beyond the sides of a patch at which the domain does not end."""
 
     @classmethod
     def of(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
@@ -387,7 +384,5 @@ class Border:
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
-        if self.beyond is not None:
-            self.beyond(velocity)
         for edge in self.edges:
             edge.fill(velocity, self.stream)

@@ -14,7 +14,6 @@ one cycle a stage of McCormick's fast adaptive composite grids (1989).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 from typing import ClassVar
 
 import numpy as np
@@ -22,7 +21,7 @@ from scipy import sparse
 
 from suchus.errors import InvalidDesign
 from suchus.flow.body import AnyBody
-from suchus.flow.compiled import PAD
+from suchus.flow.compiled import PAD, compiled
 from suchus.flow.grid import RATIOS, Grid
 from suchus.flow.integrator import Integrator
 from suchus.flow.pose import Pose
@@ -130,6 +129,22 @@ def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarr
     return cell[:, None] + np.arange(-1, len(weights) - 1), np.stack(weights, axis=1)
 
 
+@compiled
+def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
+    """Write means of boxes of ``spans`` values, which begin at ``starts`` and every ``steps`` on; three axes each."""
+    share = fine.dtype.type(1.0 / (spans[0] * spans[1] * spans[2]))
+    for k in range(coarse.shape[0]):
+        for j in range(coarse.shape[1]):
+            for i in range(coarse.shape[2]):
+                total = fine.dtype.type(0)
+                for n in range(spans[0]):
+                    for m in range(spans[1]):
+                        row, slab = starts[1] + steps[1] * j + m, starts[0] + steps[0] * k + n
+                        for at in range(spans[2]):
+                            total += fine[slab, row, starts[2] + steps[2] * i + at]
+                coarse[k, j, i] = share * total
+
+
 class Rim:
     """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
 
@@ -191,9 +206,9 @@ class Nested(Fluid):
         self._rim = Rim(grid, around, own, dtype)
         self._values: list[np.ndarray] = []
         self._first: list[np.ndarray] = []
-        self._counts = [n // self.ratio for n in grid.cells]
+        counts = [n // self.ratio for n in grid.cells]
         self._cells = tuple(
-            slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], self._counts[::-1], strict=True)
+            slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], counts[::-1], strict=True)
         )  # fmt: skip
         self._faces = []
         for c in range(grid.axes):
@@ -204,7 +219,6 @@ class Nested(Fluid):
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._given: np.ndarray = np.zeros(0)
-        self.border.beyond = self._write_rim
 
     @property
     def layers(self) -> list[Fluid]:
@@ -262,37 +276,43 @@ class Nested(Fluid):
                         f"the body."
                     )
 
-    def _write_rim(self, velocity: np.ndarray) -> None:
+    def _surround(self, velocity: np.ndarray, coarse: np.ndarray) -> None:
+        """Write the velocity on and beyond the sides of the patch, by that on the coarse faces."""
+        self._values = self._rim.read(coarse)
         self._rim.write(velocity, self._values)
+        self.border.fill(velocity)
 
     def _give(self, fine: np.ndarray, coarse: np.ndarray) -> None:
         """Put the mean velocity through the fine faces of each coarse face inside the patch in its place."""
-        r = self.ratio
         for c, (part, whole) in enumerate(zip(fine, coarse, strict=True)):
-            starts = [(r,) if d == c else tuple(range(r)) for d in reversed(range(self.axes))]
-            sums = sum(
-                part[tuple(slice(PAD + at, PAD + r * n, r) for at, n in zip(first, self._counts[::-1], strict=True))]
-                for first in product(*starts)
-            )
-            whole[self._faces[c]] = sums * self.dtype(r ** (1 - self.axes))
+            self._average(part, whole[self._faces[c]], c)
+
+    def _average(self, fine: np.ndarray, coarse: np.ndarray, across: int | None = None) -> None:
+        """Write means over the fine cells in each coarse one, or over the fine faces in each coarse face.
+
+        Args:
+            fine: padded values on the patch.
+            coarse: where they go; the coarse cells of the patch, or the faces between them.
+            across: the axis that the faces lie across; None for cells.
+        """
+        spans = [1 if d == across else self.ratio for d in reversed(range(self.axes))]
+        starts = [PAD + (self.ratio if d == across else 0) for d in reversed(range(self.axes))]
+        steps = [self.ratio] * self.axes
+        if self.axes == 2:
+            fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
+        average(fine, coarse, tuple(starts), tuple(steps), tuple(spans))
 
     def _give_pressure(self) -> None:
         """Put the mean pressure of the fine cells in the place of the coarse one, and make both count from one level.
 
         The level is that at which the outermost coarse cells of the patch have the mean that they had.
         """
-        r, cells = self.ratio, self._counts[::-1]
-        sums = sum(
-            self.p[tuple(slice(PAD + at, PAD + r * n, r) for at, n in zip(first, cells, strict=True))]
-            for first in product(range(r), repeat=self.axes)
-        )
-        mean = sums * self.dtype(r**-self.axes)
         inside = self.coarse.p[self._cells]
+        mean = np.empty_like(inside)
+        self._average(self.p, mean)
         rise = inside - mean
         core = rise[(slice(1, -1),) * self.axes]
-        level = self.dtype(
-            (rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size)
-        )  # fmt: skip
+        level = self.dtype((rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size))
         self.p += level
         inside[:] = mean + level
         self.coarse._seal(self.coarse.p)
@@ -303,8 +323,6 @@ class Nested(Fluid):
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
-        if not self._values:  # of a stage before its pressure is known they only have to be there
-            self._values = self._rim.read(self.coarse.velocity)
         return super()._begin(dt, stream, push, time)
 
     def _plan(self, span: float) -> list[Taken]:
@@ -317,8 +335,7 @@ class Nested(Fluid):
         coarse._advance(beyond, self._push)
         self._give(stage.out, beyond.out)
         coarse._project(beyond.out, beyond.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
-        self._values = self._rim.read(beyond.out)
-        self.border.fill(stage.out)
+        self._surround(stage.out, beyond.out)
         self._project(stage.out, stage.solved, limits)
         self._give(stage.out, beyond.out)
         self._give_pressure()
@@ -365,9 +382,8 @@ class Nested(Fluid):
         """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``."""
         before = self.p.copy()
         self.coarse.press(self._coarsened(given), dt, TIGHTER * limit)
-        self._values = self._rim.read(self.coarse.velocity)
         self.velocity[:, *self.here] += given.astype(self.dtype)
-        self.border.fill(self.velocity)
+        self._surround(self.velocity, self.coarse.velocity)
         span = self.dtype(dt / self.grid.cell)
         self._project(self.velocity, span, (limit, 10 * limit))
         self._give(self.velocity, self.coarse.velocity)
