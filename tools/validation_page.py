@@ -194,7 +194,8 @@ def _cells(row: Row) -> dict[str, str]:
 def _compared(ours: float, theirs: float | str) -> str:
     """Return the difference from a number in per cent, or whether a bound is kept; empty where neither can be said."""
     if isinstance(theirs, int | float):
-        return f"{100 * (ours / theirs - 1):+.1f} %" if theirs else ""
+        off = 100 * (ours / theirs - 1) if theirs else 0.0
+        return f"{off:+.{1 if abs(off) >= 0.1 else 2}f} %" if theirs else ""
     bound = re.fullmatch(r"(at least|at most|below|above) ([\d.e+-]+)", theirs)
     if bound is None:
         return ""
