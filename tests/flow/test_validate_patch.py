@@ -66,9 +66,8 @@ def test_an_aerofoil_has_the_drag_and_lift_of_fine_cells():
         assert off < ASKED
 
 
-@pytest.mark.parametrize(("behind", "bound"), [(0.7, 6e-3), (1.6, ASKED)])
-def test_an_eel_swims_as_fast_as_in_fine_cells(behind, bound):
-    """With a patch that ends soon behind the tail the bound that is asked is missed, and 0.006 holds."""
+@pytest.mark.parametrize("behind", [0.7, 1.6])
+def test_an_eel_swims_as_fast_as_in_fine_cells(behind):
     whole = flow.Grid.covering((-2.5, 4.5), (-1.75, 1.75), cell=1 / 48)
     eel = flow.FreeBody(shape=flow.eel(1.0), name="eel")
     setup = flow.Setup(grid=whole, viscosity=0.785 / 5609, bodies=(eel,), follow="eel", coarse=True)
@@ -76,7 +75,7 @@ def test_an_eel_swims_as_fast_as_in_fine_cells(behind, bound):
     speeds = [-np.average(r.after(3.0).column("velocity_x"), weights=r.after(3.0).step) for r in (fine, patch)]
     off = note("patch: free eel", f"speed in the fourth cycle, {behind:g} L of the wake in the patch [L/T]", speeds[1],
                float(speeds[0]), "96 cells/L, 48 around", "7 L x 3.5 L", "fine cells everywhere")  # fmt: skip
-    assert off < bound
+    assert off < ASKED
 
 
 def test_a_sphere_has_the_drag_of_fine_cells():
