@@ -59,11 +59,30 @@ def test_the_work_of_a_force_is_that_of_its_parts():
     points = one.centres(place)
     off = points.place.T - origin - about
     moments = own + off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0]
-    parts = tuple(Reaction(force=(*f,), moment=(m,), power=0.0) for f, m in zip(pull.tolist(), moments, strict=True))
-    loads = flow.FlowLoads(about=about, whole=parts[0], parts=parts)
+    parts = Reaction(force=pull, moment=moments[:, None], power=np.zeros(count))
+    loads = flow.FlowLoads(about=about, whole=parts, parts=parts, pressed=np.zeros((count, 3)))
     moved = one.twists(place, rate, origin, 2)
     work = (pull * moved.linear).sum() + (own * moved.angular[:, 0]).sum()
     assert one.force(place, loads, origin) @ rate == pytest.approx(work, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_parts_that_press_on_each_other_work_on_each_joint_by_the_moment_of_a_section(name):
+    """Wherever the body is: of a pressure's moment that is the same in all sections each joint feels it once."""
+    one, moment, level = chain(name), 0.7, 3.0
+    straight = np.array([0.4, -0.1, 0.6, *np.zeros(len(one.joints))])
+    origin, about, long = np.array([0.2, 0.1]), np.array([-0.3, 0.5]), np.diff(one.ends)
+    points = one.centres(straight)
+    aside = np.stack([-np.sin(points.heading), np.cos(points.heading)])
+    first = moment * long * aside + level * long * (points.place - (origin + about)[:, None])
+    pressed = np.column_stack([level * long, *first])
+    count = len(long)
+    still = Reaction(force=np.zeros((count, 2)), moment=np.zeros((count, 1)), power=np.zeros(count))
+    loads = flow.FlowLoads(about=about, whole=still, parts=still, pressed=pressed)
+    turning = one.midline(straight).turning
+    signs = turning[-1] - turning[0]  # by how much each coordinate turns the tail against the head
+    assert np.abs(signs) == pytest.approx([0.0] * 3 + [1.0] * len(one.joints), abs=1e-12)
+    assert one.force(straight, loads, origin) == pytest.approx(moment * signs, abs=1e-12)
 
 
 def test_a_path_has_the_places_and_rates_of_both_ends():

@@ -10,16 +10,18 @@ import pytest
 import suchus
 from suchus.control import Swimming
 from suchus.control.holding import HeadingHold
-from suchus.coupling import Swim, simulate
+from suchus.coupling import Swim, check_on_joints, simulate
 from suchus.coupling.chain import MidlineChain
 from suchus.errors import Doubtful, InvalidDesign, UnknownName, UnreadableFile
 from suchus.fingerprint import fingerprint
 from suchus.land import Ground, Lake, Push, Run
 from suchus.land.stepper import Stepper
 from suchus.land.waters import Sections, Slice, Space
+from suchus.motion import roll
 from suchus.progress import silent
 from suchus.record import COUPLED, WATER
 from suchus.water import Outline, swim_of
+from suchus.water.setting import SwimSetting
 
 SLICE = Slice(cells=64, reynolds=1500.0)
 
@@ -69,7 +71,7 @@ def test_what_servos_and_water_do_is_the_robots_kinetic_energy():
 def test_energy_closes_and_little_is_left_over():
     record = swum()
     assert float(abs(record.energy_error[-1])) < 0.003
-    assert float(abs(record.power_error[-1])) < 0.05
+    assert float(abs(record.power_error[-1])) < 2e-3  # 0.0142 with what the parts do to each other
     assert float(record.coupling_residual[5:].max()) < 2e-2
     assert float(record.coupling_first[5:].max()) > 2 * float(record.coupling_residual[5:].max())
     assert {*WATER, *COUPLED} <= {*record.data_vars}
@@ -122,6 +124,13 @@ def test_a_robot_that_sinks_is_refused():
 def test_a_gait_that_the_flow_cannot_see_is_refused(robot, gait, why):
     with pytest.raises(InvalidDesign, match=why):
         Swim(Run(robot=robot, gait=gait, water="slice"), 0.1)
+
+
+def test_what_joints_cannot_swim_is_refused_before_any_water_is_there():
+    robot, setting = suchus.ROBOTS["caiman"], SwimSetting(axes=3, cells=64, viscosity=4e-4, cycles=2)
+    check_on_joints(robot, swim_of(robot, frequency=1.0), setting)  # with foam that carries it
+    with pytest.raises(InvalidDesign, match=r"bends the axis out of the plane: servo"):
+        check_on_joints(robot, roll(robot, period=1.0, trunk=(0.3, 0.3), tail=(0.3, 0.3)), setting)
 
 
 def disturbed():

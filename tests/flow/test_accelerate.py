@@ -47,6 +47,11 @@ def twist(pose, linear, spin):
     return Twists(about=np.array([pose.position]), linear=np.array([linear]), angular=np.array([[spin]]))
 
 
+def wrench(sim):
+    load = sim.last("body").whole
+    return np.concatenate([load.force, load.moment])
+
+
 def test_a_step_that_is_taken_again_has_the_same_bytes():
     spine = flow.foil(0.8, thickness=0.4).spine(0.0)
     swing = flow.Oscillation(frequency=1.0, centre=(0.9, 0.0), heave=(0.0, 0.1))
@@ -78,15 +83,15 @@ def test_accelerated_after_a_step_is_a_step_to_another_velocity(change):
         told.step(sim)
     kept, other = sim.snapshot(), np.array(change)
     sim.advance(H)
-    first, before = np.array(sim.last("body").whole.force + sim.last("body").whole.moment), sim.water.velocity.copy()
+    first, before = wrench(sim), sim.water.velocity.copy()
     pose = sim.pose("body")
     sim.accelerate({"body": twist(pose, change[:2], change[2])})
-    ours, field = np.array(sim.last("body").whole.force + sim.last("body").whole.moment), sim.water.velocity.copy()
+    ours, field = wrench(sim), sim.water.velocity.copy()
     power = sim.last("body").whole.power
     sim.restore(kept)
     told.push = told.push + other / H
     sim.advance(H)
-    exact = np.array(sim.last("body").whole.force + sim.last("body").whole.moment)
+    exact = wrench(sim)
     size = np.linalg.norm(exact - first)
     assert np.linalg.norm(ours - exact) < 0.05 * size  # 0.7 % along, 0.06 % aside, 4 % of the little that turns
     assert np.abs(field - sim.water.velocity).max() < 0.15 * np.abs(before - sim.water.velocity).max()
@@ -121,12 +126,12 @@ def test_the_added_mass_of_rigid_modes_is_that_of_the_body():
     markers = ELLIPSE.markers(0.0, pose, sim.setup.grid.cell)
     modes = [twist(pose, linear, spin) for linear, spin in (((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0), ((0.0, 0.0), 1.0))]
     whole = added_mass(sim.water, markers, pose.position, 1.0)
-    modal = generalised_added_mass(sim.water, [markers], modes, 1.0)
-    assert modal == pytest.approx(0.5 * (whole + whole.T), rel=1e-6, abs=1e-6 * whole.max())
+    modal = generalised_added_mass(sim.water, [markers], modes, 1.0).matrix
+    assert modal == pytest.approx(0.5 * (whole + whole.T), rel=1e-3, abs=1e-4 * whole.max())  # solved less far
     mixed = [modes[0] * 2.0, replace(modes[1], angular=modes[2].angular)]
     way = np.array([[2.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
-    found = generalised_added_mass(sim.water, [markers], mixed, 1.0)
-    assert found == pytest.approx(way @ modal @ way.T, rel=1e-4, abs=1e-5)
+    found = generalised_added_mass(sim.water, [markers], mixed, 1.0).matrix
+    assert found == pytest.approx(way @ modal @ way.T, rel=1e-3, abs=1e-4)
 
 
 def test_what_cannot_be_accelerated_is_refused():
@@ -164,7 +169,7 @@ def test_a_slice_is_divided_at_its_cuts():
     assert cut.along("power").sum(axis=1) == pytest.approx(whole.column("power"), abs=1e-5)
     assert cut.along("torque_behind")[:, 0] == pytest.approx(whole.torque()[:, 0], abs=1e-4)  # about the same point
     assert np.abs(cut.along("force_y")).min(axis=0).min() > 0
-    assert sim.last("foil").forces.sum(axis=0) == pytest.approx(sim.last("foil").whole.force)
+    assert sim.last("foil").parts.force.sum(axis=0) == pytest.approx(sim.last("foil").whole.force)
     with pytest.raises(InvalidDesign, match="cuts of a midline"):
         flow.Midline(spine=lambda _: spine, cuts=(0.4, 0.2))
 

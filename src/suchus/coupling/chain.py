@@ -121,31 +121,44 @@ class MidlineChain:
         tangent = step * np.stack([np.cos(bend), np.sin(bend)])
         normal = np.stack([-tangent[1], tangent[0]])
         turns = np.column_stack([np.ones(bend.size), middle - at_root])
-        summed = [_summed(line) for line in tangent]
+        summed = np.stack([_summed(line) for line in tangent])[..., None]
         swept = np.stack([_summed(line[:, None] * turns) for line in normal])
         s = self.outline.s
-        where = np.stack([line - np.interp(self.root, s, line) for line in summed])
-        away = np.stack([[column - np.interp(self.root, s, column) for column in line.T] for line in swept])
+        where, away = (line - self._between(np.array([self.root]), line) for line in (summed, swept))
         along = np.zeros((2, s.size, self.size))
         along[0, :, 0] = along[1, :, 1] = 1.0
-        along[:, :, 2:] = away.swapaxes(1, 2)
+        along[:, :, 2:] = away
         turning = np.zeros((s.size, self.size))
         turning[:, 2], turning[:, 3:] = 1.0, station - at_root
-        return Points(where + place[:2, None], heading, along, turning)
+        return Points(where[..., 0] + place[:2, None], heading, along, turning)
+
+    def _between(self, arc: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Return values at arc lengths of values at the stations, along the axis before the last."""
+        s = self.outline.s
+        k = np.clip(np.searchsorted(s, arc) - 1, 0, s.size - 2)
+        share = ((arc - s[k]) / (s[k + 1] - s[k]))[:, None]
+        return np.asarray((1 - share) * values[..., k, :] + share * values[..., k + 1, :])
+
+    @cached_property
+    def _middles(self) -> np.ndarray:
+        """Arc lengths of the middles of the parts [m]."""
+        return np.asarray(0.5 * (self.ends[1:] + self.ends[:-1]))
 
     def centres(self, place: np.ndarray) -> Points:
-        """Return the middles of the parts in a posture."""
-        line, s = self.midline(place), self.outline.s
-        at = 0.5 * (self.ends[1:] + self.ends[:-1])
+        """Return the middles of the parts in a posture, which are worked out once as ``midline`` is."""
+        known, key = self._recent_centres, place.tobytes()
+        if key not in known:
+            if len(known) == RECENT:
+                del known[next(iter(known))]
+            line = self.midline(place)
+            flat = np.concatenate([line.place[0, :, None], line.place[1, :, None], line.heading[:, None]], axis=1)
+            at, moves = (self._between(self._middles, each) for each in (flat, line.along))
+            known[key] = Points(at[:, :2].T, at[:, 2], moves, self._between(self._middles, line.turning))
+        return known[key]
 
-        def between(values: np.ndarray) -> np.ndarray:
-            """Return values at the middles of values at the stations, along the axis before the last."""
-            k = np.clip(np.searchsorted(s, at) - 1, 0, s.size - 2)
-            share = ((at - s[k]) / (s[k + 1] - s[k]))[:, None]
-            return (1 - share) * values[..., k, :] + share * values[..., k + 1, :]
-
-        where = between(line.place[..., None])[..., 0]
-        return Points(where, between(line.heading[:, None])[:, 0], between(line.along), between(line.turning))
+    @cached_property
+    def _recent_centres(self) -> dict[bytes, Points]:
+        return {}
 
     @cached_property
     def _weights(self) -> np.ndarray:
@@ -175,15 +188,40 @@ class MidlineChain:
         """Return the generalised force of what acts on the parts [N, N m; in the plane per metre of depth].
 
         Args:
-            place: posture at the end of the step.
+            place: posture; with that in the middle of the step, force times velocity is the power to second order.
             loads: on the parts; torques about ``loads.about``.
             origin: of the grid's frame in the world of the flow [m].
         """
         points = self.centres(place)
-        pull, turn = loads.forces[:, :2], loads.torques[:, -1]
+        pull, turn = loads.parts.force[:, :2], loads.parts.torque
         off = points.place.T - origin - loads.about[:2]
         own = turn - (off[:, 0] * pull[:, 1] - off[:, 1] * pull[:, 0])
-        return np.einsum("cpk,pc->k", points.along, pull) + own @ points.turning
+        whole = np.einsum("cpk,pc->k", points.along, pull) + own @ points.turning
+        return whole + self.unpressed(place, loads.pressed, origin + loads.about[:2])
+
+    @cached_property
+    def _bends(self) -> np.ndarray:
+        """By how much each part bends per angle of each joint, over its length, shape (part, joint) [1/m]."""
+        return np.diff(self.outline.joints_at(self.ends), axis=0) / np.diff(self.ends)[:, None]
+
+    def unpressed(self, place: np.ndarray, pressed: np.ndarray, about: np.ndarray) -> np.ndarray:
+        """Return the generalised force that takes away what the parts do to each other.
+
+        A body has no pressure inside, but the flow's has: across a section it is a moment, which works on rigid pieces
+        that turn against each other and does nothing to the water.
+
+        Args:
+            place: posture.
+            pressed: of the parts, shape (..., part, 1 + axis); see ``flow.FlowLoads``.
+            about: point of its moments, in the world of the flow [m].
+
+        Returns:
+            Shape (..., coordinate) [N m; in the plane per metre of depth].
+        """
+        points = self.centres(place)
+        off, aside = points.place.T - about, np.stack([-np.sin(points.heading), np.cos(points.heading)], axis=1)
+        moment = ((pressed[..., 1:3] - pressed[..., :1] * off) * aside).sum(axis=-1)
+        return np.concatenate([np.zeros((*moment.shape[:-1], 3)), moment @ self._bends], axis=-1)
 
     def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:
         """Return the motion of the parts as rigid pieces.

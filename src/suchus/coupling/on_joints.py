@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus import flow
 from suchus.control import Swimming
-from suchus.coupling.swim import Swim
+from suchus.coupling.swim import Swim, check_swim
 from suchus.design import GRAVITY, Robot, with_values
 from suchus.design.flotation import float_hull
 from suchus.design.scale import control_period
@@ -30,6 +30,28 @@ def floating(robot: Robot) -> Robot:
         return robot
     bare = with_values(robot, {"hull": None})
     return with_values(bare, {"hull": float_hull(bare)})
+
+
+def _run(robot: Robot, gait: Gait, setting: SwimSetting) -> Run:
+    """Return the run that swims so."""
+    reynolds = robot.length**2 / (gait.period * setting.viscosity)
+    water = Space(
+        cells=setting.cells, reynolds=reynolds, tail_height=setting.tail_height, limbs=setting.limbs,
+        beside=setting.beside,
+    )  # fmt: skip
+    return Run(
+        robot=floating(robot), gait=with_limbs(robot, gait, LIMBS_BACK), water=water,
+        control=Swimming(ramp=GROWS * gait.period),
+    )  # fmt: skip
+
+
+def check_on_joints(robot: Robot, gait: Gait, setting: SwimSetting) -> None:
+    """Refuse what ``swim_on_joints`` cannot swim, before anything runs.
+
+    Raises:
+        InvalidDesign, OutsideLimits: see ``Swim``.
+    """
+    check_swim(_run(robot, gait, setting), setting.cycles * gait.period)
 
 
 def swim_on_joints(
@@ -61,18 +83,9 @@ def swim_on_joints(
     Raises:
         InvalidDesign, OutsideLimits, Diverged, UnreadableFile, Unwritable: see ``Swim`` and ``Swim.go``.
     """
-    period = gait.period
-    reynolds = robot.length**2 / (period * setting.viscosity)
-    water = Space(
-        cells=setting.cells, reynolds=reynolds, tail_height=setting.tail_height, limbs=setting.limbs,
-        beside=setting.beside,
-    )  # fmt: skip
-    run = Run(
-        robot=floating(robot), gait=with_limbs(robot, gait, LIMBS_BACK), water=water,
-        control=Swimming(ramp=GROWS * period),
-    )  # fmt: skip
+    run = _run(robot, gait, setting)
     tick = control_period(run.robot)
-    swim = Swim(run, tick * ceil(setting.cycles * period / tick - 1e-6))
+    swim = Swim(run, tick * ceil(setting.cycles * gait.period / tick - 1e-6))
     observer = _OnJoints(swim, ResolvedSwim(robot=robot, motion=gait, setting=setting))
     swim.go(
         swim.ticks * swim.stepper.period, progress=progress, checkpoint=checkpoint,

@@ -73,6 +73,55 @@ _WIDER = 1.25
 """Swing that the box has room for, over that of the commanded midline [-]."""
 
 
+def check_swim(run: Run, duration: float) -> None:
+    """Refuse a run whose gait, faults, control or body a flow around it cannot have, before the flow is set up.
+
+    Args:
+        run: with a ``Slice`` or a ``Space``.
+        duration: [s].
+
+    Raises:
+        InvalidDesign, OutsideLimits: see ``Swim``.
+    """
+    check_limits(run.robot, run.gait)
+    check_faults(run.faults, run.robot, duration)
+    check_pushes(run.pushes, run.robot, duration)
+    if not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
+        raise InvalidDesign(
+            f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
+            'that does; take water="sections".'
+        )
+    _check_plane(run)
+    check_floats(run.robot, Lake(level=run.robot.length))
+    for name in ("depth", "pitch"):
+        if getattr(run.control, name, None) is not None:
+            raise InvalidDesign(
+                f"the control holds the {name}, and in a {type(run.solved).__name__.lower()} the body stays in its "
+                f'plane: leave out {name}, or take water="sections".'
+            )
+
+
+def _check_plane(run: Run) -> None:
+    """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
+
+    Raises:
+        InvalidDesign: naming the servo.
+    """
+    robot, gait, place = run.robot, run.gait, layout(run.robot)
+    angles = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 24, endpoint=False))
+    lateral = {servo.name for servo in Outline(robot, 33).servos}
+    axis = {hinge.name for hinge in robot.axis_hinges} | {cable.name for cable in robot.cables}
+    for number, name in enumerate(place.servos):
+        swing, far = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
+        if name not in lateral and (swing > OFF_PLANE or (name in axis and far > OFF_PLANE)):
+            what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
+            raise InvalidDesign(
+                f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
+                f"rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
+                'does, say motion.swimming_gait, or water="sections".'
+            )
+
+
 class Swim:
     """One run whose water is a flow, from rest.
 
@@ -102,7 +151,7 @@ class Swim:
         water = run.solved
         assert water is not None
         self.run, self.water = run, water
-        self._check(duration)
+        check_swim(run, duration)
         self.chain = MidlineChain(Outline(run.robot, water.cells + 1), water.parts)
         self._axes = 2 if isinstance(water, Slice) else 3
         self._times = self.depth if isinstance(water, Slice) else 1.0
@@ -134,45 +183,6 @@ class Swim:
         self._start_added = self._added
 
     # --- what is set up ----------------------------------------------------------------------------------------
-
-    def _check(self, duration: float) -> None:
-        run = self.run
-        check_limits(run.robot, run.gait)
-        check_faults(run.faults, run.robot, duration)
-        check_pushes(run.pushes, run.robot, duration)
-        if not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
-            raise InvalidDesign(
-                f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
-                'that does; take water="sections".'
-            )
-        self._check_plane()
-        check_floats(run.robot, Lake(level=run.robot.length))
-        for name in ("depth", "pitch"):
-            if getattr(run.control, name, None) is not None:
-                raise InvalidDesign(
-                    f"the control holds the {name}, and in a {type(self.water).__name__.lower()} the body stays in its "
-                    f'plane: leave out {name}, or take water="sections".'
-                )
-
-    def _check_plane(self) -> None:
-        """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
-
-        Raises:
-            InvalidDesign: naming the servo.
-        """
-        robot, gait, place = self.run.robot, self.run.gait, layout(self.run.robot)
-        angles = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 24, endpoint=False))
-        lateral = {servo.name for servo in Outline(robot, 33).servos}
-        axis = {hinge.name for hinge in robot.axis_hinges} | {cable.name for cable in robot.cables}
-        for number, name in enumerate(place.servos):
-            swing, far = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
-            if name not in lateral and (swing > OFF_PLANE or (name in axis and far > OFF_PLANE)):
-                what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
-                raise InvalidDesign(
-                    f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
-                    f"rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
-                    'does, say motion.swimming_gait, or water="sections".'
-                )
 
     @property
     def depth(self) -> float:
@@ -242,10 +252,10 @@ class Swim:
     def _origin(self) -> np.ndarray:
         return np.array(self.sim.frame[0, :2])
 
-    def _found(self, posture: ChainState) -> np.ndarray:
+    def _found(self, began: ChainState, posture: ChainState) -> np.ndarray:
         """Return the generalised force of the water in the last step, along the robot's own coordinates."""
-        loads = self.sim.last(self.run.robot.name)
-        return self._times * self._signs * self.chain.force(posture.place, loads, self._origin)
+        loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
+        return self._times * self._signs * self.chain.force(place, loads, self._origin)
 
     # --- going on ----------------------------------------------------------------------------------------------
 
@@ -259,11 +269,14 @@ class Swim:
         """Work of the servos so far, braking counted as much as driving [J]."""
         return self._effort
 
-    def _renew(self) -> None:
-        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin."""
+    def _renew(self, *, anew: bool = False) -> None:
+        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin.
+
+        Corrections that do not come to an end (``anew``) say that it does not fit any more.
+        """
         posture = self.path.at(self.time)
         settled = len(self.series.time) == 1
-        if self._computed is not None and not settled:
+        if self._computed is not None and not settled and not anew:
             bent = np.abs(posture.place[2:] - self._computed[2:]).max()
             if bent < self.water.renewed:
                 return
@@ -271,23 +284,30 @@ class Swim:
         before = self._added
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         found = self.sim.added_mass(self.run.robot.name, modes)
-        self._added = self._times * self._signs[:, None] * found * self._signs
+        inside = self.chain.unpressed(posture.place, found.pressed, self._origin)
+        own = found.matrix - 0.5 * (inside + inside.T)
+        self._added = self._times * self._signs[:, None] * own * self._signs
         if len(self.series.time):
             inertia = self.stepper.mass() + before
             apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
             self.series.radius.append((self.time, float(np.abs(apart).max())))
         self._kept = self.stepper.burden(self._added)
 
-    def _gone(self, count: int, force: np.ndarray, push: np.ndarray) -> tuple[PlaneState, np.ndarray]:
+    def _newton(self) -> np.ndarray:
+        """Return how the acceleration that is missing changes with one that is guessed, but for what servos do."""
+        inertia = self.stepper.mass() + self._kept
+        return np.asarray(np.eye(self.chain.size) + np.linalg.solve(inertia, self._added - self._kept))
+
+    def _gone(
+        self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
+    ) -> tuple[PlaneState, np.ndarray]:  # fmt: skip
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
-        Returns where it comes to, and its mean acceleration on the way.
+        Returns where it comes to, and its mean acceleration on the way, ``guess`` at first. Broyden's updates of
+        ``newton`` are kept in it.
         """
         h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
-        inertia = self.stepper.mass() + self._kept
-        guess = push
-        newton = np.eye(len(force)) + np.linalg.solve(inertia, left)  # servos make it another; Broyden finds which
         missing = change = np.zeros_like(push)
         for round_ in range(_ROUNDS):
             end = self.stepper.go(count, force + self._added @ push - left @ guess)
@@ -325,33 +345,35 @@ class Swim:
         count = stepper.until(until, max(int(allowed / self.timestep), 1))
         h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
         stepper.begin()
-        end, push = self._gone(count, self._force, self._push)
+        newton = self._newton()
+        end, push = self._gone(count, self._force, self._push, self._push, newton)
         told = self._force - self._added @ (push - self._push)
         posture = self._seen(end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
         self._placed = posture
-        found = self._found(posture)
+        found = self._found(began, posture)
         self._greatest = max(self._greatest, self._size(found))
         left = first = self._size(found - told) / max(self._greatest, 1e-300)
-        made = 0
+        made, whole = 0, stepper.mass() + self._added
         while made < self.water.corrections and left > self.water.tolerance:
             asked, at = found, push
-            end, push = self._gone(count, asked, at)
+            likely = push + np.linalg.solve(whole, found - told)
+            end, push = self._gone(count, asked, at, likely, newton)
             told = asked - self._added @ (push - at)
             other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
             posture = other
             self.path.go(start, began, start + h, posture)
             sim.accelerate({name: more})
-            found = self._found(posture)
+            found = self._found(began, posture)
             left, made = self._size(found - told) / self._greatest, made + 1
         stretch = stepper.account()
         self._effort += stretch.effort
         self._note(stretch, found, posture, (first, left), made)
         self._force, self._push = found, push
         self._watch(left)
-        self._renew()
+        self._renew(anew=made > 0 and left > self.water.tolerance)
 
     def _note(
         self, stretch: Stretch, found: np.ndarray, posture: ChainState,
@@ -360,7 +382,7 @@ class Swim:
         series = self.series
         loads = self.sim.last(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)
-        power = self._times * loads.whole.power - float(self._times * np.dot(loads.whole.force, self._drift()))
+        power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
         series.time.append(self.time)
         series.force.append(found)
         series.links.append(self._links(posture, loads))
@@ -376,7 +398,7 @@ class Swim:
         """Return what acts on each link, the torque about its middle, in the world."""
         links, count = self.chain.links, int(self.chain.links.max()) + 1
         points = self.chain.centres(posture.place).place.T - self._origin
-        pull, turn = loads.forces[:, :2], loads.torques[:, -1]
+        pull, turn = loads.parts.force[:, :2], loads.parts.torque
         out = np.zeros((count, 3))
         for link in range(count):
             mine = links == link

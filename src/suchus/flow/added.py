@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,18 @@ from suchus.flow.water import Fluid
 
 _LIMIT = 1e-5
 """Divergence left over, relative to the accelerations [-]."""
+_ROUGH = 1e-4
+"""The same where the matrix is to guess what a step's own solve then tells [-]."""
+
+
+class AddedMass(NamedTuple):
+    """What the water does as parts of bodies are accelerated together, in each of some modes."""
+
+    matrix: np.ndarray
+    """Added mass, shape (mode, mode): the force in mode i is ``-matrix[i, k]`` per unit acceleration of mode k."""
+    pressed: np.ndarray
+    """What the pressure then does inside the parts, as ``log.FlowLoads.pressed`` but about the origin of the grid's
+    frame, shape (mode, row, 1 + axis)."""
 
 
 def added_mass(
@@ -37,7 +50,7 @@ def added_mass(
         asked = [bool(one) or (unbounded and k < axes) for k, one in enumerate(wanted)]
         kept = [keep and one for keep, one in zip(kept, asked, strict=True)]
     modes = [mode for mode, keep in zip(_rigid(water, about, body), kept, strict=True) if keep]
-    answers = _Answers.of(water, modes)
+    answers = _Answers.of(water, modes, _LIMIT, sides_held=False)
     volume, both = water.grid.cell**axes, np.ix_(kept, kept)
     whole = np.full((len(kept), len(kept)), np.nan)
     shore = water.layers[-1].grid.cell ** axes
@@ -50,11 +63,10 @@ def added_mass(
 
 def generalised_added_mass(
     water: Fluid, outlines: Sequence[Markers], modes: Sequence[Twists], density: float
-) -> np.ndarray:
-    """Return the added mass for motions of all bodies together, such as those of joints, shape (mode, mode).
+) -> AddedMass:
+    """Return the added mass for motions of all bodies together, such as those of joints.
 
-    The generalised force of the water in mode i is ``-Ma[i, k]`` per unit acceleration of mode k. The sides of the
-    domain are held, so that it is, if anything, too large. What lies beyond mirrors is counted.
+    The sides of the domain are held, so that it is, if anything, too large. What lies beyond mirrors is counted.
 
     Args:
         water: with the bodies placed.
@@ -65,14 +77,16 @@ def generalised_added_mass(
     Raises:
         NotConverged: the pressure solver got stuck.
     """
-    answers, mine = _Answers.of(water, modes), []
+    answers, mine = _Answers.of(water, modes, _ROUGH, sides_held=True), []
     for rows in water.rows:
         own = slice(rows.start, rows.stop)
         mine.append([_part(mode, own) for mode in modes])
     rim = _rim(water, outlines, mine, water.cut)
-    times = 2 ** max(sum(cut) for cut in water.cut)
-    whole: np.ndarray = times * density * (water.grid.cell**water.axes * answers.held + rim)
-    return 0.5 * (whole + whole.T)
+    times, h, corner = 2 ** max(sum(cut) for cut in water.cut), water.grid.cell, np.array(water.grid.origin)
+    whole: np.ndarray = times * density * (h**water.axes * answers.held + rim)
+    pressed = times * density * h ** (water.axes + 1) * answers.pressed
+    pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
+    return AddedMass(0.5 * (whole + whole.T), pressed)
 
 
 def symmetric(cut: tuple[bool, ...]) -> list[bool]:
@@ -110,29 +124,32 @@ class _Answers:
     """Potential along each side, mode by mode [m/s^2 cells]."""
     inward: list[list[np.ndarray]]
     """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
+    pressed: np.ndarray
+    """What the potential does inside each part, mode by mode; see ``Fluid.pressures``."""
 
     @classmethod
-    def of(cls, water: Fluid, modes: Sequence[Twists]) -> "_Answers":
-        """Return the answers of the water around placed bodies."""
+    def of(cls, water: Fluid, modes: Sequence[Twists], limit: float, *, sides_held: bool) -> "_Answers":
+        """Return the answers of the water around placed bodies to a limit [-]; of sides that are held there is none."""
         faces, axes = held_faces(water), water.axes
         shape = tuple(s.stop - s.start for s in water.here)
-        rises, moves, shores, inward = [], [], [], []
+        rises, moves, shores, inward, inside = [], [], [], [], []
         for mode in modes:
             parts = [mode.at(one.row, one.points)[c] for c, one in enumerate(faces)]
             scale = max(float(np.abs(part).max(initial=0.0)) for part in parts) or 1.0
             given = np.zeros((axes, *shape))
             for c, (one, part) in enumerate(zip(faces, parts, strict=True)):
                 given[c].ravel()[one.place] = one.closed * part / scale
-            x = water.potential(given, _LIMIT)
+            x = water.potential(given, limit)
             shores.append([scale * line.astype(np.float64) for line in water.along_sides(x)])
             rises.append([scale * rise(water, x, one, c) for c, one in enumerate(faces)])
-            inward.append([scale * side for side in water.answer(given)])
+            inside.append(water.pressures(x, scale))
+            inward.append([] if sides_held else [scale * side for side in water.answer(given)])
             moves.append([one.closed * part for one, part in zip(faces, parts, strict=True)])
         held, own = (
             np.array([[_work(mode, parts) for parts in what] for mode in moves])
             for what in (rises, [[m.at(one.row, one.points)[c] for c, one in enumerate(faces)] for m in modes])
         )
-        return cls(held, own, shores, inward)
+        return cls(held, own, shores, inward, np.array(inside))
 
 
 def _work(mode: list[np.ndarray], parts: list[np.ndarray]) -> float:

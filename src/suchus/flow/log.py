@@ -29,18 +29,14 @@ class FlowLoads:
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
     whole: Reaction
     """On the whole body, mean over the step."""
-    parts: tuple[Reaction, ...]
-    """On each of its parts; of a body that is not divided the whole."""
+    parts: Reaction
+    """On each of its parts, along the first axis; of a body that is not divided the whole."""
+    pressed: np.ndarray
+    """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
+    about ``about``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
 
-    @property
-    def forces(self) -> np.ndarray:
-        """Forces on the parts, shape (part, axis) [N/m, N]."""
-        return np.array([part.force for part in self.parts])
-
-    @property
-    def torques(self) -> np.ndarray:
-        """Torques on the parts, shape (part, 1) or (part, 3) [N, N m]."""
-        return np.array([part.moment for part in self.parts])
+    Parts press on each other so, which is not the water's doing: taken as rigid pieces, they work against it where
+    the body bends."""
 
 
 @dataclass(slots=True)
@@ -73,29 +69,27 @@ class Log:
     def reactions(
         self, water: Fluid, outlines: Sequence[Markers], about: list[tuple[float, ...]], dt: float,
         push: tuple[float, ...], before: np.ndarray,
-    ) -> list[list[Reaction]]:  # fmt: skip
-        """Return, per body, what the water did to the whole body in the step that just ended, and to its parts.
+    ) -> list[FlowLoads]:  # fmt: skip
+        """Return what the water did to each body in the step that just ended, and to its parts.
 
         ``before`` is what ``held`` was when the step began.
         """
-        grid = self.setup.grid
+        grid, found = self.setup.grid, []
         self.hold(water, outlines)
-
-        def act(rows: Sequence[int], point: tuple[float, ...], cut: tuple[bool, ...]) -> Reaction:
-            first, *others = rows
-            given, was, now = (
-                sums[first] + sums[others].sum(axis=0) if others else sums[first]
-                for sums in (water.given, before, self.held)
-            )
-            return reaction(
-                given, was, now, dt=dt, push=push, about=np.array(point), origin=grid.origin, h=grid.cell,
-                density=self.setup.density,
-            ).whole(cut)  # fmt: skip
-
-        return [
-            [act(rows, point, cut), *(act([row], point, cut) for row in rows if len(rows) > 1)]
-            for rows, point, cut in zip(water.rows, about, water.cut, strict=True)
-        ]
+        for rows, point, cut in zip(water.rows, about, water.cut, strict=True):
+            place = np.array(point)
+            own = [sums[rows.start : rows.stop] for sums in (water.given, before, self.held)]
+            whole, parts = (
+                reaction(
+                    *sums, dt=dt, push=push, about=place, origin=grid.origin, h=grid.cell, density=self.setup.density
+                ).whole(cut)
+                for sums in ([each[0] + each[1:].sum(axis=0) for each in own], own)
+            )  # fmt: skip
+            scale = 2 ** sum(cut) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
+            pressed = scale * water.pressed[rows.start : rows.stop]
+            pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (place - np.array(grid.origin))
+            found.append(FlowLoads(about=place, whole=whole, parts=parts, pressed=pressed))
+        return found
 
     def control(self, water: Fluid, dt: float, push: tuple[float, ...]) -> None:
         """Note the force from the box, if there is one."""
@@ -148,7 +142,7 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
         place: where it is.
         error: estimated error of its force [-].
     """
-    power = act.power - float(frame @ np.array(act.force))
+    power = float(act.power - frame @ act.force)
     along = () if load is None else (*load.pressure, *load.shear)
     flat = len(act.moment) == 1
     angles = (place.angle,) if flat else (place.angle, place.pitch, place.roll)
@@ -159,7 +153,7 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
 
 
 def part_columns(
-    body: AnyBody, acts: Sequence[Reaction], about: tuple[float, ...], pose: Pose, time: float, frame: np.ndarray
+    body: AnyBody, acts: Reaction, about: tuple[float, ...], pose: Pose, time: float, frame: np.ndarray
 ) -> list[float]:
     """Return ``record.PART_COLUMNS`` of a body's parts one after the other; nothing of a body of one part.
 
@@ -171,10 +165,10 @@ def part_columns(
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """
-    if len(acts) < 2 or not isinstance(body.shape, Trunk | Midline):
+    force, torque = acts.force, acts.moment
+    if len(force) < 2 or not isinstance(body.shape, Trunk | Midline):
         return []
-    force, torque = (np.array([getattr(act, what) for act in acts]) for what in ("force", "moment"))
-    power = np.array([act.power for act in acts]) - force @ frame
+    power = acts.power - force @ frame
     behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
     ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)
     if len(about) == 2:

@@ -173,11 +173,13 @@ class Midline(Shape):
         return field
 
     def _nearest_parts(self, placed: MidlineState, x: np.ndarray, y: np.ndarray, near: np.ndarray) -> np.ndarray:
-        """Return which part has the station that is nearest to each point of a window, in the body and near it."""
+        """Return which part holds the section through each point of a window, in the body and near it."""
         rows, columns = np.nonzero(near)
-        nearest = KDTree(np.column_stack([placed.x, placed.y])).query(np.column_stack([x[columns], y[rows]]))[1]
+        px, py = x[columns], y[rows]
+        k = KDTree(np.column_stack([placed.x, placed.y])).query(np.column_stack([px, py]))[1]
+        along = (px - placed.x[k]) * np.cos(placed.heading[k]) + (py - placed.y[k]) * np.sin(placed.heading[k])
         part = np.zeros(near.shape)
-        part[rows, columns] = np.searchsorted(self.cuts, placed.arc, side="right")[nearest]
+        part[rows, columns] = np.searchsorted(self.cuts, placed.arc[k] + along, side="right")
         return part
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:

@@ -104,6 +104,37 @@ def dilatation_work(sums, p, source, owner, place, inner, dt):
 
 
 @compiled
+def pressed(sums, p, mu0, owner, place, near, inner, weight):
+    """Add to ``sums`` (body, 1 + axes) what the pressure does inside the region of each body, times a weight.
+
+    Columns: the pressure summed over its cells, each by the body's share, and its first moments from the grid's corner
+    [.., .. cells]. What lies in the window of ``place`` counts; ``owner`` is an array of the window ``near``.
+    """
+    up, w = len(inner), len(inner) + 2
+    wide, columns = signed(row_length(inner, p.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
+    n0, n1 = near[w + 2] if up > 1 else 0, near[3 * up + 2]
+    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
+    c0, c1 = place[3 * up + 2], place[3 * up + 3]
+    for j in range(place[w], place[w + 1]):
+        for row in range(r0, r1):
+            for i in range(c0, c1):
+                k = row * wide + i
+                wet = np.float64(mu0[up, j, k]) + mu0[up, j + 1, k]
+                for d in range(up):
+                    wet += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
+                share = 1.0 - wet / (2 * up + 2)
+                if share <= 0.0:
+                    continue
+                m = owner[j - near[w], (row - n0) * columns + i - n1]
+                done = weight * share * np.float64(p[j, k])
+                sums[m, 0] += done
+                sums[m, 1] += done * (i - PAD + 0.5)
+                sums[m, 2] += done * ((row if up > 1 else j) - PAD + 0.5)
+                if up > 1:
+                    sums[m, 3] += done * (j - PAD + 0.5)
+
+
+@compiled
 def contents(sums, b, mu0, owner, component, place, near, inner):
     """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
 
@@ -171,19 +202,20 @@ def skins(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What the water does to a body, mean over a step; in the plane per metre of depth."""
+    """What the water does to a body, or to each of its parts, mean over a step; in the plane per metre of depth."""
 
-    force: tuple[float, ...]
-    """Force (x, y) or (x, y, z) [N/m, N]."""
-    moment: tuple[float, ...]
-    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
-    power: float
-    """Power that the body's surface gives to the water, in the frame of the grid [W/m, W]."""
+    force: np.ndarray
+    """Force (x, y) or (x, y, z), shape (..., axis) [N/m, N]."""
+    moment: np.ndarray
+    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z), shape
+    (..., turn) [N, N m]."""
+    power: np.ndarray
+    """Power that the surface gives to the water, in the frame of the grid, shape (...) [W/m, W]."""
 
     @property
-    def torque(self) -> float:
-        """Torque about z [N, N m]."""
-        return self.moment[-1]
+    def torque(self) -> np.ndarray:
+        """Torque about z, shape (...) [N, N m]."""
+        return self.moment[..., -1]
 
     def whole(self, cut: tuple[bool, ...]) -> "Reaction":
         """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.
@@ -191,25 +223,20 @@ class Reaction:
         Forces through a mirror, and torques about the axes in it, vanish.
         """
         times, across = 2 ** sum(cut), [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
-        return Reaction(
-            force=tuple(0.0 if off else times * part for part, off in zip(self.force, across, strict=True)),
-            moment=tuple(
-                0.0 if across[a] or across[b] else times * part
-                for part, (a, b) in zip(self.moment, TURNS[len(self.force)], strict=True)
-            ),
-            power=times * self.power,
-        )  # fmt: skip
+        moved = np.array([0.0 if off else times for off in across])
+        turned = np.array([0.0 if across[a] or across[b] else times for a, b in TURNS[len(across)]])
+        return Reaction(force=moved * self.force, moment=turned * self.moment, power=times * self.power)
 
 
 def reaction(
     given: np.ndarray, before: np.ndarray, now: np.ndarray, *, dt: float, push: tuple[float, ...], about: np.ndarray,
     origin: tuple[float, ...], h: float, density: float,
 ) -> Reaction:  # fmt: skip
-    """Return the water's action on one body over a step.
+    """Return the water's action on a body, or on each of its parts, over a step.
 
     Args:
-        given: what the immersion gave over the step, shape (``sums_of``,) [m/s and so on].
-        before: contents of the body's region at the start of the step, shape (``contents_of``,).
+        given: what the immersion gave over the step, shape (..., ``sums_of``) [m/s and so on].
+        before: contents of the region at the start of the step, shape (..., ``contents_of``).
         now: the same at its end.
         dt: the step [s].
         push: uniform acceleration of the water [m/s^2].
@@ -220,20 +247,17 @@ def reaction(
     """
     axes, turns = len(origin), TURNS[len(origin)]
     energy = axes + len(turns)
-    change, middle = now[: energy + 1] - before[: energy + 1], 0.5 * (now + before)
+    change, middle = now[..., : energy + 1] - before[..., : energy + 1], 0.5 * (now + before)
     centre = (about - np.array(origin)) / h
-    size, first = middle[energy + 1], middle[energy + 2 :]
-    force = (change[:axes] - given[:axes]) / dt - size * np.array(push)
+    size, first = middle[..., energy + 1, None], middle[..., energy + 2 :]
+    force = (change[..., :axes] - given[..., :axes]) / dt - size * np.array(push)
     moment = [
-        (change[axes + n] - given[axes + n]) / dt - (first[a] * push[b] - first[b] * push[a])
-        - (centre[a] * force[b] - centre[b] * force[a])
+        (change[..., axes + n] - given[..., axes + n]) / dt - (first[..., a] * push[b] - first[..., b] * push[a])
+        - (centre[a] * force[..., b] - centre[b] * force[..., a])
         for n, (a, b) in enumerate(turns)
     ]  # fmt: skip
-    power, scale = (given[energy] - change[energy]) / dt, density
-    for own, momentum in zip(push, middle, strict=False):
-        power += own * momentum
+    power, scale = (given[..., energy] - change[..., energy]) / dt, density
+    for d, own in enumerate(push):
+        power = power + own * middle[..., d]
         scale *= h
-    return Reaction(
-        force=tuple(scale * part for part in force), moment=tuple(scale * h * part for part in moment),
-        power=scale * power,
-    )  # fmt: skip
+    return Reaction(force=scale * force, moment=scale * h * np.stack(moment, axis=-1), power=scale * power)

@@ -14,7 +14,7 @@ from suchus import threads
 from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
-from suchus.flow.added import added_mass, generalised_added_mass, symmetric
+from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, symmetric
 from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
@@ -285,14 +285,11 @@ class Simulation(Fields):
         fastest = self._fastest = water.fastest()
         about = [self._about(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        reactions, along = self._log.reactions(water, outlines, about, dt, taken.push, taken.before), []
-        self._loads = [
-            FlowLoads(about=np.array(point), whole=whole, parts=tuple(parts) or (whole,))
-            for point, (whole, *parts) in zip(about, reactions, strict=True)
-        ]
-        for k, (body, markers, point, (act, *parts)) in enumerate(
-            zip(self._bodies, outlines, about, reactions, strict=True)
-        ):
+        self._loads, along = self._log.reactions(water, outlines, about, dt, taken.push, taken.before), []
+        for k, (body, markers, point, loads) in enumerate(
+            zip(self._bodies, outlines, about, self._loads, strict=True)
+        ):  # fmt: skip
+            act = loads.whole
             load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
             place = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
@@ -303,7 +300,7 @@ class Simulation(Fields):
                     asked = swimmer.go if self.axes == 3 else None
                     swimmer.take_added(added_mass(water, markers, point, setup.density, k, asked), self.time)
             values += columns(load, act, taken.drift, place, self._watch.errors[k])
-            along += part_columns(body, parts, point, poses[k], self.time, taken.drift)
+            along += part_columns(body, loads.parts, point, poses[k], self.time, taken.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, water.imposed(self.time))
@@ -362,8 +359,8 @@ class Simulation(Fields):
         self._log.rows.pop()
         self._note(self._taken)
 
-    def added_mass(self, name: str, modes: Sequence[Twists]) -> np.ndarray:
-        """Return the added mass of a body for motions of its parts, the sides held, shape (mode, mode).
+    def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
+        """Return the added mass of a body for motions of its parts, the sides held.
 
         See ``added.generalised_added_mass``; the other bodies stay still.
 

@@ -167,6 +167,9 @@ def accelerate(water: Fluid, more: Twists, dt: float) -> None:
         moved = water.b[c].ravel()
         moved[part.place] += change.astype(water.dtype)
         water.mean[c].ravel()[part.place] += (0.5 * change).astype(water.dtype)
+    if len(water.given) > len(water.rows):
+        water.pressed += water.pressures(x, 1.0)
+    water.spread(sums, x, 1.0)
     water.given += sums
 
 

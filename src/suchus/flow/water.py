@@ -19,7 +19,7 @@ from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import close, close_surface, fill, fill_source, immerse
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, sums_of
+from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, pressed, sums_of
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
 from suchus.flow.scheme import QUICK, Scheme
@@ -91,6 +91,7 @@ class Fluid:
         rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
         given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
+        pressed: what the pressure did inside bodies that are divided in the last step, per row; see ``pressures``.
         solves: how the pressure solves of the last step went, one a stage.
         overlap: the two bodies that lie deepest in each other.
     """
@@ -131,6 +132,8 @@ class Fluid:
         self.overlap = Overlap(0.0, (0, 0))
         self.rows: list[range] = []
         self.given = np.zeros((0, sums_of(self.axes)))
+        self.pressed = np.zeros((0, 1 + self.axes))
+        self.widening: np.ndarray = np.zeros((0,) * self.axes, dtype)
         self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
         self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
 
@@ -253,17 +256,26 @@ class Fluid:
         poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]], self.axes))
         self.rows = rows_of(bodies)
         self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
+        self.pressed = np.zeros((len(self.given), 1 + self.axes))
         both = self._layout[0].copy()
         poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
             self.mean = list(0.5 * (self._in_window(was, old) + self.b))
+            self._widening(bodies)
         self._layout[0] = both
         multigrid.coarsen(self._store, self._layout, self.inner)
         poisson.place_window(self._layout, new)
         self._patches = patch.rects(self._layout, self.repeats)
         self._room = patch.room_for(self._room, self._patches)
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
+
+    def _widening(self, bodies: list[AnyBody]) -> None:
+        """Write what ``source`` is for the mean of the step's start and end; bodies that do not bend have none."""
+        self.widening = np.zeros_like(self.source)
+        if not all(body.shape.rigid for body in bodies):
+            widening, mean, mu0 = (self._flat(a) for a in (self.widening, np.array(self.mean), self.mu0))
+            fill_source(widening, mean, mu0, self._layout[0], self._near, self.inner)
 
     def _clear(self, window: Window) -> None:
         here = self._here(window)
@@ -365,6 +377,7 @@ class Fluid:
         """
         self.solves = []
         self.given[:] = 0
+        self.pressed[:] = 0
         for k, (taken, weight) in enumerate(zip(plan, self.integrator.weights, strict=True)):
             if k > 0:
                 self._hear(plan[k - 1])
@@ -449,8 +462,27 @@ class Fluid:
                 sums, out[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near, inner, dt,
                 keep,
             )  # fmt: skip
-        dilatation_work(sums, p, self._flat(self.source), owners[0], near, inner, dt)
+        self.spread(sums, self.p, dt)
         self.given += weight * sums
+        if len(self.given) > len(self.rows):
+            self.pressed += self.pressures(self.p, weight * dt)
+
+    def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
+        """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
+        flat = self._flat(p), self._flat(self.widening), self._flat(self.owners[0])
+        dilatation_work(sums, *flat, self._near, self.inner, weight)
+
+    def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
+        """Return what a pressure, times a weight, does inside each row's region, shape (row, 1 + axis).
+
+        It is summed over the cells by the bodies' share of them; then come its first moments from the grid's corner
+        [that of pressure and weight, and times cells].
+        """
+        sums = np.zeros_like(self.pressed)
+        if self.window[1] > self.window[0]:
+            flat = self._flat(p), self._flat(self.mu0), self._flat(self.owners[0])
+            pressed(sums, *flat, self._layout[0], self._near, self.inner, weight)
+        return sums
 
     def contents(self) -> np.ndarray:
         """Return what the region of each part of each placed body holds, shape (row, ``momentum.contents_of``)."""

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.coupling import swim_on_joints
+from suchus.coupling import check_on_joints, swim_on_joints
 from suchus.design import GRAVITY, Robot
 from suchus.design.checks import Checks
 from suchus.design.water import Water
@@ -171,6 +171,9 @@ class Swim3d(Experiment):
         runs = self._runs(ours, printed, bent)
         for _, item in runs:
             check_resolved_swim(self.robot, item.motion, item.setting)
+            if item.joints:
+                assert isinstance(item.motion, Gait)
+                check_on_joints(self.robot, item.motion, item.setting)
         check_resolved_swim(self.robot, ours, self._slice)
         items = [item for _, item in runs]
         with nullcontext(self.keep) if self.keep else TemporaryDirectory() as folder:
