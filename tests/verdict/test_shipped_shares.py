@@ -27,7 +27,6 @@ WAITING = {
     "swim_tail_sine",
     "swim_tail_thrust",
     "swim_thrust_symmetric",
-    "tilt_limbs_only",
 }
 """Claims that can be asked of other designs and have no share yet, since the machine was too busy.
 
