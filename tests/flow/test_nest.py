@@ -138,6 +138,22 @@ def test_vortices_decay_through_the_patch_at_second_order():
     assert errors[1] < vortices(64, patch=False)
 
 
+def test_a_patch_may_end_on_walls_and_on_periodic_sides():
+    """Water sheared between two walls stays as it is, exactly."""
+    sides = flow.Sides(
+        left=flow.Periodic(), right=flow.Periodic(), bottom=flow.Wall(speed=-1.0), top=flow.Wall(speed=1.0)
+    )  # fmt: skip
+    whole = flow.Grid(cells=(16, 32), cell=1 / 16)
+    patch = whole.patch((0.0, 1.0), (0.0, 1.0), ratio=2)
+    setup = flow.Setup(
+        grid=patch, around=whole, sides=sides, viscosity=0.2, start=lambda x, y: (y - 1.0, 0.0 * y), coarse=True
+    )  # fmt: skip
+    sim = ran(setup, 0.1)
+    for water, velocity in ((sim.water, sim.velocity), (sim.water.layers[-1], sim.domain.velocity)):
+        assert velocity[0] == pytest.approx(np.broadcast_to(water.grid.y[:, None] - 1.0, velocity[0].shape), abs=1e-6)
+        assert velocity[1] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_added_mass_is_that_of_open_water():
     found = []
     for setup in (STREAM, uniform(STREAM)):

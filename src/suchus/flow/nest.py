@@ -152,13 +152,13 @@ class Rim:
         ratio, corner = place_of(patch, around)
         axes = patch.axes
         shape, wide = (tuple(n + 2 * PAD for n in reversed(grid.cells)) for grid in (patch, around))
-        goes_on = [isinstance(getattr(sides, name), Beyond) for name in NAMES[: 2 * axes]]
+        goes_on, repeats = [isinstance(side, Beyond) for side in sides.around(axes)], sides.repeats(axes)
         self._places, self._reads = [], []
         for c in range(axes):
             outside, beyond = np.zeros(shape, bool), np.zeros(shape, bool)
             for d, n in enumerate(patch.cells):
                 lines, no = np.moveaxis(outside, axes - 1 - d, 0), np.moveaxis(beyond, axes - 1 - d, 0)
-                low, high = slice(0, PAD + (c == d)), slice(PAD + n, None)
+                low, high = slice(0, PAD + (c == d and not repeats[d])), slice(PAD + n, None)
                 for end, on in zip((low, high), goes_on[2 * d :], strict=False):
                     if on:
                         lines[end] = True
@@ -211,11 +211,11 @@ class Nested(Fluid):
             slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], counts[::-1], strict=True)
         )  # fmt: skip
         self._faces = []
-        for c in range(grid.axes):
-            here = list(self._cells)
-            at = grid.axes - 1 - c
-            here[at] = slice(here[at].start + 1, here[at].stop)
+        for c, again in enumerate(self.repeats):
+            here, at = list(self._cells), grid.axes - 1 - c
+            here[at] = slice(here[at].start + (not again), here[at].stop)
             self._faces.append(tuple(here))
+        self._shares = any(not isinstance(side, Beyond) for side in own.around(grid.axes))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
         self._given: np.ndarray = np.zeros(0)
@@ -287,6 +287,12 @@ class Nested(Fluid):
         for c, (part, whole) in enumerate(zip(fine, coarse, strict=True)):
             self._average(part, whole[self._faces[c]], c)
 
+    def _replace(self, fine: np.ndarray, coarse: np.ndarray) -> None:
+        """Let the coarse velocity inside the patch be the mean of the fine one, and fit sides that both share."""
+        self._give(fine, coarse)
+        if self._shares:
+            self.coarse.border.fill(coarse)
+
     def _average(self, fine: np.ndarray, coarse: np.ndarray, across: int | None = None) -> None:
         """Write means over the fine cells in each coarse one, or over the fine faces in each coarse face.
 
@@ -296,7 +302,8 @@ class Nested(Fluid):
             across: the axis that the faces lie across; None for cells.
         """
         spans = [1 if d == across else self.ratio for d in reversed(range(self.axes))]
-        starts = [PAD + (self.ratio if d == across else 0) for d in reversed(range(self.axes))]
+        inner = across is not None and not self.repeats[across]  # the first face lies on a side
+        starts = [PAD + self.ratio * (d == across and inner) for d in reversed(range(self.axes))]
         steps = [self.ratio] * self.axes
         if self.axes == 2:
             fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
@@ -333,11 +340,11 @@ class Nested(Fluid):
         coarse, beyond = self.coarse, stage.beyond
         self._advance(stage, push)
         coarse._advance(beyond, self._push)
-        self._give(stage.out, beyond.out)
+        self._replace(stage.out, beyond.out)
         coarse._project(beyond.out, beyond.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
         self._surround(stage.out, beyond.out)
         self._project(stage.out, stage.solved, limits)
-        self._give(stage.out, beyond.out)
+        self._replace(stage.out, beyond.out)
         self._give_pressure()
 
     def _hear(self, stage: Taken) -> float:
@@ -386,7 +393,7 @@ class Nested(Fluid):
         self._surround(self.velocity, self.coarse.velocity)
         span = self.dtype(dt / self.grid.cell)
         self._project(self.velocity, span, (limit, 10 * limit))
-        self._give(self.velocity, self.coarse.velocity)
+        self._replace(self.velocity, self.coarse.velocity)
         self._give_pressure()
         return (self.p - before) * span
 
