@@ -148,8 +148,7 @@ def _close(one: tuple[bool, int, float], two: tuple[bool, int, float]) -> bool:
 
 def mapped_share(tree: Tree, plane: Plane) -> float:
     """Return the share of the hinges whose mirror image is a hinge."""
-    joints = [joint for part in tree.parts for joint in part.joints]
-    places, lines = plane.into(np.array([j.anchor for j in joints])), np.array([j.axis for j in joints]) @ plane.turn.T
+    places, lines = _hinge_lines([joint for part in tree.parts for joint in part.joints], plane)
     return float(_meet(places * _FLIP, lines * _FLIP, places, lines, TOLERANCE * tree.size).any(axis=1).mean())
 
 
@@ -161,10 +160,11 @@ def split_by(tree: Tree, plane: Plane) -> Split:
     for place, part in enumerate(tree.parts[1:], 1):
         if part.parent in axis:
             (axis if _within(part, plane, near) else branches).append(place)
+    hinges = {place: _branch(tree, place, plane) for place in branches}
     pairs, single, left = [], [], list(branches)
     while left:
         one = left.pop(0)
-        twin = next((two for two in left if _twins(tree, one, two, plane, near)), None)
+        twin = next((two for two in left if _twins(hinges[one], hinges[two], near)), None)
         if twin is None:
             single.append(one)
             continue
@@ -181,21 +181,24 @@ def _within(part: TreePart, plane: Plane, near: float) -> bool:
     return all(abs((plane.turn @ j.axis)[1]) > _LEVEL or abs(plane.into(j.anchor)[1]) <= near for j in part.joints)
 
 
-def _twins(tree: Tree, one: int, two: int, plane: Plane, near: float) -> bool:
-    """Return whether two branches of one part mirror each other hinge by hinge."""
-    if tree.parts[one].parent != tree.parts[two].parent:
+def _twins(one: tuple[int, np.ndarray, np.ndarray], two: tuple[int, np.ndarray, np.ndarray], near: float) -> bool:
+    """Return whether two branches, see ``_branch``, hang on one part and mirror each other hinge by hinge."""
+    (parent, places, lines), (other, others, along) = one, two
+    if parent != other or len(places) != len(others):
         return False
-    ours, theirs = ([tree.parts[i] for i in tree.below(b)] for b in (one, two))
-    mine, others = ([joint for part in parts for joint in part.joints] for parts in (ours, theirs))
-    if len(mine) != len(others):
-        return False
-    return all(any(_mirrors(a, b, plane, near) for b in others) for a in mine)
+    return bool(_meet(places * _FLIP, lines * _FLIP, others, along, near).any(axis=1).all())
 
 
-def _mirrors(one: Joint, two: Joint, plane: Plane, near: float) -> bool:
-    """Return whether the axis of a hinge, mirrored, is the line about which another one turns."""
-    place, line = plane.into(one.anchor) * _FLIP, plane.turn @ one.axis * _FLIP
-    return bool(_meet(place[None], line[None], plane.into(two.anchor)[None], (plane.turn @ two.axis)[None], near)[0, 0])
+def _branch(tree: Tree, place: int, plane: Plane) -> tuple[int, np.ndarray, np.ndarray]:
+    """Return the part that a branch hangs on, and the lines of its hinges."""
+    joints = [joint for i in tree.below(place) for joint in tree.parts[i].joints]
+    return tree.parts[place].parent, *_hinge_lines(joints, plane)
+
+
+def _hinge_lines(joints: Sequence[Joint], plane: Plane) -> tuple[np.ndarray, np.ndarray]:
+    """Return points and directions of axes of hinges in the plane's coordinates, each of shape (n, 3)."""
+    anchors, axes = (np.array([getattr(j, name) for j in joints]).reshape(-1, 3) for name in ("anchor", "axis"))
+    return plane.into(anchors), axes @ plane.turn.T
 
 
 def _meet(places: np.ndarray, lines: np.ndarray, others: np.ndarray, along: np.ndarray, near: float) -> np.ndarray:

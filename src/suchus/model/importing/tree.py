@@ -4,6 +4,7 @@ Its shapes are those that suchus has: rods with round ends and ellipsoids.
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import pi
 from typing import Any
 
@@ -162,6 +163,13 @@ class TreePart:
         return np.concatenate([*ends, *(piece.corners for piece in self.pieces)])
 
 
+@lru_cache(maxsize=4)
+def _extent(tree: "Tree") -> float:
+    """Return the size of a tree, which is asked for at every plane and limb."""
+    corners = np.concatenate([part.corners for part in tree.parts])
+    return float(np.ptp(corners, axis=0).max())
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Tree:
     """Parts, a parent before its children."""
@@ -174,8 +182,7 @@ class Tree:
     @property
     def size(self) -> float:
         """Greatest extent along an axis [m]."""
-        corners = np.concatenate([part.corners for part in self.parts])
-        return float(np.ptp(corners, axis=0).max())
+        return _extent(self)
 
     @property
     def mass(self) -> float:
