@@ -18,21 +18,11 @@ FILE = resources.files("suchus.verdict") / "claims.json"
 TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
 WAITING = {
     "erect_structure_rough",
-    "swim_body_wave",
-    "swim_diagonal_force",
-    "swim_pressure_convex",
-    "swim_pressure_falls",
-    "swim_s_shape",
-    "swim_spine_thrust",
-    "swim_tail_sine",
-    "swim_tail_thrust",
-    "swim_thrust_symmetric",
 }
 """Claims that can be asked of other designs and have no share yet, since the machine was too busy.
 
 ``suchus study claims --only EXPERIMENT`` asks single experiments, and ``--finished`` answers from what a store
-holds of them. Of processor time on one core ``terrain`` with its rough grounds takes 75 s a design (17 min for all),
-``crawl_stability`` 8 s (14 min; in one design of ten the control group steps), ``swimming`` up to 150 s (30 min).
+holds of them. ``terrain`` with its rough grounds takes 75 s a design of processor time on one core, 17 min for all.
 """
 shipped = pytest.mark.skipif(not TOLD, reason="no table has been shipped yet")
 
