@@ -71,6 +71,7 @@ def main() -> int:
     every, whose = dict[str, dict[str, Any]](), dict[str, set[str]]()
     with tempfile.TemporaryDirectory(prefix="suchus-licences-") as folder:
         for name in ("", *project["optional-dependencies"]):
+            print(f"looking at what {name or 'suchus itself'} needs ...", file=sys.stderr, flush=True)
             try:
                 found = packages(needs(project, [name] if name else []), Path(folder), versions)
             except Failed as error:
