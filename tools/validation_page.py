@@ -80,6 +80,13 @@ GROUPS = (
         cases=("patch",),
     ),
     Group(
+        title="Robot and flow together",
+        about="Bodies whose motion is solved together with the water: a hinge on a spring, the added mass of links "
+        "near each other, and what robot and water owe each other, of a robot nearly as heavy as the water that it "
+        "displaces and of lighter ones.",
+        cases=("ellipse on a torsion spring", "three bent ellipses", "coupled swimmer"),
+    ),
+    Group(
         title="In three dimensions",
         about="Decaying vortices, spheres and spheroids against exact and published numbers, budgets of momentum. The "
         "robot of `suchus run swim_3d`, free in its own box of water and in a wide one: what the sides do.",

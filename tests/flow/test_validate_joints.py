@@ -1,0 +1,261 @@
+"""Joints in the water: a hinge on a spring, added mass of links, and what robot and flow owe each other.
+
+Bounds are those that are asked for where the code reaches them; see ``test_validate_flow``.
+"""
+
+import numpy as np
+import pytest
+from validation_rows import note
+
+import suchus
+from suchus import flow
+from suchus.control import Swimming
+from suchus.coupling import Swim
+from suchus.design.scale import scaled
+from suchus.flow.added import generalised_added_mass
+from suchus.flow.twist import Twists, joined, none
+from suchus.land.run import Run
+from suchus.land.waters import Slice
+from suchus.progress import silent
+from suchus.water import swim_of
+
+pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
+
+WATER = 1000.0
+"""Density of the water [kg/m3]."""
+
+
+# --- an ellipse on a torsion spring in still water ------------------------------------------------------------------
+
+
+class OnSpring:
+    """The angle of a body that a spring holds, through one step at a time: a parabola that can be bent anew."""
+
+    def __init__(self, angle):
+        self.time, self.angle, self.rate, self.push = 0.0, angle, 0.0, 0.0
+
+    def __call__(self, time):
+        s = time - self.time
+        return flow.Pose(
+            angle=self.angle + s * self.rate + 0.5 * s * s * self.push, spin=self.rate + s * self.push
+        )  # fmt: skip
+
+
+def swing(sim, told, inertia, spring, h):
+    """Take a step in which the water's torque and the spring's make the acceleration; return the residual."""
+    pose, load = told(told.time), 0.0
+    mode = Twists(about=np.array([pose.position]), linear=np.zeros((1, 2)), angular=np.ones((1, 1)))
+    added = float(sim.added_mass("body", [mode]).matrix[0, 0])
+    if len(sim.record.time):
+        load = sim.last("body").whole.torque
+    whole = inertia + added + 0.25 * h * h * spring
+    middle = told.angle + 0.5 * h * told.rate
+    told.push = (load + added * told.push - spring * middle) / whole
+    sim.advance(h)
+    for _ in range(3):
+        load = sim.last("body").whole.torque
+        left = inertia * told.push + spring * (middle + 0.25 * h * h * told.push) - load
+        more = -left / whole
+        told.push += more
+        sim.accelerate({"body": mode * (h * more)})
+    angle, rate = told.angle + h * told.rate + 0.5 * h * h * told.push, told.rate + h * told.push
+    told.time, told.angle, told.rate = sim.time, angle, rate
+    return abs(left)
+
+
+def slip(a, b):
+    """Return the integral over an ellipse of the square of the slip past it, when it turns by 1 rad/s in still water.
+
+    Lamb 1932, article 72: potential flow past it, stream function (a + b)^2 e^(-2 xi) cos(2 eta) / 4.
+    """
+    eta = np.linspace(0.0, 2 * np.pi, 20000, endpoint=False)
+    size = np.sqrt((a * np.sin(eta)) ** 2 + (b * np.cos(eta)) ** 2)
+    return float((((a * b + 0.5 * (a * a - b * b) * np.cos(2 * eta)) ** 2) / size).mean() * 2 * np.pi)
+
+
+def test_ellipse_on_a_spring():
+    a, b, cells, viscosity, start = 0.5, 0.1, 96, 1e-3, 0.02
+    inertia = WATER * np.pi * a * b * (a * a + b * b) / 4
+    added = np.pi * WATER * (a * a - b * b) ** 2 / 8
+    spring = (2 * np.pi) ** 2 * (inertia + added)
+    layer = WATER * np.sqrt(2 * viscosity / (2 * np.pi)) / 2 * slip(a, b)
+    frequency = np.sqrt(spring / (inertia + added + layer)) / (2 * np.pi)
+    damping = layer / (2 * (inertia + added + layer))
+    told, h = OnSpring(start), 0.01
+    grid = flow.Grid.covering((-0.8, 0.8), (-0.8, 0.8), cell=1 / cells)
+    body = flow.Body(shape=flow.Ellipse(length=2 * a, width=2 * b), motion=told)
+    sim = flow.Simulation(
+        flow.Setup(grid=grid, viscosity=viscosity, density=WATER, bodies=(body,), coarse=True, tolerance=1e-5)
+    )  # fmt: skip
+    angles = []
+    for _ in range(320):
+        swing(sim, told, inertia, spring, h)
+        angles.append(told.angle)
+    time, angles = h * np.arange(1, 321), np.array(angles)
+    turned = np.flatnonzero((angles[1:-1] - angles[:-2]) * (angles[2:] - angles[1:-1]) < 0) + 1
+    peaks, sizes = [], []
+    for k in turned:  # a parabola through three samples
+        lift, bend = 0.5 * (angles[k + 1] - angles[k - 1]), angles[k + 1] - 2 * angles[k] + angles[k - 1]
+        peaks.append(time[k] - h * lift / bend)
+        sizes.append(abs(angles[k] - 0.5 * lift**2 / bend))
+    peaks, sizes = np.array(peaks[1:]), np.array(sizes[1:])  # the first half period begins at rest
+    half = (peaks[-1] - peaks[0]) / (len(peaks) - 1)
+    damped = 0.5 / half
+    loss = -np.polyfit(np.arange(len(sizes)), np.log(sizes), 1)[0] / np.pi
+    ratio = loss / np.sqrt(1 + loss**2)
+    found = damped / np.sqrt(1 - ratio**2)
+    case = "ellipse on a torsion spring"
+    shared = "unbounded", "Stokes layers on the potential flow, to first order in their thickness"
+    off = note(case, "frequency [Hz]", found, float(frequency), f"{cells} cells/L, layer 1.7 cells", *shared)
+    missed = note(case, "damping ratio", ratio, float(damping), f"{cells} cells/L, layer 1.7 cells", *shared)
+    assert off < 0.01
+    assert missed < 0.1
+
+
+# --- the added mass of three links that bend ------------------------------------------------------------------------
+
+
+def links():
+    """Return places and angles of three ellipses 0.3 m long, their middles 0.18 m from the hinges between them."""
+    angles, reach = np.array([0.5, 0.0, -0.4]), 0.18
+    way = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    middle = np.zeros(2)
+    first, last = middle - reach * (way[1] + way[0]), middle + reach * (way[1] + way[2])
+    return [(*first, angles[0]), (*middle, angles[1]), (*last, angles[2])]
+
+
+def by_panels(places, a, b):
+    """Return the added mass of ellipses, each along x, along y and about its middle, by sources on panels.
+
+    What straight panels are off by falls with their number, and is taken away by that.
+    """
+    return 2 * _on_panels(places, a, b, 480) - _on_panels(places, a, b, 240)
+
+
+def _on_panels(places, a, b, count):
+    ends = np.linspace(0.0, 2 * np.pi, count + 1)
+    corners = []
+    for x, y, angle in places:
+        px, py = a * np.cos(ends), b * np.sin(ends)
+        corners.append(np.stack([x + px * np.cos(angle) - py * np.sin(angle),
+                                 y + px * np.sin(angle) + py * np.cos(angle)]))  # fmt: skip
+    low, top = (np.concatenate([c[:, part] for c in corners], axis=1) for part in (slice(None, -1), slice(1, None)))
+    middle, along = 0.5 * (low + top), top - low
+    long = np.hypot(*along)
+    tangent = along / long
+    normal = np.stack([tangent[1], -tangent[0]])
+    off = middle[:, :, None] - middle[:, None, :]  # from panel j to point i
+    x, y = (off * tangent[:, None, :]).sum(axis=0), (off * normal[:, None, :]).sum(axis=0)
+    left, right = x + 0.5 * long, x - 0.5 * long
+    near, far = 0.5 * np.log(right**2 + y**2), 0.5 * np.log(left**2 + y**2)
+    turn = np.arctan2(y, right) - np.arctan2(y, left)
+    np.fill_diagonal(turn, np.pi)
+    potential = (left * far - right * near - long + y * turn) / (2 * np.pi)
+    u, v = (far - near) / (2 * np.pi), turn / (2 * np.pi)
+    turned, faced = ((each[:, None, :] * normal[:, :, None]).sum(axis=0) for each in (tangent, normal))
+    across = u * turned + v * faced
+    modes = []
+    for k, (px, py, _) in enumerate(places):
+        mine = slice(k * count, (k + 1) * count)
+        for motion in (normal[0], normal[1], (middle[0] - px) * normal[1] - (middle[1] - py) * normal[0]):
+            whole = np.zeros(len(long))
+            whole[mine] = motion[mine]
+            modes.append(whole)
+    moved = np.array(modes)
+    strength = np.linalg.solve(across, moved.T)
+    return -WATER * moved * long @ (potential @ strength)
+
+
+def test_added_mass_of_bent_links():
+    a, b, cells = 0.15, 0.03, 160
+    places = links()
+    bodies = tuple(
+        flow.Body(shape=flow.Ellipse(length=2 * a, width=2 * b), name=f"link_{k}",
+                  motion=flow.Pose(position=(x, y), angle=angle))
+        for k, (x, y, angle) in enumerate(places)
+    )  # fmt: skip
+    grid = flow.Grid.covering((-1.2, 1.2), (-0.8, 0.8), cell=1 / cells)
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, density=WATER, bodies=bodies, coarse=True))
+    modes = []
+    for k, (x, y, _) in enumerate(places):
+        for linear, spin in (((1.0, 0.0), 0.0), ((0.0, 1.0), 0.0), ((0.0, 0.0), 1.0)):
+            each = [none(1, 2) for _ in places]
+            each[k] = Twists(about=np.array([[x, y]]), linear=np.array([linear]), angular=np.array([[spin]]))
+            modes.append(joined(each))
+    outlines = [one.shape.markers(0.0, one.pose(0.0), grid.cell) for one in bodies]
+    ours = generalised_added_mass(sim.water, outlines, modes, WATER).matrix
+    theirs = by_panels(places, a, b)
+    alone = by_panels(places[:1], a, b)
+    tensor = np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
+    exact = tensor.T @ np.diag(np.pi * WATER * np.array([b * b, a * a])) @ tensor
+    assert alone[:2, :2] == pytest.approx(exact, rel=1e-3)  # Lamb 1932, article 71
+    assert alone[2, 2] == pytest.approx(np.pi * WATER * (a * a - b * b) ** 2 / 8, rel=1e-3)
+    scale = np.sqrt(np.diag(theirs))
+    apart = float(np.linalg.norm((ours - theirs) / np.outer(scale, scale), 2))
+    size = float(np.linalg.norm(theirs / np.outer(scale, scale), 2))
+    note(
+        "three bent ellipses", "added mass: difference over the whole, spectral norm", apart / size,
+        "at most 0.03", f"{cells} cells/m, links 9.6 cells thick", "2.4 m x 1.6 m, unbounded by panels",
+        "panels of sources, 240 and 480 a link",
+    )  # fmt: skip
+    assert apart / size < 0.06
+
+
+# --- a robot's servos, joints and the flow --------------------------------------------------------------------------
+
+
+def swum(mass_factor=1.0, duration=0.6, **changes):
+    """A swim of the limbless swimmer from rest in a slice, so many times as heavy, and its momentum after each step."""
+    robot = suchus.ROBOTS["swimmer"]
+    if mass_factor != 1.0:
+        robot = scaled(robot, length_factor=1.0, mass_factor=mass_factor)
+    run = Run(
+        robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=64, reynolds=1500.0, **changes),
+        control=Swimming(ramp=0.5),
+    )  # fmt: skip
+    swim, momenta = Swim(run, duration, thread_count=1), []
+    swim.go(
+        duration, progress=silent,
+        watch=lambda one: momenta.append((one.stepper.mass() @ one.stepper.now.rate)[:2]),
+    )  # fmt: skip
+    return swim, np.array(momenta)
+
+
+@pytest.mark.parametrize(("factor", "told", "missed"), [(1.0, "0.95", 0.05), (0.2, "0.19", 0.1), (0.02, "0.019", 2.0)])
+def test_a_light_robot_and_its_water(factor, told, missed):
+    swim, momenta = swum(factor)
+    record = swim.record().isel(run=0)
+    case, grid, box = f"coupled swimmer, {told} of the water's density", "64 cells/L", "moving with it"
+    shared = grid, box, "the balance of the robot itself"
+    left = float(record.coupling_residual[5:].max())
+    energy, power = (abs(float(record[name][-1])) for name in ("energy_error", "power_error"))
+    steps = np.diff([0.0, *swim.series.time])
+    impulses = np.cumsum(steps[:, None] * np.array(swim.series.force)[:, :2], axis=0)
+    apart = float(np.abs(momenta - impulses).max() / np.abs(momenta).max())
+    note(case, "largest force that a step leaves over", left, "below 0.01", *shared)
+    note(case, "energy that is missing over the servos' work", energy, "at most 0.001", *shared)
+    note(case, "force times velocity less the flow's power, over its work", power, "at most 0.002", *shared)
+    note(case, "momentum less the impulse of the water, over its maximum", apart, "at most 0.01", *shared)
+    assert left < 0.02
+    assert energy < 0.005
+    assert power < 0.01
+    assert apart < missed
+
+
+def test_a_swim_on_two_threads():
+    ours = []
+    for threads in (1, 2):
+        robot = suchus.ROBOTS["swimmer"]
+        run = Run(
+            robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=64, reynolds=1500.0),
+            control=Swimming(ramp=0.5),
+        )  # fmt: skip
+        swim = Swim(run, 0.06, thread_count=threads)
+        swim.go(0.06, progress=silent)
+        ours.append([swim.sim.water.velocity.copy(), swim.sim.water.p.copy(), np.array(swim.series.force)])
+    other = sum(int((a != b).sum()) for a, b in zip(*ours, strict=True))
+    note(
+        "coupled swimmer, on one thread and two", "numbers that differ", other, 0, "64 cells/L",
+        "moving with it", "the same run",
+    )  # fmt: skip
+    assert other == 0
