@@ -124,7 +124,7 @@ def test_measures_are_read_from_strides_and_swings(record):
     m = {name: one.value for name, one in SWIM.measure(record).items()}
     assert m["stride_swim"] == pytest.approx(0.25)
     assert m["stride_off"] == pytest.approx(0.25 / STRIDE - 1)
-    assert (m["stride_low"], m["stride_high"]) == (0.22, 0.4)
+    assert (m["stride_least"], m["stride_most"]) == (0.22, 0.4)
     assert (m["strouhal_2_6"], m["strouhal_3"]) == pytest.approx((2.0, 2.0))
     assert (m["swing_snout"], m["swing_tail"]) == pytest.approx((0.2, 0.5))
     assert (m["swing_least"], m["swing_least_at"]) == pytest.approx((0.1, 0.4))
@@ -136,7 +136,7 @@ def test_it_says_on_which_side_of_the_animal_it_is(record):
         m = {name: one.value for name, one in SWIM.measure(record.assign(stride=("swim", [stride] * 2))).items()}
         assert side in SWIM.explain(m)
         assert f"which is {within}" in SWIM.explain(m)
-        assert "which is outside" in SWIM.explain(m | {"stride_low": 0.3})
+        assert "which is outside" in SWIM.explain(m | {"stride_least": 0.3})
 
 
 @pytest.mark.parametrize("name", [name for name in own_size.ANIMALS if name != "alligator_1"])  # another in size

@@ -186,8 +186,8 @@ class SalamanderSwim(Experiment):
         return found | {
             "stride_swim": Measure(mean, "body length"),
             "stride_off": Measure(mean / animal.STRIDE - 1.0, "-"),
-            "stride_low": Measure(float(other.min()), "body length"),
-            "stride_high": Measure(float(other.max()), "body length"),
+            "stride_least": Measure(float(other.min()), "body length"),
+            "stride_most": Measure(float(other.max()), "body length"),
             **similar(whole),
             "swing_snout": Measure(float(middle[0]), "body length"),
             "swing_least": Measure(float(middle[least]), "body length"),
