@@ -72,7 +72,7 @@ class Spy:
         inside = list(w.mu0 < 1)
         for touched, mu1 in zip(inside, w.mu1, strict=True):
             touched[w.here] |= (mu1 != 0).any(axis=0)
-        dilatation_work = float((w.p[w.here].astype(float) * w.source).sum())
+        dilatation_work = float((w.p[w.here].astype(float) * w.widening).sum())
         copies = [list(vector.astype(float)) for vector in (stage.out, stage.blend)]
         self.stages.append(
             Stage(*copies, w.p.astype(float), dilatation_work, float(stage.dt), float(stage.keep), inside)
