@@ -66,7 +66,7 @@ class Machines:
         self._file, self._folder = folder / "scheduler.json", folder
         self.scheduler = self._begun("scheduler", "--host", "127.0.0.1", "--port", "0")
         self.workers = [self._begun("worker", "--nthreads", "1", "--no-nanny") for _ in range(workers)]
-        while not self._file.exists():
+        while not (self._file.exists() and self._file.read_text().rstrip().endswith("}")):  # not while it is written
             assert self.scheduler.poll() is None
             time.sleep(0.05)
         self.address = json.loads(self._file.read_text())["address"]
