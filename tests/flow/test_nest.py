@@ -110,7 +110,7 @@ def test_the_force_is_what_leaves_the_water_of_the_whole_domain(nested):
         sim.advance()
         forces.append(box.force(coarse, 0.02, (0.0, 0.0), 1.0))
     told = sim.record.force()[-steps:, 0]
-    assert np.mean(forces, axis=0)[0] == pytest.approx(told.mean(), rel=0.02)
+    assert np.mean(forces, axis=0)[0] == pytest.approx(told.mean(), rel=2e-3)  # 0.8e-3 on fine cells everywhere
 
 
 def vortices(n: int, *, patch: bool) -> float:
@@ -192,6 +192,16 @@ def test_a_body_that_is_accelerated_after_a_step_takes_the_water_along():
     assert forces["fine"] < -3.0  # a body of its own size of water, at 5 m/s^2
 
 
+def test_the_first_step_taken_again_is_the_same():
+    sim = flow.Simulation(STREAM)
+    begun = sim.snapshot()
+    sim.advance()
+    first = sim.water.velocity.copy()
+    sim.restore(begun)
+    sim.advance()
+    assert sim.water.velocity.tobytes() == first.tobytes()
+
+
 @pytest.mark.parametrize("how", ["checkpoint", "snapshot"])
 def test_what_was_kept_goes_on_to_the_same_bytes(how, tmp_path):
     setup = replace(STREAM, step=None)
@@ -252,7 +262,7 @@ def test_points_are_read_where_they_lie(nested, fine):
     [
         ({"grid": flow.Grid(cells=(32, 32), cell=1 / 24, origin=(-0.5, -0.5))}, r"does not fill whole cells.*patch\("),
         ({"grid": flow.Grid(cells=(32, 32), cell=1 / 16, origin=(-1.03, -1.0))}, r"does not fill whole cells"),
-        ({"grid": flow.Grid(cells=(32, 32), cell=1 / 16, origin=(4.0, -1.0))}, r"reaches out of the grid around it"),
+        ({"grid": flow.Grid(cells=(32, 32), cell=1 / 16, origin=(4.0, -1.0))}, r"4 to 6 m reaches out.*from -3 to 5 m"),
         ({"grid": WHOLE.patch((-2.75, 1.0), (-1.0, 1.0), ratio=2)}, r"within 0\.25 m of the left side.*0\.5 m away"),
         ({"grid": WHOLE.patch((-3.0, 1.0), (-1.0, 1.0), ratio=2)}, r"within 0 m of the left side"),
         ({"grid": WHOLE.patch((-0.9, 1.0), (-1.0, 1.0), ratio=2)}, r"within 3 fine cells of the left side.*0.0625 m"),
@@ -270,6 +280,9 @@ def test_a_patch_that_cannot_be_is_refused(change, message):
         ({"x": (1.0, -1.0), "y": (-1.0, 1.0)}, r"give rising places"),
         ({"x": (-1.0, 1.0), "y": (-1.0, 1.0), "z": (0.0, 1.0)}, r"the grid has 2 axes and the patch 3"),
         ({"x": (-1.0, 1.0), "y": (-1.0, 1.0), "ratio": 3}, r"the ratio is 3; give 2, 4 or 8"),
+        ({"x": (-1.0, 1.0), "y": (-1.0, 1.0), "ratio": 2.0}, r"the ratio is 2.0; give 2, 4 or 8"),
+        ({"x": ("a", 1.0), "y": (-1.0, 1.0)}, r"give a pair of finite numbers for each axis"),
+        ({"x": 1.0, "y": (-1.0, 1.0)}, r"give a pair of finite numbers for each axis"),
     ],
 )
 def test_a_patch_that_a_grid_cannot_hold_is_refused(asked, message):

@@ -57,6 +57,11 @@ def _is_number(value: object) -> bool:
     return not isinstance(value, bool) and isinstance(value, Real) and isfinite(value)
 
 
+def _are_pairs(ends: tuple[object, ...]) -> bool:
+    """Return whether each is a pair of finite numbers."""
+    return all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends)
+
+
 def check_kinds(value: object) -> None:
     """Refuse a setting whose fields hold other kinds of things than they declare.
 
@@ -127,8 +132,7 @@ class Grid:
         """
         pairs = (x, y) if z is None else (x, y, z)
         what, count = ("rectangle", "two") if z is None else ("box", "three")
-        ends: tuple[object, ...] = (*pairs, (0.0, cell))
-        if not all(isinstance(end, (tuple, list)) and len(end) == 2 and all(map(_is_number, end)) for end in ends):
+        if not _are_pairs((*pairs, (0.0, cell))):
             raise InvalidDesign(
                 f"the {what} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; {count} "
                 "pairs of finite numbers and one more are needed."
@@ -167,12 +171,17 @@ class Grid:
             ratio: fine cells along a coarse one [-].
 
         Raises:
-            InvalidDesign: another number of axes, or a place outside this grid.
+            InvalidDesign: another number of axes, no numbers, another ratio, or a place outside this grid.
         """
         pairs = (x, y) if z is None else (x, y, z)
         if len(pairs) != self.axes:
             raise InvalidDesign(f"the grid has {self.axes} axes and the patch {len(pairs)}; give a pair for each axis.")
-        if ratio not in RATIOS:
+        if not _are_pairs(pairs):
+            raise InvalidDesign(
+                f"the patch is {_times(tuple(show(pair) for pair in pairs))} m; give a pair of finite numbers for each "
+                f"axis."
+            )
+        if ratio not in RATIOS or not isinstance(ratio, int):
             raise InvalidDesign(f"the ratio is {show(ratio)}; give {RATIOS[0]}, {RATIOS[1]} or {RATIOS[2]}.")
         first, counts = [], []
         for pair, low, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):

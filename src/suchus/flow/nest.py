@@ -34,7 +34,8 @@ MARGIN = 4
 lie inside."""
 
 CLEAR = 2
-"""Coarse cells that the surroundings of a body keep from the patch's sides [-]."""
+"""Coarse cells that the surroundings of a body keep from the patch's sides [-]: as far inside lie the velocities that
+those around the patch are read from, and they are not to be a body's."""
 
 NOT_HELD = 1e-6
 """Share of a coarse cell by which a patch may lie off the coarse cells [-]: what rounding leaves."""
@@ -68,12 +69,17 @@ def place_of(grid: Grid, around: Grid) -> tuple[int, tuple[int, ...]]:
     if ratio not in RATIOS or not fits or any(abs(part - round(part)) > NOT_HELD * ratio for part in low):
         raise InvalidDesign(
             f"the patch of {' x '.join(map(str, grid.cells))} cells of {grid.cell:.6g} m from {grid.origin} m on does "
-            f"not fill whole cells, {around.cell:.6g} m wide, of the grid around it, {RATIOS[0]} to {RATIOS[-1]} to "
-            f"one; take around.patch(x, y, ratio=4), in space with z."
+            f"not fill whole cells, {around.cell:.6g} m wide, of the grid around it, {RATIOS[0]}, {RATIOS[1]} or "
+            f"{RATIOS[2]} to one; take around.patch(x, y, ratio=4), in space with z."
         )
     corner = tuple(map(round, low))
-    if any(a < 0 or a + n // ratio > m for a, n, m in zip(corner, grid.cells, around.cells, strict=True)):
-        raise InvalidDesign("the patch reaches out of the grid around it; take around.patch(x, y, ratio=4).")
+    for d, (a, n, m) in enumerate(zip(corner, grid.cells, around.cells, strict=True)):
+        if a < 0 or a + n // ratio > m:
+            ends = (f"{one.origin[d]:.6g} to {one.origin[d] + one.size[d]:.6g} m" for one in (grid, around))
+            raise InvalidDesign(
+                f"along {'xyz'[d]} the patch from {next(ends)} reaches out of the grid around it, which goes from "
+                f"{next(ends)}; take around.patch(x, y, ratio=4), in space with z."
+            )
     return ratio, corner
 
 
@@ -204,8 +210,8 @@ class Nested(Fluid):
         self.coarse = Fluid(around, sides, viscosity, dtype, scheme, integrator)
         self.ratio, corner = place_of(grid, around)
         self._rim = Rim(grid, around, own, dtype)
-        self._values: list[np.ndarray] = []
-        self._first: list[np.ndarray] = []
+        self._values: list[np.ndarray] = []  # around the patch, as they were last read
+        self._before: list[np.ndarray] = []  # a round of the first step earlier
         counts = [n // self.ratio for n in grid.cells]
         self._cells = tuple(
             slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], counts[::-1], strict=True)
@@ -329,6 +335,7 @@ class Nested(Fluid):
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
+        self._before = []
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
         return super()._begin(dt, stream, push, time)
 
@@ -355,10 +362,10 @@ class Nested(Fluid):
         return True
 
     def _settled(self, last: Taken, limits: tuple[float, float]) -> bool:
-        far, before, self._first = self._hear(last), self._first, self._values
+        far, before, self._before = self._hear(last), self._before, self._values
         if not before:
             return False
-        change = max(float(np.abs(a - b).max()) for a, b in zip(before, self._first, strict=True))
+        change = max(float(np.abs(a - b).max()) for a, b in zip(before, self._values, strict=True))
         return max(far, change) <= limits[1]
 
     def _again(self, start: np.ndarray) -> None:
