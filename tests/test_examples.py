@@ -1,6 +1,8 @@
 """Every example runs as it stands, and README's Python too."""
 
 import ast
+import json
+import os
 import re
 import runpy
 import subprocess
@@ -49,6 +51,19 @@ def test_bench_of_the_flow_times_the_swim_of_the_robot():
     found = runpy.run_path(str(ROOT / "bench" / "bench_flow.py"), run_name="bench_flow")["tell_swim"](60, {1: 10.0})
     assert found["swim_60_1"] > 0.0
     assert found["swim_60_steps"] > 10
+
+
+@pytest.mark.slow("threads of a card, simulated one by one")
+def test_bench_of_a_card_gives_what_the_processor_gives(tmp_path):
+    bench, out = ROOT / "bench" / "bench_gpu.py", tmp_path / "found.json"
+    command = [sys.executable, str(bench), "--cells", "8", "--times", "1", "--out", str(out)]
+    done = subprocess.run(
+        command, env=os.environ | {"NUMBA_ENABLE_CUDASIM": "1"}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert 0 < found["advance_8_apart"] < 1e-6
+    assert 0 < found["cycle_8_apart"] < 1e-5
 
 
 def readme() -> list[str]:
