@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from lighter import lighten
-from suchus.atlas import CASES, load_outcome
+from suchus.atlas import CASES, load_outcomes
 from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.figures.atlas import write_atlas
 from suchus.writing import MANIFEST
@@ -24,7 +24,7 @@ def main(out: Path, docs: Path = DOCS) -> Path:
     Raises:
         IncompatibleRecord: there is no outcome, or there are trials among them, which belong on no page.
     """
-    found = {name: outcome for name in CASES if (outcome := load_outcome(out, name)) is not None}
+    found = load_outcomes(out, CASES.values())
     if not found:
         raise IncompatibleRecord(f"{out} holds no outcomes of the atlas; run suchus flow-atlas --out {out} first.")
     trials = [name for name, outcome in found.items() if outcome.quick]

@@ -32,12 +32,23 @@ def outcome(row, factor=1.0, **changes):
 
 
 def told(*outcomes, rows=(ROW, NUMBERS)):
-    return entries(rows, {one.case: one for one in outcomes})
+    return entries(rows, {one.flow: one for one in outcomes})
+
+
+def on_grids(row, *factors, cells=(48, 32, 24), **changes):
+    """Outcomes on three grids, each the published curve times a factor."""
+    return [
+        outcome(row, factor, grid=k + 1, cells=n, **changes)
+        for k, (factor, n) in enumerate(zip(factors, cells, strict=True))
+    ]
 
 
 def test_a_perfect_curve_agrees_and_a_worse_one_is_above_its_bound():
     good, bad = page(told(outcome(ROW))), page(told(outcome(ROW, 1.2)))
-    assert "| [duetsch_force](#duetsch_force) | 0.0 % | 8.0 % | one source | agrees | 48 | 61 s |" in good
+    (line,) = (line for line in good.splitlines() if line.startswith("| [duetsch_force](#duetsch_force) |"))
+    cells = [cell.strip() for cell in line.strip("|").split("|")]
+    assert cells[1:5] == ["0.0 %", "0.0 %", "8.0 %", "one source"]
+    assert cells[6:] == ["none", "", "agrees", "48", "61 s"]
     assert "**above its bound**" in bad
     assert "above are duetsch_force" in bad
     assert good != bad
@@ -76,6 +87,30 @@ def test_a_trial_is_drawn_and_not_judged():
 def test_an_outcome_of_other_code_says_so():
     assert "earlier state" not in page(told(outcome(ROW)))
     assert "earlier state" in page(told(outcome(ROW, digest="0")))
+
+
+def test_three_grids_tell_an_uncertainty_or_why_there_is_none():
+    good = page(told(*on_grids(ROW, 1.0, 1 + 0.02 * 1.25, 1.075)))
+    assert "Its uncertainty from 48, 32, 24 cells is " in good
+    assert ", observed order " in good
+    assert "| agrees | 48, 32, 24 | 183 s |" in good
+    assert "Three grids converge for 1 of them" in good
+    back = page(told(*on_grids(ROW, 1.0, 1.05, 1.0)))
+    assert "No uncertainty of its own from 3 grids: it does not go one way from grid to grid." in back
+    assert "Three grids converge" not in back
+    two = page(told(*on_grids(ROW, 1.0, 1.02, 1.05)[:2]))
+    assert "2 of 3 grids are there" in two
+    failed = on_grids(ROW, 1.0, 1.02, 1.05)
+    failed[1] = replace(failed[1], failed="it diverged.", curves={})
+    assert "32 cells failed" in page(told(*failed))
+
+
+def test_the_range_and_the_source_s_own_error_stand_beside_the_peak():
+    found = told(outcome(ROW, 1.1))[0].comparison
+    assert found.over_range == pytest.approx(found.rms * np.abs(found.theirs).max() / np.ptp(found.theirs))
+    assert found.over_range < found.rms  # a force to and fro
+    text = page(told(outcome(NUMBERS, 1.1)))
+    assert "| [re100_numbers](#re100_numbers) | 10.0 % |  | 2.0 % | 0.8 % |" in text
 
 
 def test_the_summary_counts_what_was_judged():

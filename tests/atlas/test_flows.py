@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from suchus import flow
-from suchus.atlas import CASES
+from suchus.atlas import CASES, marching
 from suchus.atlas.cylinders import wake_length
-from suchus.atlas.marching import march, nudged, shedding
+from suchus.atlas.marching import formed, march, nudged, shedding
 from suchus.atlas.oscillated import mean_skin
 from suchus.atlas.skin import WallValues
 from suchus.atlas.still import flapping, quasi_steady_peaks
@@ -48,6 +48,7 @@ def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
         assert ours.cell < theirs.cell
         raise Begun
 
+    monkeypatch.setattr(marching, "_FORMED", {})
     monkeypatch.setattr(module, "march", lambda *words, **more: None)
     monkeypatch.setattr(module, "refined", go_on)
     with pytest.raises(Begun):
@@ -130,6 +131,20 @@ def test_a_march_tells_shares_that_rise_to_one():
     assert said[0] < 0.26
     assert said[-1] == 1.0
     assert seen[-1] == 0.5
+
+
+def test_the_grids_of_a_flow_share_the_run_in_which_its_wake_forms():
+    made = []
+
+    def form():
+        made.append(len(made))
+        return flow.Simulation(flow.Setup(grid=flow.Grid(cells=(16, 16), cell=1 / 16), viscosity=0.1))
+
+    first = formed(("a test", 1), form)
+    assert formed(("a test", 1), form) is first
+    assert formed(("a test", 2), form) is not first
+    assert formed(("a test", 1), form) is not first  # one is kept
+    assert made == [0, 1, 2]
 
 
 def test_the_mean_of_readings_is_taken_marker_by_marker():

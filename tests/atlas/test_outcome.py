@@ -19,8 +19,10 @@ from suchus.atlas import (
     digest_of,
     finished_outcome,
     load_outcome,
+    load_outcomes,
     save_outcome,
 )
+from suchus.atlas.case import grids
 from suchus.errors import NotConverged, UnreadableFile, Unwritable
 from suchus.jobs import processes
 from suchus.progress import silent
@@ -44,7 +46,7 @@ def dying_run(effort, progress):
 def case(name="one", run=plain_run, cells=4):
     return Case(
         name=name, setup="{cells}", run=run, code=("skin.py",),
-        full=RunEffort(cells=cells, until=1.0), quick=RunEffort(cells=2, until=0.5),
+        grids=grids((cells, 3, 2), 1.0), quick=RunEffort(cells=2, until=0.5),
     )  # fmt: skip
 
 
@@ -63,8 +65,8 @@ def test_every_part_of_a_set_up_is_in_its_digest():
     digests = {
         digest_of(one, quick=False), digest_of(one, quick=True), digest_of(case(cells=5), quick=False),
         digest_of(case("two"), quick=False), digest_of(replace(one, code=("case.py",)), quick=False),
-        digest_of(replace(one, full=replace(one.full, coarse=2)), quick=False),
-        digest_of(replace(one, full=replace(one.full, before=2.0)), quick=False),
+        digest_of(replace(one, grids=(replace(one.full, coarse=2),)), quick=False),
+        digest_of(replace(one, grids=(replace(one.full, before=2.0),)), quick=False),
     }  # fmt: skip
     assert len(digests) == 7
     assert digest_of(one, quick=False) == digest_of(case(), quick=False)
@@ -107,6 +109,27 @@ def test_what_is_finished_is_not_computed_again(tmp_path):
     assert ran == [4, 5, 2, 4]
     assert finished_outcome(case(), tmp_path, quick=False) is not None
     assert finished_outcome(case(), tmp_path, quick=True) is None
+
+
+def test_each_grid_has_an_outcome_of_its_own_and_is_computed_once(tmp_path):
+    ran = []
+
+    def counted(effort, progress):
+        ran.append(effort.cells)
+        return plain_run(effort, progress)
+
+    one = case(run=counted)
+    assert list(compute_all([one], tmp_path, jobs=1, quick=False, grids=(2,))) == ["one.grid2"]
+    found = compute_all([one], tmp_path, jobs=1, quick=False, grids=(1, 2, 3))
+    assert ran == [3, 4, 2]
+    assert {flow: (kept.grid, kept.cells) for flow, kept in found.items()} == {
+        "one": (1, 4), "one.grid2": (2, 3), "one.grid3": (3, 2)
+    }  # fmt: skip
+    assert len({kept.digest for kept in found.values()}) == 3
+    assert load_outcomes(tmp_path, [one]).keys() == found.keys()
+    assert load_outcome(tmp_path, "one", 3).cells == 2
+    alone = replace(one, name="alone", grids=one.grids[:1])  # a flow with one grid is not computed on others
+    assert list(compute_all([alone], tmp_path, jobs=1, quick=False, grids=(1, 2, 3))) == ["alone"]
 
 
 def test_ctrl_c_keeps_what_is_finished(tmp_path):

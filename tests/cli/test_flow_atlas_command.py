@@ -28,6 +28,8 @@ def test_a_trial_of_one_row_leaves_its_outcome_and_a_page(tmp_path, capsys):
         (["ghia_u_re10"], "there is no row named 'ghia_u_re10'"),
         (["--jobs", "0"], "--jobs is 0; at least 1 flow at a time is needed."),
         (["--jobs", "many"], "'many' is no number"),
+        (["--grids", "0", "1"], "--grids is 0 1; give some of 1 to 3."),
+        (["--grids", "4"], "--grids is 4; give some of 1 to 3."),
         (["--speed", "3"], "there is no option named '--speed'"),
     ],
 )

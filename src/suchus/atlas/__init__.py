@@ -6,6 +6,7 @@ bound of a row follows from the scatter of its sources, before anything is compu
 
 from suchus.atlas.case import AtlasRow, Case, Curves, PublishedCurves, RunEffort, bound, published
 from suchus.atlas.comparison import CurveComparison, compare, rms_over_peak
+from suchus.atlas.convergence import GRIDS, GridConvergence, grid_convergence, row_convergence
 from suchus.atlas.marching import refined
 from suchus.atlas.outcome import (
     FlowOutcome,
@@ -13,7 +14,9 @@ from suchus.atlas.outcome import (
     compute_all,
     digest_of,
     finished_outcome,
+    flow_on,
     load_outcome,
+    load_outcomes,
     save_outcome,
 )
 from suchus.atlas.rows import CASES, GROUPS, LONGEST, ROWS, chosen
@@ -21,6 +24,7 @@ from suchus.atlas.skin import WallValues, read_skin
 
 __all__ = [
     "CASES",
+    "GRIDS",
     "GROUPS",
     "LONGEST",
     "ROWS",
@@ -29,6 +33,7 @@ __all__ = [
     "CurveComparison",
     "Curves",
     "FlowOutcome",
+    "GridConvergence",
     "PublishedCurves",
     "RunEffort",
     "WallValues",
@@ -39,10 +44,14 @@ __all__ = [
     "compute_all",
     "digest_of",
     "finished_outcome",
+    "flow_on",
+    "grid_convergence",
     "load_outcome",
+    "load_outcomes",
     "published",
     "read_skin",
     "refined",
     "rms_over_peak",
+    "row_convergence",
     "save_outcome",
 ]

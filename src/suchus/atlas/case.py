@@ -46,12 +46,27 @@ class Case:
     """Domain, motion and averaging in one or two sentences; ``{cells}`` stands for the cells."""
     run: Callable[[RunEffort, Progress], Curves]
     """Function that computes its curves."""
-    full: RunEffort
-    """The effort of a judged run."""
+    grids: tuple[RunEffort, ...]
+    """The efforts of a judged run, on the finest cells, which are compared, first; on three grids the run tells its own
+    uncertainty too."""
     quick: RunEffort
     """The effort of a quick trial, whose result is drawn and not judged."""
     code: tuple[str, ...]
     """Files of this package that decide its curves, beside the flow solver itself."""
+
+    @property
+    def full(self) -> RunEffort:
+        """The effort of the run that is compared."""
+        return self.grids[0]
+
+    def effort(self, grid: int, *, quick: bool) -> RunEffort:
+        """Return the effort of one of its runs; a trial has one grid, 1."""
+        return self.quick if quick else self.grids[grid - 1]
+
+
+def grids(cells: tuple[int, ...], until: float, *, coarse: int = 0, before: float = 0.0) -> tuple[RunEffort, ...]:
+    """Return the efforts of a flow on several grids, the finest first, that differ in nothing else."""
+    return tuple(RunEffort(cells=each, until=until, coarse=coarse, before=before) for each in cells)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +108,11 @@ class AtlasRow:
     counts then, curves named ``ours`` with a number behind it, and the nearest is compared."""
     cycle_of: "AtlasRow | None" = None
     """Row of the same source whose nearest cycle is taken, so that this one chooses nothing; None for its own."""
+    own: str = ""
+    """Column of the error that the source states of its ordinate; empty for none."""
+    printed: bool = False
+    """Whether the source prints its numbers, so that their last digit tells its error; else they were read off a
+    figure."""
     skin: bool = False
     """Whether it is read along the skin, where the reading has an error of its own."""
     note: str = ""

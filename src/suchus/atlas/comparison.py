@@ -1,10 +1,12 @@
 """How far two curves, or two sets of numbers, are from each other."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from suchus.atlas.case import AtlasRow, Curves, PublishedCurves, bound, published
+from suchus.atlas.source_error import digits_error, half_a_digit, reading_error, stated_error
 from suchus.errors import IncompatibleRecord
 
 LEAST_SHARE = 0.5
@@ -26,6 +28,11 @@ class CurveComparison:
     rms: float
     """Root mean square of the difference over the largest published magnitude; of numbers, of the relative
     differences [-]."""
+    over_range: float | None
+    """The same of a curve over its range, from the least published value to the largest; None for numbers [-]."""
+    own: float | None
+    """The source's own error where it can be read, over the same peak: what the source states, the digits that it
+    gives, or the scatter of points read off a figure about their curve; None where it cannot [-]."""
     scatter: float | None
     """The same between the sources; None where there is one only [-]."""
     curve: str = ""
@@ -53,12 +60,12 @@ def compare(row: AtlasRow, curves: Curves) -> CurveComparison:
     table = published(row.data)
     if row.kind == "numbers":
         return _numbers(table, curves)
-    name = f"{row.ours} {_nearest_cycle(row.cycle_of or row, curves)}" if row.any_cycle else row.ours
-    if name not in curves:
-        raise IncompatibleRecord(f"the flow of {row.name} gave no curve named {name!r}; compute it anew.")
-    x, y = points(row, table)
-    ours = curves[name]
-    at = _on_loop(ours, x, y) if row.kind == "loop" else at_abscissae(ours, x, row.period)
+    read = values_of(row, curves)
+    if read is None:
+        raise IncompatibleRecord(
+            f"the flow of {row.name} gave no curve named {_named(row, curves)!r}; compute it anew."
+        )
+    x, y, at, name = read
     reached = np.isfinite(at)
     if reached.mean() < LEAST_SHARE:
         raise IncompatibleRecord(
@@ -67,9 +74,46 @@ def compare(row: AtlasRow, curves: Curves) -> CurveComparison:
         )
     x, y, at = x[reached], y[reached], at[reached]
     return CurveComparison(
-        x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), scatter=_scatter(row, x, y), curve=name,
-        cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
+        x=x, theirs=y, ours=at, rms=rms_over_peak(at, y), over_range=_over_range(at, y), own=_own(row, table),
+        scatter=_scatter(row, x, y), curve=name, cycles=tuple(_cycles(row, curves).values()) if row.any_cycle else (),
     )  # fmt: skip
+
+
+class AtPoints(NamedTuple):
+    """A row's published points with our values beside them, NaN where our curve does not reach."""
+
+    x: np.ndarray
+    """Abscissae, shape (point,)."""
+    theirs: np.ndarray
+    """Published ordinates, shape (point,)."""
+    ours: np.ndarray
+    """Ours at the same abscissae, shape (point,)."""
+    curve: str
+    """Name of our curve."""
+
+
+def values_of(row: AtlasRow, curves: Curves) -> AtPoints | None:
+    """Return the published points of a row that is a curve, and ours there; None if the flow gave no such curve."""
+    name = _named(row, curves)
+    if name not in curves:
+        return None
+    x, y = points(row, published(row.data))
+    ours = curves[name]
+    return AtPoints(x, y, _on_loop(ours, x, y) if row.kind == "loop" else at_abscissae(ours, x, row.period), name)
+
+
+def _named(row: AtlasRow, curves: Curves) -> str:
+    return f"{row.ours} {_nearest_cycle(row.cycle_of or row, curves)}" if row.any_cycle else row.ours
+
+
+def _own(row: AtlasRow, table: PublishedCurves) -> float | None:
+    """Return the own error of a curve's source over its peak [-]."""
+    x, y = points(row, table)
+    if row.own:
+        return stated_error(table.values(row.own) * row.scale[1], y)
+    if row.printed:
+        return digits_error(table.columns[row.y], float(row.scale[1]), y)
+    return None if row.kind == "loop" else reading_error(x, y, row.period)
 
 
 def _cycles(row: AtlasRow, curves: Curves) -> dict[str, float]:
@@ -102,6 +146,12 @@ def points(row: AtlasRow, table: PublishedCurves) -> tuple[np.ndarray, np.ndarra
 def rms_over_peak(a: np.ndarray, b: np.ndarray) -> float:
     """Return the root mean square of ``a - b`` over the largest magnitude of ``b`` [-]."""
     return float(np.sqrt(np.mean((a - b) ** 2)) / np.abs(b).max())
+
+
+def _over_range(a: np.ndarray, b: np.ndarray) -> float | None:
+    """Return the root mean square of ``a - b`` over the range of ``b`` [-]; None of a constant."""
+    width = float(np.ptp(b))
+    return float(np.sqrt(np.mean((a - b) ** 2))) / width if width else None
 
 
 def at_abscissae(curve: np.ndarray, x: np.ndarray, period: float | None) -> np.ndarray:
@@ -144,8 +194,17 @@ def _numbers(table: PublishedCurves, curves: Curves) -> CurveComparison:
     ours = np.array([float(curves[name]) for name in names])
     return CurveComparison(
         x=np.arange(len(names)), theirs=theirs, ours=ours, rms=float(np.sqrt(np.mean((ours / theirs - 1) ** 2))),
+        over_range=None, own=_own_of_numbers(table, sources),
         scatter=float(np.sqrt(np.nanmean(off**2))) if len(sources) > 1 else None,
     )  # fmt: skip
+
+
+def _own_of_numbers(table: PublishedCurves, sources: np.ndarray) -> float:
+    """Return the root mean square of half a unit of the last digit over each published number [-]."""
+    texts = [text for column in table.columns if column != "quantity" for text in table.columns[column]]
+    known = [(text, value) for text, value in zip(texts, sources.ravel(), strict=True) if text]
+    halves = np.array([half_a_digit(text) / value for text, value in known])
+    return float(np.sqrt(np.mean(halves**2)))
 
 
 def _scatter(row: AtlasRow, x: np.ndarray, y: np.ndarray) -> float | None:

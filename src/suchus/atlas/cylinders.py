@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles, nudged, refined, shedding
+from suchus.atlas.case import Case, Curves, RunEffort, grids
+from suchus.atlas.marching import formed, march, middles, nudged, refined, shedding
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
@@ -81,37 +81,42 @@ def _shedding(effort: RunEffort, progress: Progress) -> Curves:
 def _on_two_grids(effort: RunEffort, reynolds: float, stream: Stream, progress: Progress) -> flow.Simulation:
     """Return a wake in 24 x 16 diameters that has formed on the coarse grid, at the start of its time on the fine."""
     box = ((-8.0, 16.0), (-8.0, 8.0))
-    wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
-    march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.5))
+
+    def form() -> flow.Simulation:
+        wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
+        march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.5))
+        return wake
+
+    wake = formed(("cylinder", reynolds, effort.coarse, effort.before), form)
     return refined(wake, _cylinder(effort.cells, reynolds, *box))
 
 
 CASES = (
     Case(
         name="started_re40", run=partial(_started, reynolds=40.0, x=(-5.0, 7.0), y=(-5.0, 5.0)),
-        full=RunEffort(cells=48, until=5.0), quick=RunEffort(cells=12, until=1.0), code=_CODE,
+        grids=grids((48, 32, 24), 5.0), quick=RunEffort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, unbounded "
         "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on "
         "the axis is zero.",
     ),
     Case(
         name="started_re550", run=partial(_started, reynolds=550.0, x=(-2.5, 4.0), y=(-2.5, 2.5)),
-        full=RunEffort(cells=96, until=3.5), quick=RunEffort(cells=16, until=1.0), code=_CODE,
+        grids=grids((96, 64, 48), 3.5), quick=RunEffort(cells=16, until=1.0), code=_CODE,
         setup="The same in 6.5 x 5 diameters, {cells} cells a diameter.",
     ),
     Case(
         name="started_re3000", run=partial(_started, reynolds=3000.0, x=(-1.5, 2.5), y=(-1.5, 1.5)),
-        full=RunEffort(cells=192, until=3.0), quick=RunEffort(cells=24, until=0.8), code=_CODE,
+        grids=grids((192, 128, 96), 3.0), quick=RunEffort(cells=24, until=0.8), code=_CODE,
         setup="The same in 4 x 3 diameters, {cells} cells a diameter.",
     ),
     Case(
-        name="steady_re40", run=_steady, code=_CODE, full=RunEffort(cells=32, until=8.0, coarse=12, before=40.0),
+        name="steady_re40", run=_steady, code=_CODE, grids=grids((32, 24, 16), 8.0, coarse=12, before=40.0),
         quick=RunEffort(cells=12, until=1.0, coarse=6, before=2.0),
         setup="A cylinder in a stream, in an unbounded domain, of which 24 x 16 diameters are computed; 40 diameters "
         "of travel with {coarse} cells a diameter and eight with {cells}.",
     ),
     Case(
-        name="shedding_re100", run=_shedding, code=_CODE, full=RunEffort(cells=28, until=45.0, coarse=12, before=80.0),
+        name="shedding_re100", run=_shedding, code=_CODE, grids=grids((32, 24, 16), 45.0, coarse=12, before=80.0),
         quick=RunEffort(cells=10, until=45.0, coarse=8, before=50.0),
         setup="A cylinder in a stream with a short gust at the start, in an unbounded domain, of which 24 x 16 "
         "diameters are computed; 80 diameters of travel with {coarse} cells a diameter and 45 with {cells}, means "

@@ -1,6 +1,6 @@
 """What the flows of the atlas share: marching with progress, a finer grid, mean values over periods, a nudge."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -66,6 +66,25 @@ def shedding(record: flow.Record, count: int) -> dict[str, np.ndarray]:
         "Strouhal": np.array(count / (time[-1] - time[0])), "largest drag": np.array(drag[late].max()),
         "largest lift": np.array(lift[late].max()),
     }  # fmt: skip
+
+
+_FORMED: dict[Hashable, flow.Simulation] = {}
+
+
+def formed(key: Hashable, form: Callable[[], flow.Simulation]) -> flow.Simulation:
+    """Return the flow in which a wake has formed, from which each grid of a case goes on; the last one is kept.
+
+    So that the three grids of a case, which begin from one state, compute it once in a process. It is read only.
+
+    Args:
+        key: all that decides it.
+        form: computes it.
+    """
+    if key not in _FORMED:
+        made = form()
+        _FORMED.clear()
+        _FORMED[key] = made
+    return _FORMED[key]
 
 
 def refined(coarse: flow.Simulation, setup: flow.Setup) -> flow.Simulation:

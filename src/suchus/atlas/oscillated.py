@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles, nudged, refined, shedding
+from suchus.atlas.case import Case, Curves, RunEffort, grids
+from suchus.atlas.marching import formed, march, middles, nudged, refined, shedding
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
@@ -40,9 +40,13 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     rate = 2 * np.pi * ratio * NATURAL
     period = 2 * np.pi / rate
     whole, first = round(effort.until), round(effort.before)
-    wake = flow.Simulation(_setup(effort.coarse, rate))
-    march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
-    sim = refined(wake, _setup(effort.cells, rate))
+
+    def form() -> flow.Simulation:
+        wake = flow.Simulation(_setup(effort.coarse, rate))
+        march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
+        return wake
+
+    sim = refined(formed(("oscillated", ratio, effort.coarse, first), form), _setup(effort.cells, rate))
     uppermost, down = list[WallValues](), list[WallValues]()
 
     def onward(until: float) -> flow.Record:
@@ -80,9 +84,13 @@ def _setup(cells: int, rate: float) -> flow.Setup:
 
 def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
-    wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
-    march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
-    sim = refined(wake, _setup(effort.cells, 0.0))
+
+    def form() -> flow.Simulation:
+        wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
+        march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
+        return wake
+
+    sim = refined(formed(("held", effort.coarse, effort.before), form), _setup(effort.cells, 0.0))
     record = march(sim, effort.until, staged(progress, "fine grid", _COARSE_SHARE, 1.0))
     return shedding(record.after(_SETTLED), _PERIODS)
 
@@ -100,9 +108,7 @@ CASES = (
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
-            full=RunEffort(cells=32, until=9.0, coarse=_COARSE, before=9.0)
-            if ratio > _BEATS
-            else RunEffort(cells=48, until=3.0, coarse=_COARSE, before=9.0),
+            grids=grids((48, 32, 24), 9.0 if ratio > _BEATS else 3.0, coarse=_COARSE, before=9.0),
             quick=RunEffort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
@@ -114,7 +120,7 @@ CASES = (
     Case(
         name="held_re185",
         run=_at_rest,
-        full=RunEffort(cells=64, until=38.0, coarse=16, before=60.0),
+        grids=grids((48, 32, 24), 38.0, coarse=16, before=60.0),
         quick=RunEffort(cells=12, until=36.0, coarse=8, before=40.0),
         code=_CODE,
         setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "

@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -36,6 +36,8 @@ class FlowOutcome:
     """Whether it was the quick trial."""
     cells: int
     """Cells per diameter, chord or width [-]."""
+    grid: int = 1
+    """Which of the flow's grids it was computed on, 1 for the finest."""
     seconds: float
     """Processor time [s]."""
     failed: str = ""
@@ -43,17 +45,27 @@ class FlowOutcome:
     curves: Curves = field(default_factory=dict)
     """Its curves and numbers by name, see ``case.Curves``."""
 
+    @property
+    def flow(self) -> str:
+        """Name of the flow on its grid, as ``flow_on`` gives it."""
+        return flow_on(self.case, self.grid)
 
-def digest_of(case: Case, *, quick: bool) -> str:
+
+def flow_on(case: str, grid: int) -> str:
+    """Return the name of a flow on one of its grids, and of its file: ``in_line``, ``in_line.grid2``."""
+    return case if grid == 1 else f"{case}.grid{grid}"
+
+
+def digest_of(case: Case, *, quick: bool, grid: int = 1) -> str:
     """Return the digest of a flow's set-up, of the flow solver's source and of the atlas's that it names."""
-    effort = asdict(case.quick if quick else case.full)
+    effort = asdict(case.effort(grid, quick=quick))
     code = code_digest("flow", *(f"atlas/{name}" for name in case.code))
     return digest({"case": case.name, "effort": effort, "quick": quick, "code": code})
 
 
-def compute(case: Case, *, quick: bool, progress: Progress = silent) -> FlowOutcome:
+def compute(case: Case, *, quick: bool, grid: int = 1, progress: Progress = silent) -> FlowOutcome:
     """Compute a flow; an error of the solver is kept as an outcome too, with its sentence."""
-    effort = case.quick if quick else case.full
+    effort = case.effort(grid, quick=quick)
     began = time.process_time()
     curves, failed = dict[str, np.ndarray](), ""
     try:
@@ -61,14 +73,14 @@ def compute(case: Case, *, quick: bool, progress: Progress = silent) -> FlowOutc
     except SuchusError as error:
         failed = str(error)
     return FlowOutcome(
-        case=case.name, digest=digest_of(case, quick=quick), quick=quick, cells=effort.cells, failed=failed,
-        seconds=time.process_time() - began, curves=curves,
+        case=case.name, digest=digest_of(case, quick=quick, grid=grid), quick=quick, cells=effort.cells, grid=grid,
+        failed=failed, seconds=time.process_time() - began, curves=curves,
     )  # fmt: skip
 
 
-def place(folder: Path, case: str) -> Path:
-    """Return the file of a flow's outcome."""
-    return folder / "flows" / f"{case}.json"
+def place(folder: Path, flow: str) -> Path:
+    """Return the file of the outcome of a flow on one of its grids, by the name that ``flow_on`` gives."""
+    return folder / "flows" / f"{flow}.json"
 
 
 def save_outcome(outcome: FlowOutcome, folder: Path) -> None:
@@ -79,7 +91,7 @@ def save_outcome(outcome: FlowOutcome, folder: Path) -> None:
     """
     curves = {name: _short(curve) for name, curve in outcome.curves.items()}
     values = {name: getattr(outcome, name) for name in FlowOutcome.__dataclass_fields__}
-    with new_file(place(folder, outcome.case), lasting=True) as draft:
+    with new_file(place(folder, outcome.flow), lasting=True) as draft:
         draft.write_text(json.dumps({**values, "curves": curves}) + "\n", encoding="utf-8")
 
 
@@ -88,13 +100,13 @@ def _short(curve: np.ndarray) -> object:
     return plain(rounded)
 
 
-def load_outcome(folder: Path, case: str) -> FlowOutcome | None:
+def load_outcome(folder: Path, case: str, grid: int = 1) -> FlowOutcome | None:
     """Return a flow's outcome, None if there is none.
 
     Raises:
         UnreadableFile: the file holds something else.
     """
-    path = place(folder, case)
+    path = place(folder, flow_on(case, grid))
     if not path.is_file():
         return None
     values = read_json(path)
@@ -104,17 +116,29 @@ def load_outcome(folder: Path, case: str) -> FlowOutcome | None:
     return FlowOutcome(**{**values, "curves": curves})
 
 
+def load_outcomes(folder: Path, cases: Iterable[Case]) -> dict[str, FlowOutcome]:
+    """Return the outcomes that a folder has of flows on their grids, by the names that ``flow_on`` gives.
+
+    Raises:
+        UnreadableFile: a file holds something else.
+    """
+    wanted = ((case.name, grid) for case in cases for grid in range(1, len(case.grids) + 1))
+    found = (load_outcome(folder, name, grid) for name, grid in wanted)
+    return {outcome.flow: outcome for outcome in found if outcome is not None}
+
+
 def compute_all(
     cases: Iterable[Case],
     folder: Path,
     *,
     jobs: int,
     quick: bool,
+    grids: Sequence[int] = (1,),
     client: Any = None,
     each: Callable[[str], Progress] = lambda _: silent,
     finished: Callable[[FlowOutcome], None] = lambda _: None,
 ) -> dict[str, FlowOutcome]:
-    """Compute flows that are not there yet, ``jobs`` at a time, and return the outcomes of all by name.
+    """Compute flows that are not there yet, ``jobs`` at a time, and return their outcomes by the name of ``flow_on``.
 
     An outcome is written as soon as it is there. One of the same set-up by the same code is kept.
 
@@ -122,7 +146,8 @@ def compute_all(
         cases: the flows; the longest should come first.
         folder: of the outcomes.
         jobs: processes at a time, which share the threads; with 1 all is done here.
-        quick: whether only a trial is wanted.
+        quick: whether only a trial is wanted, which is on one grid.
+        grids: numbers of the grids, of which a flow may have fewer; 1 is the finest.
         client: a ``distributed.Client``, whose workers then compute the flows; this machine if None.
         each: returns what is told how far a flow is, by its name.
         finished: called with each outcome when it is there, with those of an earlier start first.
@@ -132,15 +157,16 @@ def compute_all(
         NoCluster: the cluster was lost.
     """
     place = place_for("the atlas", client=client, jobs=jobs)
-    outcomes = _Outcomes(cases, folder, quick)
-    flows = outcomes.cases
+    wanted = (1,) if quick else tuple(grids)
+    flows = [OnGrid(case, grid) for case in cases for grid in wanted if grid <= len(case.grids)]
+    outcomes = _Outcomes(flows, folder, quick)
     job = Job(
         name="atlas",
         kind="atlas",
         piece="flow",
         unit="flows",
         work=partial(_computed, quick=quick),
-        items=flows,
+        items=outcomes.flows,
         versions=partial(deciding, ("atlas", "flow"), ("numba",)),
         tries=1,  # a flow that takes too much memory takes it again
         died=partial(_died, quick),
@@ -155,14 +181,28 @@ def compute_all(
         each=lambda number: each(flows[number].name),
         finished=lambda _, outcome: finished(outcome),
     )
-    return {case.name: outcomes.get(number) for number, case in enumerate(flows)}
+    return {flow.name: outcomes.get(number) for number, flow in enumerate(flows)}
 
 
-def finished_outcome(case: Case, folder: Path, *, quick: bool) -> FlowOutcome | None:
+class OnGrid(NamedTuple):
+    """A flow on one of its grids: one piece of work."""
+
+    case: Case
+    """The flow."""
+    grid: int
+    """Number of the grid, 1 for the finest."""
+
+    @property
+    def name(self) -> str:
+        """Its name, as ``flow_on`` gives it."""
+        return flow_on(self.case.name, self.grid)
+
+
+def finished_outcome(case: Case, folder: Path, *, quick: bool, grid: int = 1) -> FlowOutcome | None:
     """Return the outcome of a flow if it is there and of this set-up and code; one that is broken does not count."""
     with suppress(UnreadableFile):
-        old = load_outcome(folder, case.name)
-        if old is not None and old.digest == digest_of(case, quick=quick):
+        old = load_outcome(folder, case.name, grid)
+        if old is not None and old.digest == digest_of(case, quick=quick, grid=grid):
             return old
     return None
 
@@ -170,10 +210,12 @@ def finished_outcome(case: Case, folder: Path, *, quick: bool) -> FlowOutcome | 
 class _Outcomes:
     """The outcomes of flows, each a JSON file in a folder."""
 
-    def __init__(self, cases: Iterable[Case], folder: Path, quick: bool) -> None:
-        self.cases: Sequence[Case] = tuple(cases)
+    def __init__(self, flows: Sequence[OnGrid], folder: Path, quick: bool) -> None:
+        self.flows = flows
         self._folder = folder
-        held = {number: finished_outcome(case, folder, quick=quick) for number, case in enumerate(self.cases)}
+        held = {
+            number: finished_outcome(one.case, folder, quick=quick, grid=one.grid) for number, one in enumerate(flows)
+        }
         self._outcomes = {number: outcome for number, outcome in held.items() if outcome is not None}
 
     def has(self, number: int) -> bool:
@@ -191,13 +233,13 @@ class _Outcomes:
         self._outcomes[number] = outcome
 
 
-def _computed(case: Case, progress: Progress, quick: bool) -> FlowOutcome:
-    return compute(case, quick=quick, progress=progress)
+def _computed(flow: OnGrid, progress: Progress, quick: bool) -> FlowOutcome:
+    return compute(flow.case, quick=quick, grid=flow.grid, progress=progress)
 
 
-def _died(quick: bool, case: Case, code: int | None) -> FlowOutcome:
-    effort = case.quick if quick else case.full
+def _died(quick: bool, flow: OnGrid, code: int | None) -> FlowOutcome:
+    effort = flow.case.effort(flow.grid, quick=quick)
     return FlowOutcome(
-        case=case.name, digest="", quick=quick, cells=effort.cells, seconds=0.0,
+        case=flow.case.name, digest="", quick=quick, cells=effort.cells, grid=flow.grid, seconds=0.0,
         failed=f"its process ended with exit code {code}; where memory was short, --jobs 1 takes less of it.",
     )  # fmt: skip

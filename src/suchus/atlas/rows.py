@@ -141,7 +141,7 @@ def _walls() -> tuple[AtlasRow, ...]:
         AtlasRow(
             name=f"ghia_{line}_re{reynolds}", title=f"Lid-driven cavity, Re {reynolds}: {line}, Ghia et al. 1982",
             case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", ours=line,
-            window=(0.01, 0.99), labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
+            window=(0.01, 0.99), printed=True, labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
             note="The walls themselves, where both have the wall's speed, are left out.",
         )
         for reynolds in (100, 1000)

@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort, published
-from suchus.atlas.marching import march, middles, refined
+from suchus.atlas.case import Case, Curves, RunEffort, grids, published
+from suchus.atlas.marching import formed, march, middles, refined
 from suchus.progress import Progress, staged
 
 # At a Reynolds number of 2000 the wake has two states, in one of which the lift is a quarter larger. At 35 degrees it
@@ -16,8 +16,13 @@ _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
 
 
 def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: int) -> Curves:
-    wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
-    march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
+
+    def form() -> flow.Simulation:
+        wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
+        march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
+        return wake
+
+    wake = formed(("snake", reynolds, degrees, effort.coarse, effort.before), form)
     sim = refined(wake, _setup(effort.cells, reynolds, degrees))
     record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
     late = record.after(_SETTLED)
@@ -39,7 +44,7 @@ CASES = tuple(
     Case(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
-        full=RunEffort(cells=64, until=40.0, coarse=32, before=48.0),
+        grids=grids((64, 48, 32), 40.0, coarse=32, before=48.0),
         quick=RunEffort(cells=24, until=18.0, coarse=16, before=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 9 x 6 chords are "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort
+from suchus.atlas.case import Case, Curves, RunEffort, grids
 from suchus.atlas.marching import march, middles
 from suchus.progress import Progress
 
@@ -71,12 +71,12 @@ def _flapping(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="in_line", run=_in_line, code=_CODE,
-        full=RunEffort(cells=64, until=5.0), quick=RunEffort(cells=12, until=1.0),
+        grids=grids((64, 48, 32), 5.0), quick=RunEffort(cells=12, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
-        name="flapping", run=_flapping, full=RunEffort(cells=64, until=16.0), quick=RunEffort(cells=32, until=4.0),
+        name="flapping", run=_flapping, grids=grids((64, 48, 32), 16.0), quick=RunEffort(cells=32, until=4.0),
         code=_CODE,
         setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
         "75; unbounded domain, of which 7 x 9 chords are computed, most of them below; {cells} cells a chord; four "

@@ -5,8 +5,8 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort
-from suchus.atlas.marching import march, middles, refined
+from suchus.atlas.case import Case, Curves, RunEffort, grids
+from suchus.atlas.marching import formed, march, middles, refined
 from suchus.flow.signals import last_periods
 from suchus.progress import Progress, staged
 
@@ -32,8 +32,13 @@ def _cavity(effort: RunEffort, progress: Progress, *, reynolds: float) -> Curves
 
 def _channel(effort: RunEffort, progress: Progress, *, mean_speed: float) -> Curves:
     """Compute the DFG channel, 2.2 m long: from rest on the coarse grid, then on the finer one."""
-    before = flow.Simulation(_channel_setup(effort.coarse, effort.coarse, mean_speed))
-    march(before, effort.before, staged(progress, "coarse grid", 0.0, 0.3))
+
+    def form() -> flow.Simulation:
+        before = flow.Simulation(_channel_setup(effort.coarse, effort.coarse, mean_speed))
+        march(before, effort.before, staged(progress, "coarse grid", 0.0, 0.3))
+        return before
+
+    before = formed(("channel", mean_speed, effort.coarse, effort.before), form)
     sim = refined(before, _channel_setup(effort.cells, effort.coarse, mean_speed))
     record = march(sim, effort.until, staged(progress, "fine grid", 0.3, 1.0))
     drag, lift = (record.force() * 2 / (mean_speed**2 * _DIAMETER)).T
@@ -55,17 +60,21 @@ def _channel(effort: RunEffort, progress: Progress, *, mean_speed: float) -> Cur
 
 
 def _channel_setup(cells: int, coarse: int, mean_speed: float) -> flow.Setup:
-    """Return the DFG channel in a whole number of times as many cells as on the coarse grid, with the same corners."""
-    rows = round(_HEIGHT / _DIAMETER * coarse / 16) * 16  # multigrid halves it
-    long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=_HEIGHT / rows).cells[0]
-    times = cells // coarse
-    grid = flow.Grid(cells=(times * long, times * rows), cell=_HEIGHT / (times * rows))
+    """Return the DFG channel with the same corners as on the coarse grid."""
+    rows, first = _rows(cells), _rows(coarse)
+    long = flow.Grid.covering((0.0, 2.2), (0.0, _HEIGHT), cell=_HEIGHT / first).cells[0]
+    grid = flow.Grid(cells=(long * rows // first, rows), cell=_HEIGHT / rows)
     sides = flow.Sides(
         left=flow.Inflow(profile=lambda y: 6 * mean_speed * y * (_HEIGHT - y) / _HEIGHT**2), right=flow.Outflow(),
         bottom=flow.Wall(), top=flow.Wall(),
     )  # fmt: skip
     cylinder = flow.Body(shape=flow.Cylinder(diameter=_DIAMETER), motion=flow.Pose(position=(0.2, 0.2)))
     return flow.Setup(grid=grid, viscosity=1e-3, sides=sides, bodies=(cylinder,), coarse=True)
+
+
+def _rows(cells: int) -> int:
+    """Return the cells across the channel with so many a diameter, a number that multigrid halves."""
+    return round(_HEIGHT / _DIAMETER * cells / 16) * 16
 
 
 def _pressure_drop(sim: flow.Simulation) -> float:
@@ -111,31 +120,31 @@ def _settling(effort: RunEffort, progress: Progress) -> Curves:
 
 CASES = (
     Case(
-        name="cavity_re100", run=partial(_cavity, reynolds=100.0), full=RunEffort(cells=96, until=25.0),
+        name="cavity_re100", run=partial(_cavity, reynolds=100.0), grids=grids((96, 64, 48), 25.0),
         quick=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
-        name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), full=RunEffort(cells=128, until=50.0),
+        name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), grids=grids((128, 96, 64), 50.0),
         quick=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
         name="dfg_2d1", run=partial(_channel, mean_speed=0.2), code=_CODE,
-        full=RunEffort(cells=62, until=1.0, coarse=31, before=6.0),
+        grids=grids((62, 47, 31), 1.0, coarse=31, before=6.0),
         quick=RunEffort(cells=16, until=0.3, coarse=8, before=0.7),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and one with "
         f"{{cells}}, of which the last {_STEADY:g} s count.",
     ),
     Case(
         name="dfg_2d2", run=partial(_channel, mean_speed=1.0), code=_CODE,
-        full=RunEffort(cells=62, until=2.7, coarse=31, before=6.0),
-        quick=RunEffort(cells=20, until=2.7, coarse=10, before=5.0),
+        grids=grids((62, 47, 31), 2.7, coarse=31, before=6.0),
+        quick=RunEffort(cells=24, until=2.7, coarse=12, before=5.0),
         setup="The DFG channel, 22 x 4.1 diameters: six seconds from rest with {coarse} cells a diameter and 2.7 with "
         "{cells}, of which the last five periods count.",
     ),
     Case(
-        name="settling", run=_settling, code=_CODE, full=RunEffort(cells=32, until=46.0),
+        name="settling", run=_settling, code=_CODE, grids=grids((32, 24, 16), 46.0),
         quick=RunEffort(cells=12, until=2.0),
         setup="A cylinder of relative density 1.5 that settles from rest, one diameter from a wall, in a channel 4 "
         "diameters wide, seen from a frame that sinks with 2.1 m/s: 40 diameters of the channel, {cells} cells a "

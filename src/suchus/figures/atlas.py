@@ -1,7 +1,7 @@
 """The page of the atlas of flows: published data beside ours, as a table, in words and in plots."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
 from statistics import median
@@ -13,16 +13,21 @@ from matplotlib.figure import Figure
 
 from suchus.atlas import (
     CASES,
+    GRIDS,
     GROUPS,
     ROWS,
     AtlasRow,
     CurveComparison,
     Curves,
     FlowOutcome,
+    GridConvergence,
     compare,
     digest_of,
+    flow_on,
     published,
+    row_convergence,
 )
+from suchus.atlas.convergence import FORMAL, SAFETY
 from suchus.errors import SuchusError
 from suchus.figures.style import COLOURS, new, styled
 from suchus.flow import ALONG_THE_SKIN
@@ -39,7 +44,10 @@ _SKIN = (
     "(`suchus.atlas.read_skin`); [limits](flow_limits.md) says how much more accurate that is. Pressures are relative "
     "to that of the far stream, by Bernoulli's equation from the inflow."
 )
-_HEAD = ("row", "rms over peak", "bound", "scatter of sources", "verdict", "cells", "processor time")
+_HEAD = (
+    "row", "rms over peak", "rms over range", "bound", "scatter of sources", "source's own error",
+    "uncertainty on three grids", "order", "verdict", "cells", "processor time",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +64,10 @@ class Entry:
     """The error, if there is no comparison; else empty."""
     curves: Curves = field(default_factory=dict)
     """Curves of the flow solver."""
+    convergence: GridConvergence = field(default_factory=GridConvergence)
+    """What the flow's grids say of the row."""
+    coarser: tuple[FlowOutcome, ...] = ()
+    """Outcomes of the flow on its coarser grids, in the order of their numbers."""
 
     @property
     def word(self) -> str:
@@ -87,8 +99,22 @@ def entries(rows: Sequence[AtlasRow], outcomes: Mapping[str, FlowOutcome]) -> li
             except SuchusError as error:
                 failed = str(error)
         curves = {} if outcome is None else outcome.curves
-        listed.append(Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves))
+        numbers = range(2, len(CASES[row.case].grids) + 1)
+        coarser = tuple(one for grid in numbers if (one := outcomes.get(flow_on(row.case, grid))) is not None)
+        entry = Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves, coarser=coarser)
+        listed.append(replace(entry, convergence=_convergence(entry)))
     return listed
+
+
+def _convergence(entry: Entry) -> GridConvergence:
+    """Return what the grids say, of which all have to be by the same code."""
+    if entry.outcome is None or entry.comparison is None or entry.outcome.quick:
+        return GridConvergence(refused="the row is not judged")
+    every = (entry.outcome, *entry.coarser)
+    failed = [one for one in every if one.failed]
+    if failed:
+        return GridConvergence(refused=f"{failed[0].cells} cells failed")
+    return row_convergence(entry.row, {one.grid: (one.cells, one.curves) for one in every})
 
 
 def picture(group: str) -> str:
@@ -109,13 +135,19 @@ def summary(listed: Sequence[Entry]) -> str:
         f"({worst.row.name}); {len(judged) - len(above)} are within their bounds"
     )
     text += f", above are {', '.join(above)}." if above else "."
+    known = [entry.convergence.uncertainty for entry in listed if entry.convergence.uncertainty is not None]
+    if known:
+        text += (
+            f" Three grids converge for {len(known)} of them, whose own uncertainty is {100 * median(known):.1f} % in "
+            "the median."
+        )
     failed = [entry.row.name for entry in listed if entry.word == "failed"]
     return text + (f" There is no comparison for {', '.join(failed)}, which failed." if failed else "")
 
 
 def page(listed: Sequence[Entry]) -> str:
     """Return the page as Markdown."""
-    costs = {e.outcome.case: e.outcome.seconds for e in listed if e.outcome is not None}
+    costs = {one.flow: one.seconds for entry in listed for one in _every(entry)}
     lines = [
         "# Atlas of flows", "",
         "Published data of flows around bodies, many of which move, beside the results of `suchus.flow`. `suchus "
@@ -124,10 +156,18 @@ def page(listed: Sequence[Entry]) -> str:
         "[validation](validation.md); [limits](flow_limits.md) says what the differences mean.", "",
         summary(listed) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
         "The difference of a row is the root mean square (rms) over the published points, divided by the largest "
-        "published magnitude; for single numbers it is the rms of the relative differences. The scatter is the same "
-        "measure between two sources. The bound was fixed before anything was computed: twice the scatter, at least 2 "
+        "published magnitude, and beside it by the range from the least published value to the largest; for single "
+        "numbers it is the rms of the relative differences. The scatter is the same "
+        "measure between two sources. The source's own error is what it states, or half a unit of the last digit that "
+        "it prints, or how far points that were read off its figure scatter about a smooth curve, over the peak. The "
+        "bound was fixed before anything was computed: twice the scatter, at least 2 "
         "and at most 8 %, or the scatter itself if that is larger; 8 % where there is only one source. Rows above "
         "their bound are kept and marked.", "",
+        f"Each flow is computed on {GRIDS} grids. Where a row goes one way from grid to grid by changes that become "
+        f"smaller, the grid convergence index ({SAFETY:g} times the error that the observed order estimates, or the "
+        f"order {FORMAL:g} where the observed one is higher; Roache 1994, Celik et al. 2008) is the uncertainty of the "
+        "finest, over the same peak. It holds for the cells alone, neither for the domain nor for the source. Where "
+        "the grids do not converge in this way there is no index, and the row's section says why.", "",
         f"![All points, computed over published values, and the difference of each row with its bound]"
         f"({picture('parity')})",
         "", f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD),
@@ -150,9 +190,28 @@ def _summary_line(entry: Entry) -> str:
     found, outcome = entry.comparison, entry.outcome
     word = f"**{entry.word}**" if entry.bad else entry.word
     cells = [f"[{entry.row.name}](#{entry.row.name})"]
-    cells += ["", "", ""] if found is None else [_percent(found.rms), _percent(found.bound), _percent(found.scatter)]
-    cells += [word, "", ""] if outcome is None else [word, str(outcome.cells), f"{outcome.seconds:.0f} s"]
+    if found is None:
+        cells += [""] * 5
+    else:
+        cells += [_percent(found.rms), "" if found.over_range is None else _percent(found.over_range)]
+        cells += [_percent(found.bound), _percent(found.scatter), "" if found.own is None else _fine_percent(found.own)]
+    index, order = entry.convergence.uncertainty, entry.convergence.order
+    cells += ["none" if index is None else _percent(index), "" if order is None else f"{order:.1f}", word]
+    every = _every(entry)
+    cells += [", ".join(str(one.cells) for one in every), f"{sum(one.seconds for one in every):.0f} s"]
+    if outcome is None:
+        cells[6:] = ["", "", word, "", ""]
     return f"| {' | '.join(cells)} |"
+
+
+def _every(entry: Entry) -> tuple[FlowOutcome, ...]:
+    """Return the outcomes of a row's flow on all of its grids."""
+    return () if entry.outcome is None else (entry.outcome, *entry.coarser)
+
+
+def _fine_percent(value: float) -> str:
+    """Return a share in percent, of small ones the first digit."""
+    return f"{100 * value:.1f} %" if value >= 5e-4 else f"{100 * value:.0e} %"
 
 
 def _percent(value: float | None) -> str:
@@ -191,11 +250,24 @@ def _words(entry: Entry) -> list[str]:
                 f"differences are {_percent(min(found.cycles))} to {_percent(max(found.cycles))}, the one "
                 f"{'whose pressure is ' if entry.row.cycle_of else ''}nearest to it counts."
             )
+        sentences.append(_grid_words(entry))
     if entry.row.note:
         sentences.append(entry.row.note)
     if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
         sentences.append("Computed by an earlier state of the solver or of this set-up.")
-    return [" ".join(sentences)]
+    return [" ".join(sentence for sentence in sentences if sentence)]
+
+
+def _grid_words(entry: Entry) -> str:
+    """Return what the grids say of a row in a sentence; nothing of a trial."""
+    index, order = entry.convergence.uncertainty, entry.convergence.order
+    if entry.outcome is None or entry.outcome.quick:
+        return ""
+    if index is None:
+        return f"No uncertainty of its own from {GRIDS} grids: {entry.convergence.refused}."
+    cells = ", ".join(str(one.cells) for one in _every(entry))
+    at = "" if order is None else f", observed order {order:.1f}"
+    return f"Its uncertainty from {cells} cells is {_percent(index)}{at}."
 
 
 def atlas_files(folder: Path, rows: Sequence[AtlasRow]) -> list[Path]:

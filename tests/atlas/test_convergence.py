@@ -1,0 +1,109 @@
+"""The grid convergence index: exact answers, the published example, both sides of each refusal."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from suchus.atlas import ROWS, GridConvergence, grid_convergence, published, row_convergence
+from suchus.atlas.comparison import points
+from suchus.atlas.convergence import FORMAL, GRIDS, SAFETY
+
+CELLS = (48.0, 32.0, 24.0)
+NUMBERS, CURVE = ROWS["dfg_2d1"], ROWS["duetsch_force"]
+
+
+def converging(limit, error, order, cells=CELLS):
+    """Values whose error falls with a power of the cell."""
+    return [np.atleast_1d(limit + np.asarray(error) * n**-order) for n in cells]
+
+
+@given(st.floats(0.3, 4), st.floats(0.5, 50), st.sampled_from([CELLS, (64, 48, 32), (62, 47, 31)]))
+def test_the_order_of_an_error_that_is_a_power_is_found_and_the_band_holds_the_limit(order, error, cells):
+    values = converging(3.0, error, order, cells)
+    found = grid_convergence(values, cells, 3.0)
+    assert found.order == pytest.approx(order, rel=1e-3)
+    left = abs(values[0][0] - 3.0) / 3.0
+    if order <= FORMAL:
+        assert found.uncertainty == pytest.approx(SAFETY * left, rel=1e-3)
+    else:  # a higher order than the scheme's is not counted on
+        assert found.uncertainty > SAFETY * left
+
+
+def test_the_example_of_the_guideline():
+    """Celik et al. 2008, table 1, first column: 18 000, 8 000 and 4 500 cells in the plane, 6.063, 5.972, 5.863."""
+    found = grid_convergence([np.array([v]) for v in (6.063, 5.972, 5.863)], [1.5 * 4 / 3, 4 / 3, 1.0], 6.063)
+    assert found.order == pytest.approx(1.53, abs=0.01)
+    assert found.uncertainty == pytest.approx(0.022, abs=0.0005)
+
+
+@pytest.mark.parametrize(
+    ("values", "refused"),
+    [
+        ((1.0, 1.1, 1.3), ""),
+        ((1.0, 1.1, 1.05), "one way"),  # there and back
+        ((1.0, 1.1, 1.15), "does not become smaller"),  # it grows with finer cells
+        ((1.0, 1.1, 1.1 + 0.1 * np.log(32 / 24) / np.log(48 / 32) * 0.999), "does not become smaller"),
+        ((1.0, 1.1, 1.1 + 0.1 * np.log(32 / 24) / np.log(48 / 32) * 1.001), ""),  # just: of order nought
+        ((1.0, 1.1), "2 of 3 grids"),
+    ],
+)
+def test_what_does_not_converge_is_refused(values, refused):
+    found = grid_convergence([np.array([value]) for value in values], CELLS[: len(values)], 1.0)
+    assert refused in found.refused
+    assert bool(found.refused) == bool(refused)
+    assert (found.uncertainty is None) == bool(refused)
+
+
+def test_a_curve_goes_one_way_if_most_of_its_change_does():
+    """Two changes at an angle: the cosine decides, a half between them."""
+    first = np.array([1.0, 0.0])
+    for degrees, refused in ((59.0, False), (61.0, True)):
+        second = 3 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+        found = grid_convergence([np.zeros(2), first, first + second], CELLS, 1.0)
+        assert bool(found.refused) == refused
+
+
+def test_values_that_no_grid_changes_are_certain():
+    assert grid_convergence([np.ones(3)] * GRIDS, CELLS, 1.0) == GridConvergence(uncertainty=0.0)
+
+
+def numbers(*factors):
+    """Three grids of the channel's numbers, each published value times a factor by its place."""
+    table = published(NUMBERS.data)
+    names, value = table.columns["quantity"], table.values("FeatFlow")
+    return {
+        k + 1: (round(cells), {name: np.array(v * f[k]) for name, v, f in zip(names, value, factors, strict=True)})
+        for k, cells in enumerate(CELLS)
+    }
+
+
+def test_numbers_are_judged_one_by_one_and_the_row_has_their_mean_square():
+    good = [1 + a * np.array(CELLS) ** -2.0 for a in (5.0, -20.0, 40.0)]
+    found = row_convergence(NUMBERS, numbers(*good))
+    assert found.order == pytest.approx(2.0, abs=0.01)
+    assert found.uncertainty == pytest.approx(SAFETY * np.sqrt((25 + 400 + 1600) / 3) / 48**2, rel=0.01)
+    bad = row_convergence(NUMBERS, numbers(good[0], np.array([1.0, 1.1, 1.0]), good[2]))
+    assert bad.refused == "lift: it does not go one way from grid to grid"
+    short = numbers(*good)
+    assert "2 of 3 grids" in row_convergence(NUMBERS, {k: v for k, v in short.items() if k < 3}).refused
+    short[2][1].pop("lift")
+    assert "not all of the numbers" in row_convergence(NUMBERS, short).refused
+
+
+def test_a_curve_is_judged_at_the_points_that_all_grids_reach():
+    x, y = points(CURVE, published(CURVE.data))
+    row = replace(CURVE, period=None)
+    grids = {k + 1: (round(n), {"force": np.stack([x, y * (1 + n**-1.0)])}) for k, n in enumerate(CELLS)}
+    found = row_convergence(row, grids)
+    assert found.order == pytest.approx(1.0, abs=0.01)
+    part = np.sqrt(np.mean(y**2)) / np.abs(y).max()
+    assert found.uncertainty == pytest.approx(SAFETY * part / 48, rel=0.01)
+    for reach, said in ((0.6, ""), (0.4, "fewer than half")):
+        few = x < np.quantile(x, reach)
+        cut = {**grids, 2: (32, {"force": grids[2][1]["force"][:, few]})}
+        assert said in row_convergence(row, cut).refused
+        assert bool(row_convergence(row, cut).refused) == bool(said)
+    assert "32 cells gave no such curve" in row_convergence(row, {**grids, 2: (32, {})}).refused
