@@ -175,3 +175,13 @@ def test_the_scatter_is_that_of_the_source_farthest_off(data):
     assert compare(row, {"curve": np.stack([x, np.full(10, 2.0)])}).scatter == pytest.approx(0.1)
     only = replace(ROW, others=(("short", "t", "v", 1.0),))
     assert compare(only, {"curve": np.stack([x, np.full(10, 2.0)])}).scatter is None
+
+
+def test_another_source_is_shifted_as_the_row_is(data):
+    x = np.arange(10.0)
+    data("one", x=x, y=x)
+    data("other", t=x, v=x + 1)
+    row = replace(ROW, scale=(-1.0, 1.0), shift=(9.0, 0.0), others=(("other", "t", "v", -1.0),))
+    curve = np.stack([x, 9 - x])
+    assert compare(row, {"curve": curve}).rms == 0
+    assert compare(row, {"curve": curve}).scatter == pytest.approx(1 / 9)

@@ -1,5 +1,6 @@
 """The flows of the atlas: each can begin, and what they read off fields and motions is exact where it can be."""
 
+from dataclasses import replace
 from importlib import import_module
 
 import numpy as np
@@ -7,12 +8,14 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from suchus import flow
-from suchus.atlas import CASES, marching
-from suchus.atlas.cylinders import wake_length
+from suchus.atlas import CASES, RunEffort, marching, still
+from suchus.atlas.aerofoil import pitching
+from suchus.atlas.cylinders import turning, wake_length
 from suchus.atlas.marching import formed, march, nudged, shedding
 from suchus.atlas.oscillated import mean_skin
 from suchus.atlas.skin import WallValues
-from suchus.atlas.still import flapping, quasi_steady_peaks
+from suchus.atlas.spheres import swung
+from suchus.atlas.still import flapping, gust, quasi_steady_peaks
 from suchus.flow.record import COLUMNS
 
 
@@ -69,6 +72,63 @@ def test_the_flapping_ellipse_moves_as_its_rates_say(time):
         assert now.velocity[k] == pytest.approx(rate, abs=1e-7)
     assert now.spin == pytest.approx((after.angle - before.angle) / (2 * step), abs=1e-7)
     assert flapping(0.0).position == (1.4, 0.0)
+
+
+@pytest.mark.parametrize("motion", [pitching, swung, turning])
+@pytest.mark.parametrize("time", [0.3, 1.0, 2.2, 3.1])
+def test_a_motion_goes_as_its_rates_say(motion, time):
+    step = 1e-6
+    before, now, after = (motion(t) for t in (time - step, time, time + step))
+    rates = (np.array(after.position) - before.position) / (2 * step)
+    assert np.array(now.velocity) == pytest.approx(rates, abs=1e-7)
+    assert now.spin == pytest.approx((after.angle - before.angle) / (2 * step), abs=1e-7)
+
+
+def test_the_aerofoil_pitches_as_its_source_says_about_its_quarter_chord():
+    """Schneiders et al. 2013: a rate of 0.6 (1 - exp(-4.6 t)) from the start of the pitch, nose up."""
+    for time in (0.0, 2.0, 2.5, 3.85):
+        pose, since = pitching(time), max(time - 2.0, 0.0)
+        assert pose.spin == pytest.approx(-0.6 * (1 - np.exp(-4.6 * since)))
+        turn = np.array([np.cos(pose.angle), np.sin(pose.angle)])
+        assert np.array(pose.position) + 0.25 * turn == pytest.approx(0, abs=1e-12)
+    assert -np.degrees(pitching(3.85).angle) > 55  # as far as the published curves go
+
+
+def test_a_gust_is_across_small_and_gone():
+    assert gust(2.4, 2.5) == gust(4.6, 2.5) == (0.0, 0.0)
+    assert gust(3.5, 2.5) == pytest.approx((0.0, 0.1))
+
+
+def test_the_ensemble_of_two_states_holds_each_run_and_its_mirror_image(monkeypatch):
+    """A run whose force across is 3 in the first gust and 5 in the second, along it the phase of its cycle."""
+    forces = iter((3.0, 5.0))
+
+    class Told:
+        time, step = np.linspace(0.05, 12.0, 240) * 10, np.full(240, 1e-9)
+
+        def force(self):
+            return np.stack([self.time / 10 % 1.0, np.full(240, across)], axis=1)
+
+    def march(sim, until, progress):
+        nonlocal across
+        across = next(forces)
+        return Told()
+
+    across = 0.0
+    monkeypatch.setattr(still, "march", march)
+    found = CASES["two_states"].run(RunEffort(cells=8, until=12.0), lambda *words: None)
+    assert len(found) == 2 * 2 * 2 * 5
+    assert [float(found[f"force across {k}"][1, 9]) for k in (1, 2, 3, 11, 12)] == [3, -3, 3, 5, -5]
+    assert np.array_equal(found["force along 1"], found["force along 2"])
+    assert found["force along 1"][1, 125] == pytest.approx(0.5, abs=0.02)
+
+
+def test_friction_is_the_shear_of_the_vorticity_along_the_stream():
+    """Vorticity -k sin around the cylinder, clockwise above: 2 F / (rho U^2 D) = viscosity k pi."""
+    angle = np.random.default_rng(0).permutation(np.arange(0.0, 360.0, 3.0))
+    skin = WallValues(angle=angle, pressure=np.zeros(120), vorticity=-7.0 * np.sin(np.radians(angle)))
+    assert skin.friction(0.01) == pytest.approx(0.07 * np.pi, rel=1e-3)
+    assert replace(skin, vorticity=7 * np.cos(np.radians(angle))).friction(0.01) == pytest.approx(0, abs=1e-12)
 
 
 def test_the_flapping_ellipse_s_sources_divide_by_forces_of_the_size_of_its_speed():

@@ -10,7 +10,7 @@ from suchus.errors import UnknownName, UnreadableFile
 
 
 def test_there_are_at_least_as_many_rows_as_were_asked_for():
-    assert len(ROWS) >= 24
+    assert len(ROWS) >= 48
 
 
 def test_every_flow_is_read_and_every_row_has_one():

@@ -102,7 +102,8 @@ class AtlasRow:
     period: float | None = None
     """Period of the abscissa; None for one that has none."""
     others: tuple[tuple[str, str, str, float], ...] = ()
-    """Further sources of the same curve: table, its columns, factor on its abscissa; they give the scatter."""
+    """Further sources of the same curve: table, its columns, factor on its abscissa, which the row then shifts as
+    its own; they give the scatter."""
     any_cycle: bool = False
     """Whether the source shows one instant of a flow that may beat and does not say in which cycle: each cycle of ours
     counts then, curves named ``ours`` with a number behind it, and the nearest is compared."""
@@ -113,6 +114,8 @@ class AtlasRow:
     printed: bool = False
     """Whether the source prints its numbers, so that their last digit tells its error; else they were read off a
     figure."""
+    choice: str = "The source shows one instant and does not say of which cycle"
+    """With ``any_cycle``, why one of ours is chosen."""
     skin: bool = False
     """Whether it is read along the skin, where the reading has an error of its own."""
     note: str = ""

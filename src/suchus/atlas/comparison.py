@@ -212,7 +212,7 @@ def _scatter(row: AtlasRow, x: np.ndarray, y: np.ndarray) -> float | None:
     differences = []
     for name, abscissa, ordinate, factor in row.others:
         table = published(name)
-        other = np.stack([table.values(abscissa) * factor, table.values(ordinate)])
+        other = np.stack([table.values(abscissa) * factor + row.shift[0], table.values(ordinate)])
         values = at_abscissae(other, x, row.period)
         reached = np.isfinite(values)
         if reached.sum() >= _FEWEST:

@@ -15,6 +15,7 @@ from suchus.progress import Progress, staged
 _CODE = ("cylinders.py", "marching.py", "skin.py")
 _PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged
 _READINGS = 0.1  # [s] between two readings of the skin
+_INSTANTS = ((0.5, "0p5"), (1.5, "1p5"))  # [s] at which the skin of the started cylinder at Re 1000 is read
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
 
 Stream = tuple[float, float] | Callable[[float], tuple[float, float]]
@@ -50,6 +51,40 @@ def _started(
 
     record = march(sim, effort.until, progress, watch=(note,), every=0.05)
     return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]]), "length": np.array(lengths).T}
+
+
+def _started_skin(effort: RunEffort, progress: Progress) -> Curves:
+    """Compute the started cylinder at Re 1000 with its parts of the drag and the vorticity on it at two instants."""
+    sim = flow.Simulation(_cylinder(effort.cells, 1000.0, (-1.5, 2.5), (-1.5, 1.5)))
+    parts: list[tuple[float, float]] = []
+
+    def note(now: flow.Simulation) -> None:
+        parts.append((now.time, read_skin(now).friction(now.setup.viscosity)))
+
+    instants = {}
+    for instant, name in _INSTANTS:
+        if instant < effort.until:
+            march(sim, instant, progress, end=effort.until, watch=(note,), every=_READINGS / 2)
+            instants[f"vorticity {name}"] = read_skin(sim).curve("vorticity")
+    record = march(sim, effort.until, progress, watch=(note,), every=_READINGS / 2)
+    time, drag = middles(record), 2 * record.force()[:, 0]
+    at, friction = np.array(parts).T
+    return {
+        **instants, "drag": np.stack([time, drag]), "friction": np.stack([at, friction]),
+        "pressure part": np.stack([at, np.interp(at, time, drag) - friction]),
+    }  # fmt: skip
+
+
+def turning(time: float) -> flow.Pose:
+    """Return the pose of a cylinder that turns in its place, its skin as fast as the stream."""
+    return flow.Pose(angle=2.0 * time, spin=2.0)
+
+
+def _turning(effort: RunEffort, progress: Progress) -> Curves:
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=turning)
+    sim = flow.Simulation(replace(_cylinder(effort.cells, 200.0, (-4.0, 10.0), (-5.0, 5.0)), bodies=(body,)))
+    record = march(sim, effort.until, progress)
+    return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]])}
 
 
 def _steady(effort: RunEffort, progress: Progress) -> Curves:
@@ -108,6 +143,18 @@ CASES = (
         name="started_re3000", run=partial(_started, reynolds=3000.0, x=(-1.5, 2.5), y=(-1.5, 1.5)),
         grids=grids((192, 128, 96), 3.0), quick=RunEffort(cells=24, until=0.8), code=_CODE,
         setup="The same in 4 x 3 diameters, {cells} cells a diameter.",
+    ),
+    Case(
+        name="started_re1000", run=_started_skin, grids=grids((192, 128, 96), 2.8),
+        quick=RunEffort(cells=24, until=1.6), code=_CODE,
+        setup="The same in 4 x 3 diameters, {cells} cells a diameter. Friction is the integral of the vorticity at the "
+        "wall, the pressure part the force exchanged less that.",
+    ),
+    Case(
+        name="turning_re200", run=_turning, grids=grids((48, 32, 24), 12.0),
+        quick=RunEffort(cells=16, until=1.0), code=_CODE,
+        setup="A cylinder that starts at once to move and to turn, in an unbounded domain, of which 14 x 10 diameters "
+        "are computed; {cells} cells a diameter.",
     ),
     Case(
         name="steady_re40", run=_steady, code=_CODE, grids=grids((32, 24, 16), 8.0, coarse=12, before=40.0),

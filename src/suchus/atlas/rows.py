@@ -1,9 +1,10 @@
 """The rows of the atlas and the flows that they are read from. The bounds follow from the sources: ``case.bound``."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
-from suchus.atlas import cylinders, oscillated, snake, still, walls
+from suchus.atlas import aerofoil, cylinders, oscillated, snake, spheres, still, walls
 from suchus.atlas.case import AtlasRow, Case
 from suchus.errors import UnknownName
 
@@ -42,7 +43,50 @@ def _started() -> tuple[AtlasRow, ...]:
         case="started_re40", data="coutanceau1977_length_re40", x="t", y="length", ours="length",
         labels=(_TIME, "length of the recirculation / diameter [-]"),
     )  # fmt: skip
-    return (*drags, length, *faster)
+    return (*drags, length, *faster, *_started_1000())
+
+
+def _started_1000() -> tuple[AtlasRow, ...]:
+    sources = (("koumoutsakos1995", "Koumoutsakos and Leonard 1995"), ("mohaghegh2017", "Mohaghegh and Udaykumar 2017"))
+    rows = []
+    for short, long in sources:
+        (other,) = (one for one, _ in sources if one != short)
+        author = short[:-4]
+        rows.append(
+            AtlasRow(
+                name=f"{author}_re1000", title=f"Started cylinder, Re 1000: drag, {long}", case="started_re1000",
+                data=f"{short}_drag_re1000", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST, ours="drag",
+                labels=(_TIME, "drag coefficient [-]"), others=((f"{other}_drag_re1000", "t_star", "cd", 0.5),),
+            )
+        )  # fmt: skip
+        rows += [
+            AtlasRow(
+                name=f"{author}_vorticity_{key}", case="started_re1000", data=f"{short}_vorticity_{key}", x="angle",
+                title=f"Started cylinder, Re 1000: vorticity on it after {time} diameters of travel, {long}",
+                y="vorticity", scale=(-180.0, 1.0), shift=(180.0, 0.0), period=360.0, skin=True,
+                ours=f"vorticity {key}", labels=(_ANGLE, "vorticity x D / U [-]"),
+                others=((f"{other}_vorticity_{key}", "angle", "vorticity", -180.0),),
+            )
+            for key, time in (("0p5", 0.5), ("1p5", 1.5))
+        ]  # fmt: skip
+    parts = (("friction", "friction", "friction"), ("pressure", "pressure part", "pressure part"))
+    rows += [
+        AtlasRow(
+            name=f"koumoutsakos_{key}_re1000", case="started_re1000", data=f"koumoutsakos1995_{key}_re1000",
+            title=f"Started cylinder, Re 1000: {words} of the drag, Koumoutsakos and Leonard 1995", x="t_star", y="cd",
+            scale=(0.5, 1.0), window=_FIRST, ours=ours, labels=(_TIME, f"{words} of the drag coefficient [-]"),
+            skin=True,
+        )
+        for key, ours, words in parts
+    ]  # fmt: skip
+    rows.append(
+        AtlasRow(
+            name="chen_drag", title="Cylinder that starts to move and to turn, Re 200: drag, Chen et al. 1993",
+            case="turning_re200", data="chen1993_drag_re200", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST,
+            ours="drag", labels=(_TIME, "drag coefficient [-]"),
+        )
+    )  # fmt: skip
+    return tuple(rows)
 
 
 def _oscillated() -> tuple[AtlasRow, ...]:
@@ -132,7 +176,48 @@ def _still() -> tuple[AtlasRow, ...]:
             case="in_line", data="duetsch1998_force", x="t_over_period", y="force", ours="force", period=1.0,
             labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
         ),
-        *strokes,
+        *_two_states(), *strokes,
+    )  # fmt: skip
+
+
+def _two_states() -> tuple[AtlasRow, ...]:
+    """Return force across the motion, which tells the state of the wake, and along it in the same cycle."""
+    choice = (
+        "The wake has states that are each other's mirror image and changes between them, and the source's start is "
+    )
+    choice += "not known"
+    across, along = (
+        AtlasRow(
+            name=f"duetsch_{short}_kc10", case="two_states", data=f"duetsch1998_{short}_kc10", x="t_over_period",
+            y="force", scale=(1.0, 0.25), period=1.0, ours=ours, any_cycle=True, choice=choice,
+            title=f"Cylinder that oscillates in water at rest, Re 200, KC 10: {ours} its motion, Duetsch 1998",
+            labels=("time / period [-]", "force / (density x speed^2 x diameter) [-]"),
+        )
+        for short, ours in (("lift", "force across"), ("drag", "force along"))
+    )  # fmt: skip
+    return across, replace(along, cycle_of=across)
+
+
+def _pitching() -> tuple[AtlasRow, ...]:
+    return tuple(
+        AtlasRow(
+            name=f"schneiders_pitching_{name}", title=f"NACA 0015 that pitches up, Re 10 000: {name}, Schneiders 2013",
+            case="pitching", data=f"schneiders2013_pitching_{name}", x="angle", y=column, ours=name,
+            labels=("angle of attack [deg]", f"{name} coefficient [-]"),
+        )
+        for name, column in (("drag", "cd"), ("lift", "cl"))
+    )  # fmt: skip
+
+
+def _spheres() -> tuple[AtlasRow, ...]:
+    return (
+        AtlasRow(name="sphere_re150", title="Sphere, Re 150: drag", case="sphere_re150", data="sphere_re150_numbers",
+            kind="numbers"),
+        AtlasRow(
+            name="schneiders_sphere", title="Sphere that oscillates in water at rest, Re 40: drag, Schneiders 2013",
+            case="oscillating_sphere", data="schneiders2013_sphere_drag", x="t_over_period", y="cd", ours="drag",
+            period=1.0, labels=("time / period [-]", "drag coefficient [-]"),
+        ),
     )  # fmt: skip
 
 
@@ -143,12 +228,30 @@ def _walls() -> tuple[AtlasRow, ...]:
             case=f"cavity_re{reynolds}", data="ghia1982_cavity", x=place, y=f"{line}_re{reynolds}", ours=line,
             window=(0.01, 0.99), printed=True, labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
             note="The walls themselves, where both have the wall's speed, are left out.",
+            others=(("botella1998_cavity_re1000", place, line, 1.0),) if reynolds == 1000 else (),
         )
         for reynolds in (100, 1000)
         for line, place in (("u", "y"), ("v", "x"))
     )  # fmt: skip
+    marchi = tuple(
+        AtlasRow(
+            name=f"marchi_{line}_re100", title=f"Lid-driven cavity, Re 100: {line}, Marchi et al. 2009",
+            case="cavity_re100", data="marchi2009_cavity_re100", x="place", y=line, own=f"{line}_error", ours=line,
+            labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
+        )
+        for line, place in (("u", "y"), ("v", "x"))
+    )  # fmt: skip
+    botella = tuple(
+        AtlasRow(
+            name=f"botella_{line}_re1000", title=f"Lid-driven cavity, Re 1000: {line}, Botella and Peyret 1998",
+            case="cavity_re1000", data="botella1998_cavity_re1000", x=place, y=line, printed=True, ours=line,
+            labels=(f"{place} / width [-]", f"{line} / speed of the lid [-]"),
+            others=(("ghia1982_cavity", place, f"{line}_re1000", 1.0),),
+        )
+        for line, place in (("u", "y"), ("v", "x"))
+    )  # fmt: skip
     return (
-        *lines,
+        *lines, *marchi, *botella,
         AtlasRow(name="dfg_2d1", title="Cylinder in a channel, DFG 2D-1", case="dfg_2d1", data="dfg_2d1_numbers",
             kind="numbers"),
         AtlasRow(name="dfg_2d2", title="Cylinder in a channel, DFG 2D-2", case="dfg_2d2", data="dfg_2d2_numbers",
@@ -182,7 +285,9 @@ GROUPS: Mapping[str, tuple[AtlasRow, ...]] = MappingProxyType(
         "Cylinders at rest in a stream": _resting(),
         "Bodies that move in water at rest": _still(),
         "Cylinder oscillated across a stream": _oscillated(),
+        "Aerofoil that pitches": _pitching(),
         "Flying snake": _snakes(),
+        "Spheres": _spheres(),
     }
 )
 """The rows by what they have in common, in the order of the page."""
@@ -191,14 +296,15 @@ ROWS: Mapping[str, AtlasRow] = MappingProxyType({row.name: row for rows in GROUP
 """The rows by their names."""
 
 CASES: Mapping[str, Case] = MappingProxyType(
-    {case.name: case for room in (walls, cylinders, still, oscillated, snake) for case in room.CASES}
+    {case.name: case for room in (walls, cylinders, still, oscillated, aerofoil, snake, spheres) for case in room.CASES}
 )
 """The flows by their names."""
 
 
 LONGEST = (
     *(f"snake_{degrees}_re{reynolds}" for reynolds in (2000, 1000) for degrees in (30, 35)),
-    *(case.name for case in oscillated.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
+    "two_states", *(case.name for case in oscillated.CASES), "flapping", "shedding_re100", "dfg_2d2", "settling",
+    "pitching", "sphere_re150",
 )  # fmt: skip
 """Flows that are begun first, so that no process idles in the end."""
 

@@ -35,6 +35,13 @@ class WallValues:
     vorticity: np.ndarray
     """Vorticity over speed per diameter, positive counter-clockwise [-]."""
 
+    def friction(self, viscosity: float) -> float:
+        """Return the friction part of the drag coefficient: the shear viscosity times vorticity along x [-]."""
+        order = np.argsort(self.angle)
+        turn, along = np.radians(self.angle[order]), -self.vorticity[order] * np.sin(np.radians(self.angle[order]))
+        turn, along = np.append(turn, turn[0] + 2 * np.pi), np.append(along, along[0])
+        return float(viscosity * np.trapezoid(along, turn))
+
     def curve(self, name: str) -> np.ndarray:
         """Return ``pressure`` or ``vorticity`` over the angle, shape (2, marker)."""
         order = np.argsort(self.angle)

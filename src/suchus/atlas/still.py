@@ -1,11 +1,13 @@
 """Bodies that move to and fro in water at rest."""
 
+from functools import partial
+
 import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
 from suchus.atlas.marching import march, middles
-from suchus.progress import Progress
+from suchus.progress import Progress, staged
 
 _CODE = ("still.py", "marching.py")
 _KEULEGAN = 5.0  # [-]; largest speed over frequency and diameter
@@ -26,6 +28,48 @@ def _in_line(effort: RunEffort, progress: Progress) -> Curves:
     )  # fmt: skip
     late = march(sim, effort.until, progress).after(effort.until - 1.0)
     return {"force": np.stack([middles(late) % 1.0, late.force()[:, 0] / speed**2])}
+
+
+_SWINGS = 10.0  # [-]; number of Keulegan and Carpenter at Re 200, and the period in [s]
+_READ_FROM = 7  # cycles at Re 200 that are left out
+_GUSTS = (0.0, 2.5)
+"""Times at which the gusts of the ensemble begin, at two phases of the motion [s]."""
+_GUST, _LASTING = 0.1, 2.0  # [m/s], [s]; of a gust
+_PHASES = 250  # of a cycle, at which it is kept
+
+
+def gust(time: float, begin: float) -> tuple[float, float]:
+    """Return the far stream of a small gust across the motion, gone without a kink after two seconds [m/s]."""
+    share = (time - begin) / _LASTING
+    return 0.0, float(_GUST * np.sin(np.pi * share) ** 2) if 0 < share < 1 else 0.0
+
+
+def _two_states(effort: RunEffort, progress: Progress) -> Curves:
+    """Compute a cylinder that moves with ``-cos(2 pi t / T)``, KC 10, once for each gust.
+
+    A gust to the other side gives the mirror image, whose force across has the other sign: each run is two members.
+    """
+    motion = flow.Oscillation(frequency=1 / _SWINGS, heave=(-_SWINGS / (2 * np.pi), 0.0))
+    curves: dict[str, np.ndarray] = {}
+    phase = np.linspace(0.0, 1.0, _PHASES)
+    whole = round(effort.until)
+    for k, begin in enumerate(_GUSTS):
+        sim = flow.Simulation(
+            flow.Setup(
+                grid=flow.Grid.covering((-6.0, 6.0), (-6.0, 6.0), cell=1 / effort.cells), viscosity=1 / 200,
+                stream=partial(gust, begin=begin), coarse=True,
+                bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),),
+            )
+        )  # fmt: skip
+        part = staged(progress, f"gust {k + 1}", k / len(_GUSTS), (k + 1) / len(_GUSTS))
+        record = march(sim, whole * _SWINGS, part)
+        turns, (along, across) = middles(record) / _SWINGS, record.force().T
+        for cycle in range(min(_READ_FROM, whole - 1), whole):
+            for sign in (1, -1):
+                number = 1 + len(curves) // 2
+                curves[f"force along {number}"] = np.stack([phase, np.interp(cycle + phase, turns, along)])
+                curves[f"force across {number}"] = np.stack([phase, sign * np.interp(cycle + phase, turns, across)])
+    return curves
 
 
 def flapping(time: float) -> flow.Pose:
@@ -74,6 +118,14 @@ CASES = (
         grids=grids((64, 48, 32), 5.0), quick=RunEffort(cells=12, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
+    ),
+    Case(
+        name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 12.0),
+        quick=RunEffort(cells=8, until=1.0),
+        setup="A cylinder that oscillates in water at rest, Re 200, KC 10; unbounded domain, of which 12 x 12 "
+        "diameters are computed; {cells} cells a diameter. Of twelve periods from rest the last five are read, of runs "
+        "with a small gust across the motion (a tenth of its speed) at two phases of the first and, by symmetry, with "
+        "gusts to the other side.",
     ),
     Case(
         name="flapping", run=_flapping, grids=grids((64, 48, 32), 16.0), quick=RunEffort(cells=32, until=4.0),

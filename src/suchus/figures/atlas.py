@@ -246,9 +246,9 @@ def _words(entry: Entry) -> list[str]:
         sentences.append(f"{_percent(found.rms)} over {found.x.size} points: {judged}.")
         if found.cycles:
             sentences.append(
-                f"The source shows one instant and does not say of which cycle: of our {len(found.cycles)}, whose "
+                f"{entry.row.choice}: of our {len(found.cycles)}, whose "
                 f"differences are {_percent(min(found.cycles))} to {_percent(max(found.cycles))}, the one "
-                f"{'whose pressure is ' if entry.row.cycle_of else ''}nearest to it counts."
+                f"{_whose(entry.row)}nearest to the source counts."
             )
         sentences.append(_grid_words(entry))
     if entry.row.note:
@@ -256,6 +256,11 @@ def _words(entry: Entry) -> list[str]:
     if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
         sentences.append("Computed by an earlier state of the solver or of this set-up.")
     return [" ".join(sentence for sentence in sentences if sentence)]
+
+
+def _whose(row: AtlasRow) -> str:
+    """Return by which other row a cycle is chosen, with a space behind it; nothing if by its own."""
+    return f"whose {row.cycle_of.ours.removeprefix('uppermost ')} is " if row.cycle_of else ""
 
 
 def _grid_words(entry: Entry) -> str:
