@@ -37,8 +37,9 @@ contract: .venv/.dev
 single double space: .venv/.dev # the flow's kernels, compiled once; else every test worker would: double for test-all
 	SUCHUS_THREADS=1 $(PY) tools/compile_flow.py $@
 
-tests: .venv/.dev
-	$(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
+tests: .venv/.dev # asserts are plain, which is quicker; what fails runs again with the values in its message
+	$(PY) -m pytest -n auto --dist worksteal --assert=plain -m "not validate and not slow" || \
+	{ $(PY) -m pytest -n0 --last-failed --last-failed-no-failures none -m "not validate and not slow"; exit 1; }
 
 costs: .venv/.dev # measures every test; what costs too much for make test is listed in tests/costly.json
 	SUCHUS_COSTS=write $(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"

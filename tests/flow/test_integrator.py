@@ -70,6 +70,7 @@ def after(step, one):
     return sim.water.velocity[:, PAD:-PAD, PAD:-PAD].copy()
 
 
+@pytest.mark.slow("the second precision")
 @pytest.mark.parametrize("order", BY_ORDER)
 def test_halving_the_step_divides_what_is_off_by_two_to_the_order(order):
     """Against the same grid with sixteen times smaller steps; by central differences, in which no limiter switches."""

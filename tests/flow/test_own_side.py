@@ -47,6 +47,7 @@ def off_stokes(cells):
     return np.abs(sim.water.u[PAD:-PAD, PAD + 4] - exact).max()
 
 
+@pytest.mark.slow("the second precision")
 def test_over_a_swinging_wall_the_water_swings_as_stokes_says_at_second_order():
     coarse, fine = off_stokes(32), off_stokes(64)
     assert fine < 0.02

@@ -82,6 +82,7 @@ def test_limited_quick_is_compiled_once_and_for_all():
     assert flow.Setup(grid=flow.Grid(cells=(32, 32), cell=0.1), viscosity=1.0).scheme == flow.QUICK
 
 
+@pytest.mark.slow("the second precision")
 def test_a_scheme_that_says_the_same_gives_the_same():
     ours, theirs = vortices(16), vortices(16, scheme=flow.Scheme(mine))
     for sim in (ours, theirs):
@@ -90,12 +91,14 @@ def test_a_scheme_that_says_the_same_gives_the_same():
     assert np.abs(vortices(16).water.velocity - ours.water.velocity).max() > 0.1
 
 
+@pytest.mark.slow("the second precision")
 @pytest.mark.parametrize(("scheme", "low", "high"), [(flow.CENTRAL, 1.95, 2.05), (flow.UPWIND, 0.7, 1.05)])
 def test_each_scheme_has_its_order(scheme, low, high):
     coarse, fine = (error(vortices(n, scheme=scheme), 1.0) for n in (16, 32))
     assert low < log2(coarse / fine) < high
 
 
+@pytest.mark.slow("the second precision")
 def test_upwind_loses_energy_that_central_differences_keep():
     def energy(sim):
         return float(((sim.water.velocity[:, PAD:-PAD, PAD:-PAD] - np.array([1.0, 0.0])[:, None, None]) ** 2).sum())

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -85,6 +87,19 @@ def test_a_remembered_midline_is_the_midline_whatever_becomes_of_what_was_given(
     assert kept(0.5) is kept(0.5)
     kept(0.1)
     assert asked == [0.1, 0.2, 0.3, 0.4, 0.5, 0.1]
+
+
+def test_a_remembered_midline_is_where_it_is_asked_for_and_anew_once_it_is_forgotten():
+    spine, eel = flow.eel(1.0, stations=33).spine, {"size": 1.0}
+    kept = Remembered(lambda time: replace(spine(time), half_width=eel["size"] * spine(time).half_width))
+    here, there = flow.Pose(position=(0.1, 0.2), angle=0.3), flow.Pose(position=(0.1, 0.2), angle=0.4)
+    for time, pose in ((0.1, here), (0.1, there), (0.2, there), (0.1, here)):
+        placed = kept.placed(time, pose)
+        np.testing.assert_array_equal(placed.rows, kept(time).placed(pose).rows)
+        assert kept.placed(time, replace(pose)) is placed
+    eel["size"] = 0.5
+    kept.forget()
+    np.testing.assert_array_equal(kept.placed(0.1, here).half_width, 0.5 * spine(0.1).half_width)
 
 
 def test_a_step_makes_a_midline_once():

@@ -130,9 +130,13 @@ class Edge:
     """Velocity into the domain that the flow in it induces, at the end of the last step [m/s]."""
     seen: np.ndarray = field(init=False)
     """The same one step earlier [m/s]."""
+    order: tuple[int, ...] = field(init=False)
+    """Axes of an array of the padded grid, that across the side first [-]."""
 
     def __post_init__(self) -> None:
         self.induced, self.seen = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
+        at = self.prescribed.ndim - self.axis
+        self.order = (at, *(k for k in range(1 + self.prescribed.ndim) if k != at))
 
     @property
     def sign(self) -> int:
@@ -155,8 +159,7 @@ class Edge:
 
     def across(self, a: np.ndarray) -> np.ndarray:
         """Return an array of the padded grid with the normal index first."""
-        at = self.prescribed.ndim - self.axis
-        return a.transpose(at, *(k for k in range(a.ndim) if k != at))  # np.moveaxis takes ten times as long
+        return a.transpose(self.order)  # np.moveaxis takes ten times as long
 
     def asked(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
         """Return what the side says at a time [s]: the velocity of what the water sticks to, and that into the domain.

@@ -113,13 +113,14 @@ def check_cuts(cuts: tuple[float, ...], what: str) -> None:
 
 
 class Remembered:
-    """A midline over time that remembers what it was at the last times: a step asks for the same ones often."""
+    """A midline over time that remembers what it was, and where: a step asks for the same times often."""
 
     LAST = 4
     """Times that are remembered [-]."""
 
     def __init__(self, spine: Callable[[float], MidlineState]) -> None:
         self._spine, self._known = spine, dict[float, MidlineState]()
+        self._placed: tuple[float, Pose, MidlineState] | None = None
 
     def __call__(self, time: float) -> MidlineState:
         """Return the midline at a time [s]; its arrays are its own, whatever becomes of those that were given."""
@@ -133,9 +134,16 @@ class Remembered:
             self._known[time] = state
         return self._known[time]
 
+    def placed(self, time: float, pose: Pose) -> MidlineState:
+        """Return the midline at a time [s] in the world; its arrays are to be read only."""
+        if self._placed is None or self._placed[:2] != (time, pose):
+            self._placed = time, pose, self(time).placed(pose)
+        return self._placed[2]
+
     def forget(self) -> None:
         """Ask anew from now on: the body has become another."""
         self._known.clear()
+        self._placed = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,9 +171,14 @@ class Midline(Shape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
+    def _placed(self, time: float, pose: Pose) -> MidlineState:
+        """Return the midline at a time in the world."""
+        spine = self.spine
+        return spine.placed(time, pose) if isinstance(spine, Remembered) else spine(time).placed(pose)
+
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
-        placed = self.spine(time).placed(pose)
+        placed = self._placed(time, pose)
         h = (x[-1] - x[0]) / (x.size - 1)
         field = Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
         if self.cuts:
@@ -184,12 +197,12 @@ class Midline(Shape):
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
-        placed = self.spine(time).placed(pose)
+        placed = self._placed(time, pose)
         return np.column_stack([np.interp(arc, placed.arc, line) for line in (placed.x, placed.y)])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges, long edges split."""
-        placed = self.spine(time).placed(pose)
+        placed = self._placed(time, pose)
         outline = ring(placed.rows)
         n, arc = placed.x.size, placed.arc
         station = np.concatenate([arc, arc[::-1]])
@@ -215,14 +228,14 @@ class Midline(Shape):
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        outline = ring(self.spine(time).placed(pose).rows)
+        outline = ring(self._placed(time, pose).rows)
         return (
             float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
         )  # fmt: skip
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the midline, but for its ends where they are round: wider than the way to the tip is long."""
-        placed = self.spine(time).placed(pose)
+        placed = self._placed(time, pose)
         to_tip = np.minimum(placed.arc, placed.arc[-1] - placed.arc)
         slim = np.flatnonzero(placed.half_width < to_tip)
         if slim.size < 2:

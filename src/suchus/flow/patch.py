@@ -8,6 +8,8 @@ as 0. A row of ``rects`` is a patch: where it starts in the room, its padded cel
 axis, the last axis first, and how many pairs of smoothing steps it gets before and after.
 """
 
+from math import prod
+
 import numpy as np
 
 from suchus.flow.compiled import PAD, UNIT, part, unsigned
@@ -39,14 +41,16 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     """
     rows, offset, axes = [], 0, layout.shape[1] // 3
     rim, pairs = RIM[axes - 2], EXTRA[axes - 2]
-    beyond = ~np.array(repeats)[::-1] & (axes == 3)
-    for k, place in enumerate(layout):
-        cells, window = place[1 : 1 + axes], place[1 + axes :].reshape(axes, 2).copy()
-        if window[0, 1] > window[0, 0]:
-            window[:, 0] = np.maximum(window[:, 0] - rim, PAD - beyond)
-            window[:, 1] = np.minimum(window[:, 1] + rim, cells + PAD + beyond)
-        rows.append([offset, *window.ravel(), pairs[min(k, len(pairs) - 1)]])
-        offset += int(np.prod(window[:, 1] - window[:, 0]))
+    beyond = [axes == 3 and not again for again in reversed(repeats)]
+    for k, place in enumerate(layout.tolist()):
+        first, end = place[1 + axes :: 2], place[2 + axes :: 2]
+        if end[0] > first[0]:
+            first = [max(a - rim, PAD - more) for a, more in zip(first, beyond, strict=True)]
+            ends = zip(end, place[1 : 1 + axes], beyond, strict=True)
+            end = [min(b + rim, n + PAD + more) for b, n, more in ends]
+        window = list(zip(first, end, strict=True))
+        rows.append([offset, *(value for pair in window for value in pair), pairs[min(k, len(pairs) - 1)]])
+        offset += prod(b - a for a, b in window)
     return np.array(rows, dtype=np.int64)
 
 

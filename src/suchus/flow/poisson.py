@@ -263,9 +263,10 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
 def place_window(layout: np.ndarray, window: Window) -> None:
     """Write the window (first and end along each axis, the last axis first, padded) and its coarser images."""
     axes = layout.shape[1] // 3
-    ends = np.array(window).reshape(axes, 2) - PAD
+    first, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
     for row in layout:
-        row[1 + axes :: 2] = np.maximum(ends[:, 0], 0) + PAD
-        row[2 + axes :: 2] = np.minimum(ends[:, 1], row[1 : 1 + axes]) + PAD
-        if ends[0, 1] > ends[0, 0]:
-            ends = np.stack([ends[:, 0] // 2 - 1, (ends[:, 1] + 1) // 2 + 1], axis=1)
+        cells = row[1 : 1 + axes].tolist()
+        inside = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(first, end, cells, strict=True)]
+        row[1 + axes :] = [value for pair in inside for value in pair]
+        if end[0] > first[0]:
+            first, end = [a // 2 - 1 for a in first], [(b + 1) // 2 + 1 for b in end]

@@ -6,6 +6,7 @@ Inside, lengths are in cells: a time step is ``dt / cell``, a viscosity ``viscos
 density [m^2/s^2].
 """
 
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -207,7 +208,7 @@ class Fluid:
     def level(self) -> float:
         """Mean pressure along the outermost cells of the domain, from which pressures count [m^2/s^2]."""
         cells = self.p[(slice(PAD, -PAD),) * self.axes]
-        sides = [np.moveaxis(cells, axis, 0)[end] for axis in range(self.axes) for end in (0, -1)]
+        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.axes) for end in (0, -1)]
         return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
 
     def imposed(self, time: float) -> float:
@@ -253,10 +254,13 @@ class Fluid:
         self._clear(old)
         was = self.b
         self._look_at(new)
-        poisson.place_window(self._layout, unite([w for w in (old, new) if w[1] > w[0]], self.axes))
+        around = [w for w in (old, new) if w[1] > w[0]]
         self.rows = rows_of(bodies)
         self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
         self.pressed = np.zeros((len(self.given), 1 + self.axes))
+        if not around:
+            return
+        poisson.place_window(self._layout, unite(around, self.axes))
         both = self._layout[0].copy()
         poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
@@ -502,7 +506,7 @@ class Fluid:
             self._sums,
         )  # fmt: skip
         sums = self._sums[PAD:-PAD]
-        cells = int(np.prod(self.grid.cells))
+        cells = prod(self.grid.cells)
         went = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
         if went.mean > SKIPPED * limits[0] or went.largest > SKIPPED * limits[1]:
             went, parts = self._solve(limits)
@@ -515,7 +519,7 @@ class Fluid:
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with those inside it, or with those at its other end."""
         for axis, again in zip(reversed(range(self.axes)), self.repeats, strict=True):
-            lines, n = np.moveaxis(x, axis, 0), x.shape[axis]
+            lines, n = x.swapaxes(axis, 0), x.shape[axis]
             lines[PAD - 1] = lines[n - PAD - 1 if again else PAD]
             lines[n - PAD] = lines[PAD if again else n - PAD - 1]
 
