@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -140,7 +140,7 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
     Raises:
         InvalidDesign: there are more of them than a byte counts.
     """
-    ends = np.cumsum([0] + [getattr(body.shape, "parts", 1) for body in bodies]).tolist()
+    ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
     if ends[-1] > MOST_ROWS:
         raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MOST_ROWS} are allowed. Cut them less.")
     return [range(first, end) for first, end in pairwise(ends)]

@@ -211,7 +211,7 @@ class OpenWater:
             extra.append(sources)
         size = np.abs(strength).max(axis=0)
         kept = size > FAINT * size.max()
-        place = np.concatenate([np.stack([x[kept], y[kept]]), *(e[:2] for e in extra)], axis=1)
+        place = np.concatenate([np.array([x[kept], y[kept]]), *(e[:2] for e in extra)], axis=1)
         values = np.concatenate([strength[:, kept], *(e[2:] for e in extra)], axis=1)
         out = np.zeros(self.points.shape)
         induce(self.points, place, values, out)
@@ -246,11 +246,11 @@ class OpenWater:
         defect = -(vortex * (across - centre) + moment).sum(axis=axis) / SIDE
         turn = 1 if (axis == 0) != fading.low else -1
         source = turn * lost * defect
-        here = np.stack([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
+        here = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
         none = np.zeros(middle.size)
         sheds = source != 0
         keep = weight(middle)
-        return strength * (keep if axis == 0 else keep[:, None]), np.stack([*here, source, none, none, none])[:, sheds]
+        return strength * (keep if axis == 0 else keep[:, None]), np.array([*here, source, none, none, none])[:, sheds]
 
 
 @dataclass(slots=True)

@@ -297,7 +297,7 @@ class Fluid:
             near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             mu0: np.ndarray = np.empty(near.size, self.dtype)
             mu1: np.ndarray = np.empty((self.axes, near.size), self.dtype)
-            fill(near.ravel(), np.stack([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
+            fill(near.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
             self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
             self.mu1[c] = mu1.reshape(self.axes, *near.shape)
             self.b[c] = f.velocity[c]
