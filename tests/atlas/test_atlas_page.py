@@ -116,6 +116,8 @@ def test_the_range_and_the_source_s_own_error_stand_beside_the_peak():
 def test_the_summary_counts_what_was_judged():
     text = summary(told(outcome(ROW, 1.02), outcome(NUMBERS)))
     assert text.startswith("Of 2 rows 2 were computed in full: the median rms difference is 0.")
+    assert " % of the peak (of curves 0." in text
+    assert "of curves" not in summary(told(outcome(NUMBERS), rows=(NUMBERS,)))
     assert "(duetsch_force); 2 are within their bounds." in text
 
 

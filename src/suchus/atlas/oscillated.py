@@ -108,7 +108,9 @@ CASES = (
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
-            grids=grids((48, 32, 24), 9.0 if ratio > _BEATS else 3.0, coarse=_COARSE, before=9.0),
+            grids=grids((32, 24, 16), 9.0, coarse=_COARSE, before=9.0)
+            if ratio > _BEATS
+            else grids((48, 32, 24), 3.0, coarse=_COARSE, before=9.0),
             quick=RunEffort(cells=16, until=1.0, coarse=8, before=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
@@ -120,7 +122,7 @@ CASES = (
     Case(
         name="held_re185",
         run=_at_rest,
-        grids=grids((48, 32, 24), 38.0, coarse=16, before=60.0),
+        grids=grids((32, 24, 16), 38.0, coarse=16, before=60.0),
         quick=RunEffort(cells=12, until=36.0, coarse=8, before=40.0),
         code=_CODE,
         setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "

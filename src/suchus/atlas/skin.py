@@ -69,9 +69,10 @@ def far_pressure(sim: flow.Simulation) -> float:
 
     The water there is free of vorticity; the mean along the side leaves out what the lift does to it.
     """
-    u, v = (field[:, 1] for field in sim.velocity)
+    whole = sim.domain
+    u, v = (field[:, 1] for field in whole.velocity)
     stream = float(np.linalg.norm(sim.setup.far(sim.time)))
-    return float(np.mean(sim.pressure[:, 1] + 0.5 * sim.setup.density * (u**2 + v**2 - stream**2)))
+    return float(np.mean(whole.pressure[:, 1] + 0.5 * sim.setup.density * (u**2 + v**2 - stream**2)))
 
 
 def _vorticity(sim: flow.Simulation, theta: np.ndarray, pressure: np.ndarray, acceleration: np.ndarray) -> np.ndarray:

@@ -115,15 +115,15 @@ def _flapping(effort: RunEffort, progress: Progress) -> Curves:
 CASES = (
     Case(
         name="in_line", run=_in_line, code=_CODE,
-        grids=grids((64, 48, 32), 5.0), quick=RunEffort(cells=12, until=1.0),
+        grids=grids((48, 32, 24), 5.0), quick=RunEffort(cells=12, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 100, KC 5; unbounded domain, of which 10 x 8 diameters "
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
-        name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 12.0),
+        name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 11.0),
         quick=RunEffort(cells=8, until=1.0),
         setup="A cylinder that oscillates in water at rest, Re 200, KC 10; unbounded domain, of which 12 x 12 "
-        "diameters are computed; {cells} cells a diameter. Of twelve periods from rest the last five are read, of runs "
+        "diameters are computed; {cells} cells a diameter. Of eleven periods from rest the last four are read, of runs "
         "with a small gust across the motion (a tenth of its speed) at two phases of the first and, by symmetry, with "
         "gusts to the other side.",
     ),

@@ -125,6 +125,11 @@ CASES = (
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
     ),
     Case(
+        name="cavity_re400", run=partial(_cavity, reynolds=400.0), grids=grids((96, 64, 48), 35.0),
+        quick=RunEffort(cells=16, until=3.0), code=_CODE,
+        setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",
+    ),
+    Case(
         name="cavity_re1000", run=partial(_cavity, reynolds=1000.0), grids=grids((128, 96, 64), 50.0),
         quick=RunEffort(cells=16, until=3.0), code=_CODE,
         setup="A square box whose lid slides, from rest until it is steady; {cells} cells a side.",

@@ -128,11 +128,13 @@ def summary(listed: Sequence[Entry]) -> str:
     if not judged:
         return f"None of the {len(listed)} rows has been computed in full."
     above = [entry.row.name for entry, found in judged if not found.agrees]
+    ranges = [found.over_range for _, found in judged if found.over_range is not None]
+    ranged = f" (of curves {100 * median(ranges):.1f} % of their range)" if ranges else ""
     worst, most = max(judged, key=lambda pair: pair[1].rms)
     text = (
         f"Of {len(listed)} rows {len(judged)} were computed in full: the median rms difference is "
-        f"{100 * median(found.rms for _, found in judged):.1f} % of the peak, the largest {100 * most.rms:.1f} % "
-        f"({worst.row.name}); {len(judged) - len(above)} are within their bounds"
+        f"{100 * median(found.rms for _, found in judged):.1f} % of the peak{ranged}, the largest "
+        f"{100 * most.rms:.1f} % ({worst.row.name}); {len(judged) - len(above)} are within their bounds"
     )
     text += f", above are {', '.join(above)}." if above else "."
     known = [entry.convergence.uncertainty for entry in listed if entry.convergence.uncertainty is not None]
