@@ -80,11 +80,15 @@ def from_angles(yaw: float, pitch: float, roll: float) -> Float[np.ndarray, "4"]
 
 
 def angles(q: Float[np.ndarray, "4"]) -> tuple[float, float, float]:
-    """Return yaw, pitch (-pi/2 to pi/2) and roll, from which ``from_angles`` makes the same rotation [rad].
+    """Return yaw, pitch (-pi/2 to pi/2) and roll, from which ``from_angles`` makes the same rotation [rad]."""
+    return attitude(matrix(q))
+
+
+def attitude(turned: Float[np.ndarray, "3 3"]) -> tuple[float, float, float]:
+    """Return yaw, pitch and roll of a rotation matrix, from which ``from_angles`` makes the same rotation [rad].
 
     That holds for a body that stands upright as well, where yaw and roll are about one axis and any yaw will do.
     """
-    turned = matrix(q)
     (x, y, z), sides = turned[:, 0].tolist(), turned[:, 1:]
     yaw = np.arctan2(y, x)
     aside = np.cos(yaw) * sides[1] - np.sin(yaw) * sides[0]  # across the yaw, where the body's y and z axes show
@@ -104,6 +108,16 @@ def to_vector(q: Float[np.ndarray, "4"], near: Float[np.ndarray, "3"]) -> Float[
     axis = q[1:] / half if half > 0 else near / max(sqrt(near @ near), 1e-300)
     turns = round((float(axis @ near) - angle) / (2 * pi))
     return np.asarray((angle + 2 * pi * turns) * axis)
+
+
+def vectors(matrices: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3"]:
+    """Return the rotation vectors of rotation matrices, of at most half a turn [rad]."""
+    return np.asarray(Rotation.from_matrix(matrices).as_rotvec())
+
+
+def turns(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
+    """Return the rotation matrices of rotation vectors [rad]."""
+    return np.asarray(Rotation.from_rotvec(vectors).as_matrix())
 
 
 def turn(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -56,6 +56,10 @@ class MidlineChain:
     """The robot and its stations."""
     parts: int
     """Parts, at least [-]."""
+    start: tuple[float, float] = (0.0, 0.0)
+    """Place of the root in the world at the beginning [m]."""
+    axes: ClassVar[int] = 2
+    """Axes in which it moves [-]."""
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -66,6 +70,39 @@ class MidlineChain:
     def size(self) -> int:
         """Coordinates [-]."""
         return 3 + len(self.joints)
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates."""
+        return "root_x", "root_y", "root_yaw", *self.joints
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the links."""
+        return tuple(f"link_{k + 1}" for k in range(int(self.links.max()) + 1))
+
+    @cached_property
+    def _signs(self) -> np.ndarray:
+        """What turns coordinates of the robot into those of the chain and back."""
+        return np.array([-1.0, -1.0] + (self.size - 2) * [1.0])
+
+    def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
+        """Return a state of the robot in the frame of the flow."""
+        there, moving = self._signs * place, self._signs * rate
+        there[:2] += np.array([self.root + self.start[0], self.start[1]])
+        return ChainState(there, moving)
+
+    def of_robot(self, values: np.ndarray) -> np.ndarray:
+        """Return a generalised force or an added mass along the robot's own coordinates."""
+        return self._signs * values if values.ndim == 1 else self._signs[:, None] * values * self._signs
+
+    def way(self, time: float, posture: ChainState) -> "Way":
+        """Return a way that begins at a posture."""
+        return Way(time, posture)
+
+    def turned(self, place: np.ndarray, other: np.ndarray) -> float:
+        """Return the greatest angle by which root and joints of two postures differ [rad]."""
+        return float(np.abs(place[2:] - other[2:]).max())
 
     @cached_property
     def root(self) -> float:
@@ -222,6 +259,19 @@ class MidlineChain:
         off, aside = points.place.T - about, np.stack([-np.sin(points.heading), np.cos(points.heading)], axis=1)
         moment = ((pressed[..., 1:3] - pressed[..., :1] * off) * aside).sum(axis=-1)
         return np.concatenate([np.zeros((*moment.shape[:-1], 3)), moment @ self._bends], axis=-1)
+
+    def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
+        """Return what acts on each link, in the world: force, and torque about the vertical through its middle."""
+        points = self.centres(place).place.T - origin
+        pull, turn = loads.parts.force[:, :2], loads.parts.torque
+        out = np.zeros((len(self.names), 4))
+        for link in range(len(out)):
+            mine = self.links == link
+            middle = points[mine].mean(axis=0) - loads.about[:2]
+            total = pull[mine].sum(axis=0)
+            out[link, :2] = -total[0], -total[1]
+            out[link, 3] = turn[mine].sum() - (middle[0] * total[1] - middle[1] * total[0])
+        return out
 
     def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:
         """Return the motion of the parts as rigid pieces.

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.coupling.chain import MidlineChain
+from suchus.coupling.linked import LinkChain
 from suchus.land.run import Run
 from suchus.record import COUPLED, WATER
 
@@ -21,7 +22,7 @@ class Series:
     force: list[np.ndarray] = field(default_factory=list)
     """Generalised force of the water, in the world [N, N m]."""
     links: list[np.ndarray] = field(default_factory=list)
-    """Force along x and y of the world and torque about the link's middle, of each link, shape (link, 3) [N, N m]."""
+    """Force in the world and torque about the vertical through the link's middle, of each, shape (link, 4) [N, N m]."""
     residual: list[tuple[float, float]] = field(default_factory=list)
     """Force left over, before and after the corrections, over the greatest so far [-]."""
     corrections: list[int] = field(default_factory=list)
@@ -46,7 +47,9 @@ class Series:
         return cls(**{name: list(values) if name in arrays else values.tolist() for name, values in state.items()})
 
 
-def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, added: np.ndarray) -> xr.Dataset:
+def recorded(
+    run: Run, chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset, added: np.ndarray
+) -> xr.Dataset:
     """Return the record of a coupled run: that of the robot, and beside it what the water did.
 
     Args:
@@ -63,7 +66,7 @@ def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, 
     }
     kind = {"solved": type(run.solved).__name__.lower(), **asdict(run.solved)} if run.solved is not None else {}
     about = {"units": "1", "long_name": "the flow as JSON, with its settings"}
-    names = ["root_x", "root_y", "root_yaw", *chain.joints]
+    names = list(chain.coordinates)
     inertia = {"units": "kg, kg m, kg m2", "long_name": "added mass at the start, of each coordinate in each"}
     radius = np.array(series.radius).reshape(-1, 2)[:, 1]
     spread = {
@@ -78,11 +81,10 @@ def recorded(run: Run, chain: MidlineChain, series: Series, record: xr.Dataset, 
             "radius": (("run",), [float(radius.max(initial=0.0))], spread),
         }
     )
-    links = [f"link_{k + 1}" for k in range(int(chain.links.max()) + 1)]
-    return found.assign_coords(link=links, coordinate=names, coordinate_too=names)
+    return found.assign_coords(link=list(chain.names), coordinate=names, coordinate_too=names)
 
 
-def _sampled(chain: MidlineChain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
+def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset) -> Mapping[str, np.ndarray]:
     """Return the series at the samples of a record, NaN where it has not come to."""
     time = record.time.values.astype(float)
     ends = np.array([0.0, *series.time])
@@ -118,13 +120,14 @@ def _sampled(chain: MidlineChain, series: Series, record: xr.Dataset) -> Mapping
     apart = (sums[:, 2] - sums[:, 3]) / np.maximum(np.maximum.accumulate(np.abs(sums[:, 2])), 1e-300)
     hinges = [str(name) for name in record.joint.values]
     moments = np.full((len(time), len(hinges)), np.nan)
-    moments[:, [hinges.index(name) for name in chain.joints]] = mean(force[:, 3:])
+    roots = len(chain.coordinates) - len(chain.joints)
+    moments[:, [hinges.index(name) for name in chain.joints]] = mean(force[:, roots:])
     flat = np.where(reached, 0.0, np.nan)
-    pull = mean(np.concatenate([links[:, :, :2], np.zeros((count, links.shape[1], 1))], axis=2))
+    pull = mean(links[:, :, :3])
     residual = np.array(series.residual)
     return {
         "link_force": pull,
-        "link_torque": mean(links[:, :, 2]),
+        "link_torque": mean(links[:, :, 3]),
         "joint_water_torque": moments,
         "coupling_residual": latest(residual[:, 1]),
         "coupling_first": latest(residual[:, 0]),

@@ -20,7 +20,8 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.control import Controller
-from suchus.coupling.chain import ChainState, MidlineChain, Way
+from suchus.coupling.chain import ChainState, MidlineChain
+from suchus.coupling.linked import LinkChain, LinkWay
 from suchus.coupling.recorded import Series, recorded
 from suchus.design import layout
 from suchus.design.scale import control_period, physics_step
@@ -33,8 +34,8 @@ from suchus.land.afloat import check_floats
 from suchus.land.batch import Beginning
 from suchus.land.lake import Lake
 from suchus.land.run import Run, check_pushes
-from suchus.land.stepper import PlaneState, Stepper, Stretch
-from suchus.land.waters import Slice
+from suchus.land.stepper import CoordinateState, Stepper, Stretch
+from suchus.land.waters import Slice, Space
 from suchus.motion import check_limits, cycle_targets
 from suchus.progress import Progress
 from suchus.water import Outline, cycle, displaced, recoil
@@ -86,12 +87,14 @@ def check_swim(run: Run, duration: float) -> None:
     check_limits(run.robot, run.gait)
     check_faults(run.faults, run.robot, duration)
     check_pushes(run.pushes, run.robot, duration)
-    if not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
+    linked = isinstance(run.solved, Space) and run.solved.linked
+    if not linked and not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
         raise InvalidDesign(
             f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
             'that does; take water="sections".'
         )
-    _check_plane(run)
+    if not linked:
+        _check_plane(run)
     check_floats(run.robot, Lake(level=run.robot.length))
     for name in ("depth", "pitch"):
         if getattr(run.control, name, None) is not None:
@@ -117,8 +120,9 @@ def _check_plane(run: Run) -> None:
             what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
             raise InvalidDesign(
                 f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
-                f"rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
-                'does, say motion.swimming_gait, or water="sections".'
+                "rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
+                "does, say motion.swimming_gait, or water=Space(linked=True), where each piece moves as its joints do, "
+                'or water="sections".'
             )
 
 
@@ -152,20 +156,23 @@ class Swim:
         assert water is not None
         self.run, self.water = run, water
         check_swim(run, duration)
-        self.chain = MidlineChain(Outline(run.robot, water.cells + 1), water.parts)
+        self.outline = Outline(run.robot, water.cells + 1)
         self._axes = 2 if isinstance(water, Slice) else 3
         self._times = self.depth if isinstance(water, Slice) else 1.0
         self._swing = self._expected_swing()
         self.timestep = self._physics_step() if timestep is None else timestep
         self.ticks = round(duration / control_period(run.robot)) if isfinite(duration) else 0
         self.stepper = Stepper(
-            run, self.chain.joints, self.timestep, self.ticks, controller=controller, begin=begin
+            run, None if self._linked else self.outline.joints, self.timestep, self.ticks, controller=controller,
+            begin=begin,
         )  # fmt: skip
-        self._signs = np.ones(self.chain.size)
-        self._signs[:2] = -1.0
         start = self.stepper.now.place
-        self._corner = np.array([self.chain.root + start[0], start[1]])
-        self.path = Way(0.0, self._seen(self.stepper.now))
+        self.chain: MidlineChain | LinkChain = (
+            LinkChain(run.robot, self.stepper.links, start[:3])
+            if self._linked
+            else MidlineChain(self.outline, water.parts, (float(start[0]), float(start[1])))
+        )
+        self.path = self.chain.way(0.0, self._seen(self.stepper.now))
         self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
         self.series = Series()
         self._effort = 0.0
@@ -190,9 +197,8 @@ class Swim:
         given = getattr(self.water, "depth", None)
         if given is not None:
             return float(given)
-        outline = self.chain.outline
-        wide, _ = outline.silhouette
-        return displaced(outline, 1.0) / float(np.trapezoid(2 * wide, outline.s))
+        wide, _ = self.outline.silhouette
+        return displaced(self.outline, 1.0) / float(np.trapezoid(2 * wide, self.outline.s))
 
     @property
     def viscosity(self) -> float:
@@ -207,55 +213,88 @@ class Swim:
     def _physics_step(self) -> float:
         """Return the largest step of the physics that divides a control period often enough [s]."""
         period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
-        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, cell)
+        aside, below = self._strokes if self._linked else (0.0, 0.0)
+        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, aside, below, cell)
         most = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
         return float(period / np.ceil(period / most * (1 - 1e-9)))
 
     @cached_property
     def half_height(self) -> Float[np.ndarray, " station"]:
         """Half of the body's height at the stations [m]."""
-        return half_heights(self.chain.outline, self.water.tail_height)
+        return half_heights(self.outline, self.water.tail_height)
 
     @property
     def _least(self) -> float:
         blunt = self.water.blunt if isinstance(self.water, Slice) else 0.0
         return blunt * self.run.robot.length / self.water.cells
 
+    @property
+    def _linked(self) -> bool:
+        """Whether each link has its own pose, and the root moves in space."""
+        return isinstance(self.water, Space) and self.water.linked
+
+    @cached_property
+    def _strokes(self) -> tuple[float, float]:
+        """Return how far the gait swings limbs about their hips, and an end of the axis up or down, to a side [m]."""
+        robot, names = self.run.robot, layout(self.run.robot).servos
+        angles = cycle_targets(robot, self.run.gait, np.linspace(0.0, 1.0, 24, endpoint=False))
+        swings = dict(zip(names, 0.5 * np.ptp(angles, axis=0), strict=True))
+        raised, lateral = 0.0, {servo.name for servo in self.outline.servos}
+        starts, hinges = 0.0, dict[str, float]()
+        for segment in robot.axis:
+            starts += segment.front + segment.rear
+            hinges |= {hinge.name: min(starts, robot.length - starts) for hinge in segment.hinges}
+        for name, far in hinges.items():
+            raised += swings.get(name, 0.0) * far * (name not in lateral)
+        limbs = [
+            limb.girdle.limb.reach * sum(swings.get(name, 0.0) for name in names[limb.servos])
+            for limb in layout(robot).limbs
+        ]  # fmt: skip
+        return max(limbs, default=0.0), raised
+
     def _setup(self) -> flow.Setup:
         robot, axes = self.run.robot, self._axes
         setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
         if self.water.beside is not None:
             setting = replace(setting, beside=self.water.beside)
-        grid = setting.grid(robot.length, _WIDER * self._swing, float(self.half_height.max()))
-        shape = self.chain.body(self.path, axes, self._least, self.half_height)
-        if self.water.limbs:
-            assert isinstance(shape, flow.Trunk)
-            shape = flow.Limbed(
-                spine=shape.spine, half_height=shape.half_height, cuts=shape.cuts, limbs=folded(robot)
-            )  # fmt: skip
-        body = flow.Body(shape=shape, motion=self.chain.motion(self.path, axes, self._least), name=robot.name)
-        sides = flow.Sides(low=flow.Mirror()) if axes == 3 else flow.Sides()
+        swing = _WIDER * self._swing
+        if isinstance(self.chain, LinkChain):
+            assert isinstance(self.path, LinkWay)
+            stretched = [girdle.aside + girdle.limb.reach + girdle.limb.foot.radius for girdle in robot.girdles]
+            far = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
+            grid = setting.grid_around(robot.length, far)
+            shape: flow.SpaceShape | flow.Midline = self.chain.body(self.path)
+            motion = self.chain.motion(self.path)
+        else:
+            grid = setting.grid(robot.length, swing, float(self.half_height.max()))
+            bare = self.chain.body(self.path, axes, self._least, self.half_height)
+            motion, shape = self.chain.motion(self.path, axes, self._least), bare
+            if self.water.limbs:
+                assert isinstance(bare, flow.Trunk)
+                shape = flow.Limbed(
+                    spine=bare.spine, half_height=bare.half_height, cuts=bare.cuts, limbs=folded(robot)
+                )  # fmt: skip
+        body = flow.Body(shape=shape, motion=motion, name=robot.name)
+        sides = flow.Sides(low=flow.Mirror()) if axes == 3 and not self._linked else flow.Sides()
         return flow.Setup(
             grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
-            tolerance=setting.largest_divergence(),
+            follow_axes=(True,) * 3 if self._linked else (True, True), tolerance=setting.largest_divergence(),
         )  # fmt: skip
 
     # --- between the robot's world and the flow's --------------------------------------------------------------
 
-    def _seen(self, state: PlaneState) -> ChainState:
+    def _seen(self, state: CoordinateState) -> ChainState:
         """Return a state of the robot in the frame of the flow."""
-        place, rate = self._signs * state.place, self._signs * state.rate
-        place[:2] += self._corner
-        return ChainState(place, rate)
+        return self.chain.seen(state.place, state.rate)
 
     @property
     def _origin(self) -> np.ndarray:
-        return np.array(self.sim.frame[0, :2])
+        return np.array(self.sim.frame[0, : self.chain.axes])
 
     def _found(self, began: ChainState, posture: ChainState) -> np.ndarray:
         """Return the generalised force of the water in the last step, along the robot's own coordinates."""
         loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
-        return self._times * self._signs * self.chain.force(place, loads, self._origin)
+        return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
     # --- going on ----------------------------------------------------------------------------------------------
 
@@ -276,17 +315,16 @@ class Swim:
         """
         posture = self.path.at(self.time)
         settled = len(self.series.time) == 1
-        if self._computed is not None and not settled and not anew:
-            bent = np.abs(posture.place[2:] - self._computed[2:]).max()
-            if bent < self.water.renewed:
-                return
+        known = None if settled or anew else self._computed
+        if known is not None and self.chain.turned(posture.place, known) < self.water.renewed:
+            return
         self._computed = posture.place
         before = self._added
         modes = self.chain.modes(posture.place, self._origin, self._axes)
         found = self.sim.added_mass(self.run.robot.name, modes)
         inside = self.chain.unpressed(posture.place, found.pressed, self._origin)
         own = found.matrix - 0.5 * (inside + inside.T)
-        self._added = self._times * self._signs[:, None] * own * self._signs
+        self._added = self._times * self.chain.of_robot(own)
         if len(self.series.time):
             inertia = self.stepper.mass() + before
             apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
@@ -300,7 +338,7 @@ class Swim:
 
     def _gone(
         self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
-    ) -> tuple[PlaneState, np.ndarray]:  # fmt: skip
+    ) -> tuple[CoordinateState, np.ndarray]:  # fmt: skip
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
         Returns where it comes to, and its mean acceleration on the way, ``guess`` at first. Broyden's updates of
@@ -385,7 +423,7 @@ class Swim:
         power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
         series.time.append(self.time)
         series.force.append(found)
-        series.links.append(self._links(posture, loads))
+        series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
         series.residual.append(residual)
         series.corrections.append(made)
         series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way), -power * h))
@@ -394,27 +432,14 @@ class Swim:
     def _drift(self) -> np.ndarray:
         return np.asarray(self.sim.drift)
 
-    def _links(self, posture: ChainState, loads: flow.FlowLoads) -> np.ndarray:
-        """Return what acts on each link, the torque about its middle, in the world."""
-        links, count = self.chain.links, int(self.chain.links.max()) + 1
-        points = self.chain.centres(posture.place).place.T - self._origin
-        pull, turn = loads.parts.force[:, :2], loads.parts.torque
-        out = np.zeros((count, 3))
-        for link in range(count):
-            mine = links == link
-            middle = points[mine].mean(axis=0) - loads.about[:2]
-            total = pull[mine].sum(axis=0)
-            out[link] = -total[0], -total[1], turn[mine].sum() - (middle[0] * total[1] - middle[1] * total[0])
-        return self._times * out
-
     def _watch(self, left: float) -> None:
         """Refuse what has left the plane, or does not converge; say which joints come to the end of their range."""
         name, bend = self.stepper.off_plane
         if abs(bend) > OFF_PLANE:
             raise InvalidDesign(
                 f"at t = {self.time:.4g} s joint {name} is bent by {bend:.3g} rad out of the plane that the flow takes "
-                f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, or "
-                'water="sections".'
+                f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, "
+                'water=Space(linked=True), or water="sections".'
             )
         for joint, angle in self.stepper.at_stops.items():
             if joint not in self._stopped:

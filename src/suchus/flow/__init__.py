@@ -10,6 +10,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.integrator import EULER, HEUN, SHU_OSHER, Integrator, Stage
 from suchus.flow.limbed import Capsule, Limbed
+from suchus.flow.linked import Linked, LinkPiece, LinkStates, Spherocylinder
 from suchus.flow.log import FlowLoads
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, SpaceMass
@@ -61,6 +62,9 @@ __all__ = [
     "Integrator",
     "IsoSurface",
     "Limbed",
+    "LinkPiece",
+    "LinkStates",
+    "Linked",
     "Load",
     "Markers",
     "Mass",
@@ -89,6 +93,7 @@ __all__ = [
     "SpaceMass",
     "SpaceShape",
     "Sphere",
+    "Spherocylinder",
     "Stage",
     "Stream",
     "Surface",

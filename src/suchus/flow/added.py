@@ -1,7 +1,7 @@
 """Added mass of a body, from the pressure equation that the solver itself uses."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -82,11 +82,23 @@ def generalised_added_mass(
         own = slice(rows.start, rows.stop)
         mine.append([_part(mode, own) for mode in modes])
     rim = _rim(water, outlines, mine, water.cut)
+    answers.held += _apart(water, modes, answers.across)
     times, h, corner = 2 ** max(sum(cut) for cut in water.cut), water.grid.cell, np.array(water.grid.origin)
     whole: np.ndarray = times * density * (h**water.axes * answers.held + rim)
     pressed = times * density * h ** (water.axes + 1) * answers.pressed
     pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
     return AddedMass(0.5 * (whole + whole.T), pressed)
+
+
+def _apart(water: Fluid, modes: Sequence[Twists], across: np.ndarray) -> np.ndarray:
+    """Return the work of each mode against what takes away that links are pushed apart, shape (mode, mode)."""
+    axes, h, corner = water.axes, water.grid.cell, np.array(water.grid.origin)
+    turns = len(TURNS[axes])
+    moves = np.array([
+        np.concatenate([replace(mode, about=mode.about - corner).at_origin(), h * mode.angular], axis=1)
+        for mode in modes
+    ])  # fmt: skip
+    return np.asarray(np.einsum("irc,jrc->ij", moves, across[:, :, : axes + turns]))
 
 
 def symmetric(cut: tuple[bool, ...]) -> list[bool]:
@@ -126,13 +138,15 @@ class _Answers:
     """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
     pressed: np.ndarray
     """What the potential does inside each part, mode by mode; see ``Fluid.pressures``."""
+    across: np.ndarray
+    """What takes away that it pushes links apart, mode by mode, shape (mode, row, ...); see ``Fluid.across``."""
 
     @classmethod
     def of(cls, water: Fluid, modes: Sequence[Twists], limit: float, *, sides_held: bool) -> "_Answers":
         """Return the answers of the water around placed bodies to a limit [-]; of sides that are held there is none."""
         faces, axes = held_faces(water), water.axes
         shape = tuple(s.stop - s.start for s in water.here)
-        rises, moves, shores, inward, inside = [], [], [], [], []
+        rises, moves, shores, inward, inside, across = [], [], [], [], [], []
         for mode in modes:
             parts = [mode.at(one.row, one.points)[c] for c, one in enumerate(faces)]
             scale = max(float(np.abs(part).max(initial=0.0)) for part in parts) or 1.0
@@ -143,13 +157,14 @@ class _Answers:
             shores.append([scale * line.astype(np.float64) for line in water.along_sides(x)])
             rises.append([scale * rise(water, x, one, c) for c, one in enumerate(faces)])
             inside.append(water.pressures(x, scale))
+            across.append(water.across(x, scale))
             inward.append([] if sides_held else [scale * side for side in water.answer(given)])
             moves.append([one.closed * part for one, part in zip(faces, parts, strict=True)])
         held, own = (
             np.array([[_work(mode, parts) for parts in what] for mode in moves])
             for what in (rises, [[m.at(one.row, one.points)[c] for c, one in enumerate(faces)] for m in modes])
         )
-        return cls(held, own, shores, inward, np.array(inside))
+        return cls(held, own, shores, inward, np.array(inside), np.array(across))
 
 
 def _work(mode: list[np.ndarray], parts: list[np.ndarray]) -> float:

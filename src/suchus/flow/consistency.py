@@ -11,6 +11,7 @@ import numpy as np
 
 from suchus import rotation
 from suchus.errors import InvalidDesign
+from suchus.flow.linked import LinkStates
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
 
@@ -152,6 +153,46 @@ class GivenMidline(NamedTuple):
     def place(self, worst: int) -> str:
         """Return which station it is."""
         return f"station {worst % self.spine(0.0).x.size} of the midline of {self.name}"
+
+
+class GivenLinks(NamedTuple):
+    """The links of a body, each with a pose of its own."""
+
+    name: str
+    """Name of the body."""
+    motion: Callable[[float], LinkStates]
+    """The links at every time [s]."""
+    reach: np.ndarray
+    """Distance of each link's surface from its origin, shape (link,) [m]."""
+
+    def at(self, times: Sequence[float]) -> Watched:
+        """Return positions of the links and their rotation vectors from the first time, and their rates."""
+        states = [self.motion(time) for time in times]
+        first, count = states[0], len(self.reach)
+        turns = [rotation.vectors(one.matrix @ np.swapaxes(first.matrix, 1, 2)) for one in states]
+        places = np.array(
+            [[*(s.position - first.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
+        )
+        rates = np.array([[*s.velocity.ravel(), *s.spin.ravel()] for s in states])
+        arms = np.concatenate([np.ones(3 * count), np.repeat(self.reach, 3)])
+        return Watched(places, rates, arms, np.repeat([0, 1], 3 * count))
+
+    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+        """Return both rates of the worst link and the remedy."""
+        turning = worst >= 3 * len(self.reach)
+        what, of, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
+        return (
+            f"the motion of {self.name} gives link {self._link(worst)} the {what} {given[worst]:.4g} {unit} along "
+            f"{'xyz'[worst % 3]}, and its {of} changes by {seen[worst]:.4g} {unit}; give LinkStates whose {what} is "
+            f"the rate of the {of}."
+        )
+
+    def place(self, worst: int) -> str:
+        """Return which link it is."""
+        return f"link {self._link(worst)} of {self.name}"
+
+    def _link(self, worst: int) -> int:
+        return worst % (3 * len(self.reach)) // 3
 
 
 @dataclass(slots=True)

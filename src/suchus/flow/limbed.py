@@ -206,7 +206,8 @@ class Limbed(Trunk):
         part = [skin.part] if skin.part is not None else []
         for limb in self.limbs:
             first, last, rate, turn = limb.placed(spine)
-            local, facing, area = _surface(limb, spacing)
+            long = float(np.hypot(*np.subtract(limb.end, limb.start)))
+            local, facing, area = around_rod(long, limb.radius, spacing)
             axis = last - first
             cos, sin = axis / np.linalg.norm(axis) if axis.any() else (1.0, 0.0)
             px, py = first[0] + cos * local[0] - sin * local[1], first[1] + sin * local[0] + cos * local[1]
@@ -272,9 +273,17 @@ def _straight(spine: MidlineState) -> MidlineState:
 
 
 @lru_cache(maxsize=64)
-def _surface(limb: Capsule, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return points over a capsule from its first end, along its axis, across and up, normals, and areas."""
-    r, length = limb.radius, float(np.hypot(*np.subtract(limb.end, limb.start)))
+def around_rod(length: float, radius: float, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return points over a rod with round ends, normals and areas.
+
+    Points and normals are along its axis, from the middle of its first end, and twice across; they are kept.
+
+    Args:
+        length: between the middles of its ends [m].
+        radius: of the rod [m].
+        spacing: about how far the points are apart [m].
+    """
+    r = radius
     count = max(_AROUND, int(np.ceil(2 * np.pi * r / spacing)))
     turn = 2 * np.pi * (np.arange(count) + 0.5) / count
     rings = max(1, int(np.ceil(length / spacing))) if length else 0

@@ -121,7 +121,7 @@ class Log:
     def record(self) -> Record:
         """The time series so far."""
         bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
-        counts = [len(rows) for rows in rows_of(list(bodies))]
+        counts = [len(rows) if _is_told(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)]
         own, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
         rows = np.array(self.rows).reshape(len(self.rows), HEAD + own + parts * len(PART_COLUMNS))
         return Record(
@@ -130,6 +130,11 @@ class Log:
             columns=names, parts=rows[:, HEAD + own :].reshape(len(rows), parts, len(PART_COLUMNS)),
             divided=tuple(n if n > 1 else 0 for n in counts),
         )  # fmt: skip
+
+
+def _is_told(body: AnyBody) -> bool:
+    """Return whether the record has the parts of a body, which then lie one behind the other."""
+    return isinstance(body.shape, Trunk | Midline)
 
 
 def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, error: float) -> list[float]:
@@ -166,8 +171,9 @@ def part_columns(
         frame: mean velocity of the grid [m/s].
     """
     force, torque = acts.force, acts.moment
-    if len(force) < 2 or not isinstance(body.shape, Trunk | Midline):
+    if len(force) < 2 or not _is_told(body):
         return []
+    assert isinstance(body.shape, Trunk | Midline)
     power = acts.power - force @ frame
     behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
     ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)

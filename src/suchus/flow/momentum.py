@@ -135,6 +135,49 @@ def pressed(sums, p, mu0, owner, place, near, inner, weight):
 
 
 @compiled
+def parted(sums, p, mu0, owners, place, near, inner, weight):
+    """Take from ``sums`` (body, ``sums_of``) what the pressure inside bodies does across joints of their links.
+
+    A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure that
+    stands there pushes these apart: it cancels in their sum, and works where they turn against each other. By the
+    share of the cell in the body this is what ``dilatation_work`` takes from the power. In space only; see ``pressed``.
+    """
+    w = len(inner) + 2
+    wide, columns = signed(row_length(inner, p.shape[1])), near[9] - near[8] + 1
+    n0, n1 = near[w + 2], near[8]
+    for j in range(place[w], place[w + 1]):
+        for row in range(place[w + 2], place[w + 3]):
+            for i in range(place[8], place[9]):
+                o, at = j - near[w], (row - n0) * columns + i - n1
+                left, right = owners[0, o, at], owners[0, o, at + 1]
+                before, behind = owners[1, o, at], owners[1, o, at + columns]
+                low, high = owners[2, o, at], owners[2, o + 1, at]
+                if left == right and before == behind and low == high:
+                    continue
+                k = row * wide + i
+                wet = np.float64(mu0[2, j, k]) + mu0[2, j + 1, k]
+                for d in range(2):
+                    wet += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
+                share = 1.0 - wet / 6
+                if share <= 0.0:
+                    continue
+                push = weight * share * np.float64(p[j, k])
+                x, y, z = i - PAD + 0.5, row - PAD + 0.5, j - PAD + 0.5
+                for m, way in ((left, -push), (right, push)):
+                    sums[m, 0] += way
+                    sums[m, 4] += z * way
+                    sums[m, 5] += -y * way
+                for m, way in ((before, -push), (behind, push)):
+                    sums[m, 1] += way
+                    sums[m, 3] += -z * way
+                    sums[m, 5] += x * way
+                for m, way in ((low, -push), (high, push)):
+                    sums[m, 2] += way
+                    sums[m, 3] += y * way
+                    sums[m, 4] += -x * way
+
+
+@compiled
 def contents(sums, b, mu0, owner, component, place, near, inner):
     """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
 

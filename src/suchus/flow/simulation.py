@@ -18,11 +18,12 @@ from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, sym
 from suchus.flow.ahead import compile_ahead
 from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
-from suchus.flow.consistency import Consistency, GivenMidline, GivenMotion
+from suchus.flow.consistency import Consistency, GivenLinks, GivenMidline, GivenMotion
 from suchus.flow.fields import Fields
 from suchus.flow.force import ControlVolume, Surface, sample
 from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
+from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.markers import Markers
 from suchus.flow.memory import Snapshot, give, take
@@ -150,6 +151,10 @@ class Simulation(Fields):
         if isinstance(body.shape, Midline | Trunk):
             found.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
             changing.append(not body.shape.rigid)
+        if isinstance(body.shape, Linked):
+            links = GivenLinks(body.name, body.shape.motion, body.shape.reach)
+            found.append(Consistency(links, cell, every=RATES_EVERY))
+            changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
         for one in found:
             first = one.longest(0.0, step)

@@ -29,6 +29,10 @@ _ROUND = 1e-3
 """Length of that ellipse, over the smallest half-axis, below which the ellipsoid is taken for round there [-]."""
 
 
+INSIDE = 1e-9
+"""Depth over a shape's size from which a point of its skin lies inside another one [-]."""
+
+
 @dataclass(slots=True)
 class SpaceField:
     """What a body says about the points of a window in space, arrays of shape (z, y, x)."""
@@ -51,6 +55,9 @@ class SpaceShape(ABC):
     axes: ClassVar[int] = 3
     even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
     """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
+
+    jointed: ClassVar[bool] = False
+    """Whether its parts are rigid and turn against each other at joints."""
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
@@ -126,6 +133,11 @@ class Ellipsoid(SpaceShape):
     def half(self) -> np.ndarray:
         """Half-axes, shape (3,) [m]."""
         return 0.5 * np.array([self.length, self.width, self.height])
+
+    def holds(self, points: np.ndarray) -> np.ndarray:
+        """Return which points of its own frame lie inside, shape (3, ...) [m]."""
+        x, y, z = (part / half for part, half in zip(points, self.half, strict=True))
+        return np.asarray(x * x + y * y + z * z < 1 - INSIDE)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""

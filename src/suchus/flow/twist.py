@@ -170,7 +170,7 @@ def accelerate(water: Fluid, more: Twists, dt: float) -> None:
     if len(water.given) > len(water.rows):
         water.pressed += water.pressures(x, 1.0)
     water.spread(sums, x, 1.0)
-    water.given += sums
+    water.given += sums + water.across(x, 1.0)
 
 
 def part_of(outline: Markers) -> np.ndarray:

@@ -20,7 +20,7 @@ from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import close, close_surface, fill, fill_source, immerse
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, pressed, sums_of
+from suchus.flow.momentum import collect, contents, contents_of, dilatation_work, parted, pressed, sums_of
 from suchus.flow.pose import Pose
 from suchus.flow.project import correct, fastest, mean_residual, residual
 from suchus.flow.scheme import QUICK, Scheme
@@ -134,6 +134,7 @@ class Fluid:
         self.rows: list[range] = []
         self.given = np.zeros((0, sums_of(self.axes)))
         self.pressed = np.zeros((0, 1 + self.axes))
+        self._jointed = False
         self.widening: np.ndarray = np.zeros((0,) * self.axes, dtype)
         self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
         self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
@@ -258,6 +259,7 @@ class Fluid:
         self.rows = rows_of(bodies)
         self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
         self.pressed = np.zeros((len(self.given), 1 + self.axes))
+        self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
         if not around:
             return
         poisson.place_window(self._layout, unite(around, self.axes))
@@ -467,7 +469,7 @@ class Fluid:
                 keep,
             )  # fmt: skip
         self.spread(sums, self.p, dt)
-        self.given += weight * sums
+        self.given += weight * (sums + self.across(self.p, dt))
         if len(self.given) > len(self.rows):
             self.pressed += self.pressures(self.p, weight * dt)
 
@@ -475,6 +477,18 @@ class Fluid:
         """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
         flat = self._flat(p), self._flat(self.widening), self._flat(self.owners[0])
         dilatation_work(sums, *flat, self._near, self.inner, weight)
+
+    def across(self, p: np.ndarray, weight: float) -> np.ndarray:
+        """Return what takes away that a pressure, times a weight, pushes links apart inside; see ``momentum.parted``.
+
+        Its shape is that of ``given``; nothing of bodies that have no joints.
+        """
+        sums = np.zeros_like(self.given)
+        if self._jointed and self.window[1] > self.window[0]:
+            owners = np.array([self._flat(owner) for owner in self.owners])
+            flat = self._flat(p), self._flat(self.mu0), owners
+            parted(sums, *flat, self._layout[0], self._near, self.inner, weight)
+        return sums
 
     def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
         """Return what a pressure, times a weight, does inside each row's region, shape (row, 1 + axis).

@@ -7,8 +7,8 @@ ends where a fault begins, or a push does or ends.
 ``state`` and ``resume`` let a run that was stopped go on to the same bytes. Controllers and faults have no state to
 write down: they decide again by all that they felt, and must come to the same commands.
 
-The root moves in its plane, along, to the left and about the vertical; the others of its coordinates are as good as
-locked, by an inertia that ``LOCKED`` times exceeds the robot's.
+In the plane the root moves along, to the left and about the vertical; the others of its coordinates are as good as
+locked, by an inertia that ``LOCKED`` times exceeds the robot's. Else all coordinates of the robot are the water's too.
 """
 
 from collections.abc import Mapping
@@ -27,6 +27,7 @@ from suchus.control import Command, Controller
 from suchus.design import layout
 from suchus.errors import Diverged, UnreadableFile
 from suchus.land.batch import Beginning, SimulationBatch
+from suchus.land.links import RobotLinks
 from suchus.land.loop import Loop
 from suchus.land.readings import Recorder
 from suchus.land.run import Run
@@ -39,11 +40,15 @@ _PLANE, _ACROSS = (0, 1, 5), (2, 3, 4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneState:
-    """Where the root and some joints are in the plane, and how fast they move; shapes (coordinate,)."""
+class CoordinateState:
+    """Where the root and some joints are, and how fast they move.
 
-    place: Float[np.ndarray, " coordinate"]
-    """Root along, to the left and its yaw, then the joints [m, rad]."""
+    In space the root has a place of seven numbers, its position and a quaternion, and six rates: its velocity in the
+    world and its angular velocity about its own axes.
+    """
+
+    place: Float[np.ndarray, " place"]
+    """Root along, to the left and its yaw, then the joints; in space see above [m, rad, -]."""
     rate: Float[np.ndarray, " coordinate"]
     """Their rates [m/s, rad/s]."""
 
@@ -108,7 +113,8 @@ class Stepper:
 
     Args:
         run: of one robot.
-        joints: names of those that the water feels beside the root.
+        joints: names of those that the water feels beside the root, which then moves in its plane; None for all, and
+            a root that moves in space.
         timestep: of the physics [s], a whole part of the control period.
         ticks: control periods for which controller, noise and record are prepared.
         controller: what decides; None for the one that the run names.
@@ -118,7 +124,7 @@ class Stepper:
     def __init__(
         self,
         run: Run,
-        joints: tuple[str, ...],
+        joints: tuple[str, ...] | None,
         timestep: float,
         ticks: int,
         *,
@@ -134,8 +140,13 @@ class Stepper:
         self.model: Any = loop.batch.model
         self._recorder: Recorder = loop.recorder(ticks + 1)
         self._ticks = ticks
+        self.links = RobotLinks(self.model)
+        """What the robot is made of, and how it moves in space."""
+        self.in_plane = joints is not None
+        joints = self.links.joints if joints is None else joints
         self._places = joint_addresses(self.model, joints)
-        self.dofs = np.array([*_PLANE, *(int(self.model.joint(name).dofadr[0]) for name in joints)])
+        hinge_dofs = [int(self.model.joint(name).dofadr[0]) for name in joints]
+        self.dofs = np.array([*(_PLANE if self.in_plane else range(6)), *hinge_dofs])
         self._joints = joints
         hinges = [self.model.joint(name) for name in joints]
         self._ranges = np.array(
@@ -146,7 +157,7 @@ class Stepper:
         ).reshape(-1, 2)
         self._other_hinges = [
             name for name in layout(run.robot).hinges
-            if name not in joints and name in {hinge.name for hinge in run.robot.axis_hinges}
+            if self.in_plane and name not in joints and name in {hinge.name for hinge in run.robot.axis_hinges}
         ]  # fmt: skip
         self._data = mujoco.MjData(self.model)
         self._applied = self._physics.bind("qfrc_applied")
@@ -158,7 +169,7 @@ class Stepper:
         self._smooth = self._physics.bind("qfrc_smooth")
         self._whole = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
-        self.at_begin: PlaneState = self.now
+        self.at_begin: CoordinateState = self.now
         """State in which the present stretch began."""
         self._saved: _Saved | None = None
         self._last: _Decision | None = None
@@ -184,12 +195,14 @@ class Stepper:
         return self.steps * self.timestep
 
     @property
-    def now(self) -> PlaneState:
+    def now(self) -> CoordinateState:
         """Root and joints now."""
         qpos, qvel = self._batch.qpos[0], self._batch.qvel[0]
+        if not self.in_plane:
+            return CoordinateState(place=qpos.copy(), rate=qvel.copy())
         w, x, y, z = qpos[3:7]
         yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-        return PlaneState(
+        return CoordinateState(
             place=np.array([qpos[0], qpos[1], yaw, *qpos[self._places]]), rate=np.array(qvel[self.dofs])
         )  # fmt: skip
 
@@ -249,7 +262,7 @@ class Stepper:
         whole = np.zeros((model.nv, model.nv))
         whole[np.ix_(self.dofs, self.dofs)] = added
         heavy = LOCKED * float(model.body_mass.sum())
-        for dof in _ACROSS:
+        for dof in _ACROSS if self.in_plane else ():
             whole[dof, dof] = heavy
         rows, columns = self._entries
         room = np.zeros(whole.shape, bool)
@@ -288,7 +301,7 @@ class Stepper:
         ahead = self._troubles[self._troubles > self.steps]
         return max(min([most, round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
 
-    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> PlaneState:
+    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> CoordinateState:
         """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
 
         Args:

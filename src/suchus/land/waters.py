@@ -45,6 +45,9 @@ class _Resolved:
     """In space: height of the last third of the body, as a fin as thick as the tail is; 0 leaves it as it is [m]."""
     limbs: bool = False
     """In space: whether the limbs are in the water, folded straight back along the body."""
+    linked: bool = False
+    """In space: whether each piece of the robot moves as its own joints do and the root in all six ways, so that limbs
+    paddle and the axis may leave its plane; there is no mirror then, and twice as much water."""
     beside: float | None = None
     """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
@@ -59,7 +62,12 @@ class _Resolved:
             check.number("tail_height", 0.0, 1.0, "m")
             if self.beside is not None:
                 check.number("beside", 0.0, 3.0, "body lengths")
-            given = [one for one in ("tail_height", "limbs", "beside") if getattr(self, one)]
+            given = [one for one in ("tail_height", "limbs", "linked", "beside") if getattr(self, one)]
+            check.that(
+                not (self.linked and (self.limbs or self.tail_height)),
+                f"{name}.linked has all of the robot's own pieces in the water, its limbs among them and no raised "
+                "tail: leave out limbs and tail_height",
+            )
             check.that(name == "space" or not given, f"{name}.{', '.join(given)} is for a body in space: leave it out")
 
 

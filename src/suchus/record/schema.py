@@ -60,9 +60,17 @@ HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 """Further variables of runs whose robots have servos that warm up, as in ``VARIABLES``."""
 
 COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
-    "link_force": (("time", "link", "xyz"), "N", "of the water on each link between two lateral joints, in the world"),
-    "link_torque": (("time", "link"), "N m", "of the water on each link about the vertical through its middle"),
-    "joint_water_torque": (("time", "joint"), "N m", "of the water on each lateral joint, NaN for the others"),
+    "link_force": (
+        ("time", "link", "xyz"),
+        "N",
+        "of the water on each link between two lateral joints, or each moving piece, in the world",
+    ),
+    "link_torque": (
+        ("time", "link"),
+        "N m",
+        "of the water on each link about the vertical through its middle",
+    ),
+    "joint_water_torque": (("time", "joint"), "N m", "of the water on each joint that it feels, NaN for the others"),
     "coupling_residual": (("time",), "1", "force left over by the step, over the greatest so far"),
     "coupling_first": (("time",), "1", "the same before the step was corrected"),
     "coupling_iterations": (("time",), "1", "corrections of the step"),

@@ -128,6 +128,13 @@ class SwimSetting:
             cell=length / self.cells,
         )
 
+    def grid_around(self, length: float, far: float) -> flow.Grid:
+        """Return the cells all around a body in space that reaches so far from its axis to any side [m]."""
+        aside = far + (_DRAWN + self.beside) * length
+        return flow.Grid.covering(
+            (-AHEAD * length, (1.0 + BEHIND) * length), (-aside, aside), (-aside, aside), cell=length / self.cells
+        )
+
     def _grid_in_space(self, length: float, swing: float, height: float) -> flow.Grid:
         """Return the cells around the upper half of a body."""
         aside, above = swing / length + _DRAWN, height / length + ABOVE

@@ -1,0 +1,195 @@
+"""A robot as links: how its coordinates move them, that forces do the work of the power, and what paddling limbs do."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from body_files import eight, hatchling
+from suchus import flow, rotation
+from suchus.control import OpenLoop, Swimming
+from suchus.coupling import Swim, simulate
+from suchus.coupling.chain import ChainState
+from suchus.coupling.linked import LinkChain
+from suchus.coupling.on_joints import floating
+from suchus.design.pieces import volumes
+from suchus.errors import InvalidDesign
+from suchus.flow.momentum import Reaction
+from suchus.land import Run
+from suchus.land.links import RobotLinks
+from suchus.land.waters import Slice, Space
+from suchus.model import compile_model
+from suchus.motion import Curve, Gait
+from suchus.progress import silent
+from suchus.robots import ROBOTS
+from suchus.water import swim_of
+
+BODIES = ("floating_caiman", "swimmer", "strider", eight, hatchling)
+ORIGIN, ABOUT = np.array([0.1, -0.3, 0.05]), np.array([0.4, 0.2, -0.1])
+
+
+def robot_of(one):
+    return ROBOTS[one] if isinstance(one, str) else one()
+
+
+def chain(one):
+    robot = robot_of(one)
+    return LinkChain(robot, RobotLinks(compile_model(robot)), np.array([0.1, -0.2, 0.05]))
+
+
+def posed(one, seed=3):
+    """A posture with every joint bent and the root turned every way, and rates of all coordinates."""
+    rng = np.random.default_rng(seed)
+    attitude = rotation.from_angles(0.4, -0.3, 0.2)
+    bends = 0.2 * rng.uniform(-1, 1, len(one.joints))
+    return ChainState(np.array([0.3, -0.1, 0.2, *attitude, *bends]), rng.normal(size=one.size))
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_links_move_as_their_coordinates_say(body):
+    one = chain(body)
+    posture, step = posed(one), 1e-6
+    now = one.states(posture)
+    ends = []
+    for way in (-step, step):
+        place, rate = posture
+        turned = rotation.multiply(place[3:7], rotation.from_vector(way * rate[3:6]))  # about the root's own axes
+        moved = np.concatenate([place[:3] + way * rate[:3], turned, place[7:] + way * rate[6:]])
+        ends.append(one.states(ChainState(moved, rate)))
+    before, after = ends
+    assert (after.position - before.position) / (2 * step) == pytest.approx(now.velocity, abs=1e-7)
+    turned = rotation.vectors(after.matrix @ np.swapaxes(before.matrix, 1, 2)) / (2 * step)
+    assert turned == pytest.approx(now.spin, abs=1e-7)
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_the_work_of_a_force_is_that_of_its_links(body):
+    one, rng = chain(body), np.random.default_rng(1)
+    posture, count = posed(one), len(one.names)
+    pull, own = rng.normal(size=(2, count, 3))
+    states = one.states(posture)
+    off = states.position - ORIGIN - ABOUT
+    power = float((pull * states.velocity).sum() + (own * states.spin).sum())
+    parts = Reaction(force=pull, moment=own + np.cross(off, pull), power=np.zeros(count))
+    loads = flow.FlowLoads(about=ABOUT, whole=parts, parts=parts, pressed=np.zeros((count, 4)))
+    assert one.force(posture.place, loads, ORIGIN) @ posture.rate == pytest.approx(power, rel=1e-10)
+    felt = one.felt(posture.place, loads, ORIGIN)
+    assert felt[:, :3] == pytest.approx(pull * [-1.0, -1.0, 1.0])  # the flow is the world turned by half a turn
+    assert felt[:, 3] == pytest.approx(own[:, 2])
+    moving = one.twists(posture.place, posture.rate, ORIGIN, 3)
+    modes = one.modes(posture.place, ORIGIN, 3)
+    summed = sum(rate * mode.linear for rate, mode in zip(posture.rate, modes, strict=True))
+    assert moving.linear == pytest.approx(summed, abs=1e-12)
+    assert moving.about == pytest.approx(states.position - ORIGIN)
+
+
+def test_the_body_of_the_flow_is_the_robot_with_its_head_at_the_origin():
+    one = chain("floating_caiman")
+    robot = ROBOTS["floating_caiman"]
+    rest = np.array([0.1, -0.2, 0.05, 1.0, 0.0, 0.0, 0.0, *np.zeros(len(one.joints))])
+    posture = ChainState(rest, np.zeros(one.size))
+    path = one.way(0.0, posture)
+    body, pose = one.body(path), one.motion(path)(0.0)
+    x0, x1, y0, y1, *_ = body.bounds(0.0, pose)
+    assert (x0, x1) == pytest.approx((0.0, robot.length), abs=0.01)  # the tip of the tail is round
+    assert y1 == pytest.approx(-y0)
+    assert y1 > max(girdle.aside + girdle.limb.reach for girdle in robot.girdles)  # limbs stretched out
+    bare = sum(volumes(ROBOTS["floating_caiman"]).values())
+    assert 0.4 * bare < body.mass(0.0).volume < bare  # without its foam
+    ahead = next(k for k, name in enumerate(one.names) if name == "thorax")
+    assert one.states(posture).position[ahead, 0] < 0.3 * robot.length
+    left = [k for k, name in enumerate(one.names) if name.startswith("L")]
+    outer = [one.states(posture).position[k, 1] for k in left]
+    assert max(outer) < 0.0  # y of the flow is to the robot's right
+
+
+SALAMANDER = ROBOTS["salamander"]
+
+
+def paddling(sign, cells=36, **changes):
+    """All limbs sweep at once, from ahead to behind in the first half of the cycle, or the other way round."""
+    angles = tuple((sign * 0.6 * np.cos(2 * np.pi * np.arange(24) / 24)).tolist())
+    curves = tuple(Curve(servo=f"{limb}_yaw", part="limb", angles=angles) for limb in ("LF", "RF", "LH", "RH"))
+    gait = Gait(name="paddle", limb_phases=(0.0,) * 4, curves=curves, period=1.0)
+    water = Space(cells=cells, reynolds=400.0, linked=True)
+    return Run(robot=floating(SALAMANDER), gait=gait, water=water, control=OpenLoop(begin=0.0), **changes)
+
+
+@pytest.mark.slow("two half strokes in space: 16 s of processor")
+def test_limbs_that_sweep_back_push_the_body_forward():
+    ways = []
+    for sign in (1, -1):
+        record = simulate([paddling(sign)], duration=0.5, progress=silent).isel(run=0)
+        centre = record.centre_of_mass.sel(xyz="x").values
+        ways.append(float(centre[-1] - centre[0]) / SALAMANDER.length)
+        dt = float(record.time[1] - record.time[0])
+        impulse = record.water_force.values[:, 0].cumsum() * dt
+        momentum = float(record.mass) * np.gradient(centre, dt)
+        assert np.abs(momentum - impulse)[2:-2].max() < 0.03 * np.abs(momentum).max()
+        feet = [name for name in record.link.values if name.endswith("_lower")]
+        pull = record.link_force.sel(link=feet, xyz="x").sum("link").mean("time")
+        assert sign * float(pull) > 0.0
+        assert float(abs(record.power_error[-1])) < 0.02  # of limbs that are two cells thick
+        assert float(abs(record.energy_error[-1])) < 0.005
+        assert float(record.coupling_residual[5:].max()) < 0.01
+        assert np.isfinite(record.joint_water_torque.values).all()
+    assert ways[0] > 0.01
+    assert ways[1] == pytest.approx(-ways[0], rel=0.05)  # the still limbs and the body are nearly alike fore and aft
+
+
+@pytest.mark.slow("two swims of a cycle in space: 40 s of processor")
+def test_limbs_that_are_held_still_swim_as_folded_ones_do():
+    robot = floating(SALAMANDER)
+    found = []
+    for water in (Space(cells=40, reynolds=1500.0, linked=True), Space(cells=40, reynolds=1500.0, limbs=True)):
+        run = Run(robot=robot, gait=swim_of(robot), water=water, control=Swimming(ramp=0.5))
+        found.append(simulate([run], duration=0.7, progress=silent).isel(run=0))
+    linked, folded = found
+    last = [one.position.sel(xyz=["x", "y"]).values[-1] - one.position.sel(xyz=["x", "y"]).values[0] for one in found]
+    assert last[0] == pytest.approx(last[1], abs=0.1 * np.abs(last[1]).max())  # one shape is smooth, one of rods
+    height = linked.position.sel(xyz="z").values
+    assert np.ptp(height) < 0.002 * robot.length  # nothing holds it in its plane, and it stays there
+    work = [float(one.servo_power.sum()) for one in found]
+    assert work[0] == pytest.approx(work[1], rel=0.1)
+    assert set(folded.link.values) != set(linked.link.values)
+
+
+@pytest.mark.slow("some steps of a whole body in space: 12 s of processor")
+def test_a_gait_that_leaves_the_plane_swims_on_links_alone():
+    robot = floating(SALAMANDER)
+    lifted = Curve(servo="LF_pitch", part="limb", angles=(0.0, 0.5, 0.0, -0.5))
+    gait = Gait(name="lifted", limb_phases=(0.0,) * 4, curves=(lifted,), period=1.0)
+    run = Run(robot=robot, gait=gait, water=Space(cells=36, reynolds=400.0), control=OpenLoop(begin=0.0))
+    with pytest.raises(InvalidDesign, match=r"strokes with a limb: servo LF_pitch .*Space\(linked=True\), where"):
+        Swim(run, 0.2)
+    water = Space(cells=36, reynolds=400.0, linked=True)
+    record = simulate([replace(run, water=water)], duration=0.25, progress=silent).isel(run=0)
+    heel = rotation.roll(record.orientation.values)
+    assert abs(heel[-1]) > 1e-3  # one limb alone rolls it over
+
+
+@pytest.mark.slow("a few steps in space, three times: 10 s of processor")
+def test_a_swim_on_links_that_was_killed_goes_on_to_the_same_bytes(tmp_path):
+    run, file = paddling(1), tmp_path / "one.kept"
+
+    class Killed(BaseException):
+        pass
+
+    def look(swim):
+        if swim.time > 0.06:
+            raise Killed
+
+    whole = Swim(run, 0.15)
+    whole.go(0.15, progress=silent)
+    with pytest.raises(Killed):
+        Swim(run, 0.15).go(0.15, watch=look, checkpoint=file, checkpoint_every=0.0, progress=silent)
+    rest = Swim(run, 0.15)
+    rest.go(0.15, checkpoint=file, progress=silent)
+    assert rest.record().identical(whole.record())
+
+
+def test_links_have_no_raised_tail_and_are_for_space_alone():
+    with pytest.raises(InvalidDesign, match="its limbs among them and no raised tail: leave out limbs and tail_height"):
+        Space(linked=True, limbs=True)
+    with pytest.raises(InvalidDesign, match=r"slice\.linked is for a body in space"):
+        Slice(linked=True)
