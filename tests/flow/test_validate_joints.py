@@ -5,6 +5,7 @@ Bounds are those that are asked for where the code reaches them; see ``test_vali
 
 import numpy as np
 import pytest
+from panels import by_panels
 from validation_rows import note
 
 import suchus
@@ -124,48 +125,6 @@ def links():
     return [(*first, angles[0]), (*middle, angles[1]), (*last, angles[2])]
 
 
-def by_panels(places, a, b):
-    """Return the added mass of ellipses, each along x, along y and about its middle, by sources on panels.
-
-    What straight panels are off by falls with their number, and is taken away by that.
-    """
-    return 2 * _on_panels(places, a, b, 480) - _on_panels(places, a, b, 240)
-
-
-def _on_panels(places, a, b, count):
-    ends = np.linspace(0.0, 2 * np.pi, count + 1)
-    corners = []
-    for x, y, angle in places:
-        px, py = a * np.cos(ends), b * np.sin(ends)
-        corners.append(np.stack([x + px * np.cos(angle) - py * np.sin(angle),
-                                 y + px * np.sin(angle) + py * np.cos(angle)]))  # fmt: skip
-    low, top = (np.concatenate([c[:, part] for c in corners], axis=1) for part in (slice(None, -1), slice(1, None)))
-    middle, along = 0.5 * (low + top), top - low
-    long = np.hypot(*along)
-    tangent = along / long
-    normal = np.stack([tangent[1], -tangent[0]])
-    off = middle[:, :, None] - middle[:, None, :]  # from panel j to point i
-    x, y = (off * tangent[:, None, :]).sum(axis=0), (off * normal[:, None, :]).sum(axis=0)
-    left, right = x + 0.5 * long, x - 0.5 * long
-    near, far = 0.5 * np.log(right**2 + y**2), 0.5 * np.log(left**2 + y**2)
-    turn = np.arctan2(y, right) - np.arctan2(y, left)
-    np.fill_diagonal(turn, np.pi)
-    potential = (left * far - right * near - long + y * turn) / (2 * np.pi)
-    u, v = (far - near) / (2 * np.pi), turn / (2 * np.pi)
-    turned, faced = ((each[:, None, :] * normal[:, :, None]).sum(axis=0) for each in (tangent, normal))
-    across = u * turned + v * faced
-    modes = []
-    for k, (px, py, _) in enumerate(places):
-        mine = slice(k * count, (k + 1) * count)
-        for motion in (normal[0], normal[1], (middle[0] - px) * normal[1] - (middle[1] - py) * normal[0]):
-            whole = np.zeros(len(long))
-            whole[mine] = motion[mine]
-            modes.append(whole)
-    moved = np.array(modes)
-    strength = np.linalg.solve(across, moved.T)
-    return -WATER * moved * long @ (potential @ strength)
-
-
 def test_added_mass_of_bent_links():
     a, b, cells = 0.15, 0.03, 160
     places = links()
@@ -184,8 +143,8 @@ def test_added_mass_of_bent_links():
             modes.append(joined(each))
     outlines = [one.shape.markers(0.0, one.pose(0.0), grid.cell) for one in bodies]
     ours = generalised_added_mass(sim.water, outlines, modes, WATER).matrix
-    theirs = by_panels(places, a, b)
-    alone = by_panels(places[:1], a, b)
+    theirs = WATER * by_panels(places, a, b)
+    alone = WATER * by_panels(places[:1], a, b)
     tensor = np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
     exact = tensor.T @ np.diag(np.pi * WATER * np.array([b * b, a * a])) @ tensor
     assert alone[:2, :2] == pytest.approx(exact, rel=1e-3)  # Lamb 1932, article 71
