@@ -1,21 +1,55 @@
 """Write docs/atlas.md and its pictures from the outcomes of the atlas of flows.
 
 Usage: python tools/atlas_page.py OUT [DOCS]: reads OUT/flows/*.json, which `suchus flow-atlas --out OUT` left, and
-writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png.
+writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png. Into docs it also keeps what other pages
+state of the rows, and writes their passages anew.
 """
 
 import shutil
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import median
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from lighter import lighten
-from suchus.atlas import CASES, load_outcomes
+from pages.stated import keep
+from pages.stated import main as write_pages
+from suchus.atlas import CASES, ROWS, load_outcomes, published
 from suchus.errors import IncompatibleRecord, SuchusError
-from suchus.figures.atlas import write_atlas
+from suchus.figures.atlas import Entry, entries, write_atlas
 from suchus.writing import MANIFEST
 
 DOCS = Path(__file__).parents[1] / "docs"
+
+
+def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
+    """Return what pages state of the rows: of each its numbers, and which differ by more than their grids explain."""
+    rows = {
+        entry.row.name: {
+            "rms": found.rms, "over_range": found.over_range, "own": found.own, "bound": found.bound,
+            "agrees": found.agrees, "index": entry.convergence.uncertainty, "order": entry.convergence.order,
+            "refused": entry.convergence.refused,
+            "ours": dict(zip(_names(entry), found.ours.tolist(), strict=True)) if entry.row.kind == "numbers" else {},
+        }
+        for entry in listed if (found := entry.comparison) is not None
+    }  # fmt: skip
+    known = {name: row for name, row in rows.items() if row["index"] is not None}
+    costs = {one.flow: one.seconds for entry in listed if entry.outcome for one in (entry.outcome, *entry.coarser)}
+    return {
+        "rows": rows,
+        "median": median(row["rms"] for row in rows.values()),
+        "median_index": median(row["index"] for row in known.values()) if known else None,
+        "minutes": sum(costs.values()) / 60,
+        "converged": sorted(known),
+        "beyond": sorted(name for name, row in known.items() if row["rms"] > row["index"]),
+        "refused": sorted(set(rows) - set(known)),
+    }
+
+
+def _names(entry: Entry) -> tuple[str, ...]:
+    return published(entry.row.data).columns["quantity"]
 
 
 def main(out: Path, docs: Path = DOCS) -> Path:
@@ -35,6 +69,9 @@ def main(out: Path, docs: Path = DOCS) -> Path:
         for picture in sorted((Path(made) / "pictures").glob("atlas_*.png")):
             lighten(picture)
         shutil.copytree(made, docs, dirs_exist_ok=True, ignore=shutil.ignore_patterns(MANIFEST))
+    if docs == DOCS:
+        keep("atlas", stated(entries(tuple(ROWS.values()), found)))
+        write_pages([])
     return docs / page.name
 
 

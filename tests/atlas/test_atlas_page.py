@@ -93,6 +93,8 @@ def test_three_grids_tell_an_uncertainty_or_why_there_is_none():
     good = page(told(*on_grids(ROW, 1.0, 1 + 0.02 * 1.25, 1.075)))
     assert "Its uncertainty from 48, 32, 24 cells is " in good
     assert ", observed order " in good
+    assert "as much as the difference." in good
+    assert "which finer cells would not remove." in page(told(*on_grids(ROW, 1.1, 1.101, 1.1025)))
     assert "| agrees | 48, 32, 24 | 183 s |" in good
     assert "Three grids converge for 1 of them" in good
     back = page(told(*on_grids(ROW, 1.0, 1.05, 1.0)))
@@ -150,6 +152,20 @@ def test_the_tool_takes_neither_nothing_nor_trials(tmp_path):
     save_outcome(outcome(ROW, quick=True), tmp_path)
     with pytest.raises(IncompatibleRecord, match=r"in_line in .* are quick trials"):
         atlas_page.main(tmp_path, tmp_path)
+
+
+def test_what_other_pages_state_is_of_the_rows_themselves():
+    """One row that its grids explain, one that they do not, one without an index."""
+    small, large = 0.001, 0.2
+    near = on_grids(ROW, 1.0, 1.05, 1.12)
+    far = on_grids(LOOP, 1 + large, 1 + large + small, 1 + large + 2.5 * small)
+    told_of = atlas_page.stated(told(*near, *far, outcome(NUMBERS, 1.01), rows=(ROW, LOOP, NUMBERS)))
+    assert told_of["converged"] == [ROW.name, LOOP.name]
+    assert told_of["beyond"] == [LOOP.name]
+    assert told_of["refused"] == [NUMBERS.name]
+    assert told_of["rows"][NUMBERS.name]["ours"]["mean drag"] == pytest.approx(1.335 * 1.01)
+    assert told_of["rows"][ROW.name]["rms"] == 0
+    assert told_of["minutes"] == pytest.approx(7 * 61 / 60)
 
 
 def test_only_the_rows_that_were_asked_for_are_on_the_page(tmp_path):

@@ -72,7 +72,7 @@ def _started_1000() -> tuple[AtlasRow, ...]:
             )
             for key, time in (("0p5", 0.5), ("1p5", 1.5))
         ]  # fmt: skip
-    parts = (("friction", "friction", "friction"), ("pressure", "pressure part", "pressure part"))
+    parts = (("friction", "friction", "friction part"), ("pressure", "pressure part", "pressure part"))
     rows += [
         AtlasRow(
             name=f"koumoutsakos_{key}_re1000", case="started_re1000", data=f"koumoutsakos1995_{key}_re1000",

@@ -274,7 +274,10 @@ def _grid_words(entry: Entry) -> str:
         return f"No uncertainty of its own from {GRIDS} grids: {entry.convergence.refused}."
     cells = ", ".join(str(one.cells) for one in _every(entry))
     at = "" if order is None else f", observed order {order:.1f}"
-    return f"Its uncertainty from {cells} cells is {_percent(index)}{at}."
+    found = entry.comparison
+    beyond = found is not None and found.rms > index
+    beside = "less than the difference, which finer cells would not remove" if beyond else "as much as the difference"
+    return f"Its uncertainty from {cells} cells is {_percent(index)}{at}: {beside}."
 
 
 def atlas_files(folder: Path, rows: Sequence[AtlasRow]) -> list[Path]:
