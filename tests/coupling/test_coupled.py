@@ -6,13 +6,17 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 import suchus
+from body_files import eight, giant, hatchling, six
 from suchus.control import Swimming
 from suchus.control.holding import HeadingHold
 from suchus.coupling import Swim, check_on_joints, simulate
+from suchus.coupling import swim as coupled
 from suchus.coupling.chain import MidlineChain
-from suchus.errors import Doubtful, InvalidDesign, UnknownName, UnreadableFile
+from suchus.coupling.on_joints import floating
+from suchus.errors import Diverged, Doubtful, InvalidDesign, UnknownName, UnreadableFile
 from suchus.fingerprint import fingerprint
 from suchus.land import Ground, Lake, Push, Run
 from suchus.land.stepper import Stepper
@@ -197,3 +201,65 @@ def test_a_push_acts_in_each_go_through_a_stretch():
         assert momentum - from_water == pytest.approx(impulse, abs=1.5e-3)  # but for what steps left over
     ends = {round(time, 9) for time in swims[0].series.time}
     assert {0.02, 0.05, 0.06} <= ends  # the control periods in which it begins and ends
+
+
+@pytest.mark.slow("a flow that is set up and stepped")
+def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record_so_far(monkeypatch):
+    monkeypatch.setattr(coupled, "LOST", 1e-9)
+    swim = Swim(swim_run(water=Slice(cells=40, reynolds=600.0)), 0.4)
+    with pytest.raises(Diverged, match=r"a force of \S+ times the greatest so far is left over .* \(now 5\)") as told:
+        swim.go(0.4, progress=silent)
+    record = told.value.record.isel(run=0)
+    reached = np.isfinite(record.coupling_residual.values)
+    assert len(swim.series.time) == coupled.PATIENCE
+    assert 2 < reached.sum() < record.sizes["time"] - 2
+    assert told.value.time == pytest.approx(swim.time)
+    assert f"at t = {swim.time:.4g} s robot and flow do not come to terms" in str(record.cause.values)
+    assert float(record.ended) == pytest.approx(swim.time)
+
+
+@pytest.mark.slow("a flow that is set up and stepped")
+def test_what_ends_a_swim_in_its_first_step_leaves_an_empty_record(monkeypatch):
+    """Whoever leaves the plane or the box, or is too fast, keeps what was until then, if it is nothing."""
+    swim = Swim(swim_run(water=Slice(cells=40, reynolds=600.0)), 0.1)
+    monkeypatch.setattr(Stepper, "off_plane", ("tail_pitch_1", 0.3))
+    monkeypatch.setattr(swim.sim, "next_step", lambda: 1e-9)
+    with pytest.raises(Diverged, match=r"the flow allows a step of 1e-09 s, less than") as told:
+        swim.go(0.1, progress=silent)
+    assert np.isnan(told.value.record.link_force.values).all()
+    monkeypatch.undo()
+    monkeypatch.setattr(Stepper, "off_plane", ("tail_pitch_1", 0.3))
+    with pytest.raises(Diverged, match=r"joint tail_pitch_1 is bent by 0\.3 rad out of the plane") as told:
+        swim.go(0.1, progress=silent)
+    assert np.isfinite(told.value.record.coupling_residual.values).any()
+
+
+def test_cells_too_coarse_for_a_body_are_told_in_cells():
+    with pytest.raises(InvalidDesign, match=r"robot 'swimmer' is 0\.04 m thick .* with 40 cells .* least 90 cells"):
+        Swim(swim_run(water=Space(cells=40, reynolds=600.0)), 0.1)
+
+
+def test_an_added_mass_that_is_less_than_none_is_none():
+    rng = np.random.default_rng(5)
+    mass, sound = (part @ part.T + 0.1 * np.eye(4) for part in rng.normal(size=(2, 4, 4)))
+    assert coupled.never_negative(sound, mass) is sound
+    bad = np.diag([2.0, 1.0, 0.5, -0.2])
+    found = coupled.never_negative(bad, mass)
+    assert np.linalg.eigvalsh(found).min() == pytest.approx(0.0, abs=1e-12)
+    kept, shapes = eigh(bad, mass)
+    again = shapes.T @ found @ shapes
+    assert np.diag(again) == pytest.approx(np.maximum(kept, 0.0), abs=1e-12)
+    assert again == pytest.approx(np.diag(np.diag(again)), abs=1e-12)
+
+
+@pytest.mark.slow("some steps of ten bodies in a slice")
+@pytest.mark.parametrize("body", [*suchus.ROBOTS, eight, giant, hatchling, six])
+def test_any_chain_swims_in_a_slice(body):
+    """The giant's tail is lighter than what coarse cells once took from its mass."""
+    robot = floating(suchus.ROBOTS[body] if isinstance(body, str) else body())
+    gait = swim_of(robot)
+    run = Run(robot=robot, gait=gait, water=Slice(cells=40, reynolds=600.0), control=Swimming(ramp=gait.period))
+    record = simulate([run], duration=round(0.5 * gait.period, 1), progress=silent).isel(run=0)
+    assert np.isnan(float(record.ended)) or float(record.ended) >= float(record.time[-1]) - 1e-9
+    later = record.sel(time=slice(0.1 * gait.period, None))
+    assert float(later.coupling_residual.max()) < 0.03

@@ -110,8 +110,9 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
 
     count = len(series.time)
     if not count:
-        empty = {name: (len(time),) for name in {**WATER, **COUPLED}}
-        return {name: np.full(shape, np.nan) for name, shape in empty.items()}
+        sizes = {**record.sizes, "link": len(chain.names), "time": len(time)}
+        dims = {name: one[0] for name, one in {**WATER, **COUPLED}.items()}
+        return {name: np.full([sizes[dim] for dim in own], np.nan) for name, own in dims.items()}
     links, force = np.array(series.links), np.array(series.force)
     worked, energy = np.array(series.worked), np.array(series.energy)
     sums = worked.cumsum(axis=0)

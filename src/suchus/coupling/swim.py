@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from jaxtyping import Float
+from scipy.linalg import eigh
 
 from suchus import flow
 from suchus.control import Controller
@@ -26,9 +27,10 @@ from suchus.coupling.recorded import Series, recorded
 from suchus.design import layout
 from suchus.design.scale import control_period, physics_step
 from suchus.design.water import Water
-from suchus.errors import Diverged, Doubtful, InvalidDesign, OutsideLimits
+from suchus.errors import Diverged, Doubtful, InvalidDesign, NotConverged, OutsideLimits
 from suchus.fault import check_faults
 from suchus.flow import checkpoint as store
+from suchus.flow.immerse import THINNEST
 from suchus.flow.progress import Bar
 from suchus.land.afloat import check_floats
 from suchus.land.batch import Beginning
@@ -124,6 +126,21 @@ def _check_plane(run: Run) -> None:
                 "does, say motion.swimming_gait, or water=Space(linked=True), where each piece moves as its joints do, "
                 'or water="sections".'
             )
+
+
+def never_negative(
+    added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"]
+) -> Float[np.ndarray, "coordinate coordinate"]:
+    """Return an added mass that no motion makes negative: the same, or without what it takes from the robot's own mass.
+
+    Coarse cells may find less than none for the bend of a thin tail, once the pressure inside the body is taken away. A
+    robot that is lighter than that there would be thrown about.
+    """
+    values, shapes = eigh(added, mass)
+    if values[0] >= 0.0:
+        return added
+    pulled = mass @ shapes
+    return added - (pulled * np.minimum(values, 0.0)) @ pulled.T
 
 
 class Swim:
@@ -274,12 +291,28 @@ class Swim:
                 shape = flow.Limbed(
                     spine=bare.spine, half_height=bare.half_height, cuts=bare.cuts, limbs=folded(robot)
                 )  # fmt: skip
+        self._check_thickness(shape, grid.cell)
         body = flow.Body(shape=shape, motion=motion, name=robot.name)
         sides = flow.Sides(low=flow.Mirror()) if axes == 3 and not self._linked else flow.Sides()
         return flow.Setup(
             grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
             follow_axes=(True,) * 3 if self._linked else (True, True), tolerance=setting.largest_divergence(),
         )  # fmt: skip
+
+    def _check_thickness(self, shape: flow.SpaceShape | flow.Midline, cell: float) -> None:
+        """Refuse cells so coarse that the robot is nowhere thick enough for them.
+
+        Raises:
+            InvalidDesign: with the cells that would do.
+        """
+        most = float(shape.thickness(0.0)[1].max())
+        if isinstance(shape, flow.SpaceShape) and most < THINNEST * cell:
+            needed = int(np.ceil(THINNEST * self.run.robot.length / most))
+            raise InvalidDesign(
+                f"robot {self.run.robot.name!r} is {most:.3g} m thick at most, and with {self.water.cells} cells a "
+                f"length a cell is {cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least "
+                f'{needed} cells, or water="slice".'
+            )
 
     # --- between the robot's world and the flow's --------------------------------------------------------------
 
@@ -324,7 +357,7 @@ class Swim:
         found = self.sim.added_mass(self.run.robot.name, modes)
         inside = self.chain.unpressed(posture.place, found.pressed, self._origin)
         own = found.matrix - 0.5 * (inside + inside.T)
-        self._added = self._times * self.chain.of_robot(own)
+        self._added = never_negative(self._times * self.chain.of_robot(own), self.stepper.mass())
         if len(self.series.time):
             inertia = self.stepper.mass() + before
             apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
@@ -386,6 +419,12 @@ class Swim:
         newton = self._newton()
         end, push = self._gone(count, self._force, self._push, self._push, newton)
         told = self._force - self._added @ (push - self._push)
+        if not np.isfinite(end.rate).all():
+            raise Diverged(
+                f"at t = {self.time:.4g} s the physics of robot {self.run.robot.name!r} no longer has finite numbers "
+                f"under the water's force; take a shorter timestep than {self.timestep:.3g} s, or more cells.",
+                time=start,
+            )
         posture = self._seen(end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
@@ -476,7 +515,7 @@ class Swim:
             checkpoint_every: wall-clock seconds between two savings [s].
 
         Raises:
-            Diverged: see ``step``; with the record so far.
+            Diverged: whatever ends a ``step``, with the record so far.
             UnreadableFile: the checkpoint is broken or belongs to another run.
             Unwritable: the checkpoint cannot be written.
         """
@@ -488,9 +527,10 @@ class Swim:
             while self.time < until - 0.5 * self.timestep:
                 try:
                     self.step(until)
-                except Diverged as error:
-                    self.stepper.end(self.time, str(error))
-                    raise Diverged(str(error), time=self.time, record=self.record()) from error
+                except (Diverged, InvalidDesign, NotConverged, OutsideLimits) as error:
+                    reached = self.series.time[-1] if self.series.time else 0.0
+                    self.stepper.end(reached, str(error))
+                    raise Diverged(str(error), time=reached, record=self.record()) from error
                 if watch is not None:
                     watch(self)
                 saver.save(self)
