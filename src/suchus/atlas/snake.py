@@ -44,12 +44,12 @@ CASES = tuple(
     Case(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
-        grids=grids((64, 48, 32), 40.0, coarse=32, before=24.0),
+        grids=grids((64, 48, 32), 40.0, coarse=32, before=48.0),
         quick=RunEffort(cells=24, until=18.0, coarse=16, before=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 9 x 6 chords are "
-        "computed; 24 chords of travel from rest with {coarse} cells a chord and 40 with {cells}, means over the last "
-        "32, which is the source's own window, 32 to 64 chords from its start.",
+        "computed; 48 chords of travel from rest with {coarse} cells a chord and 40 with {cells}, means over the last "
+        "32, as many as in the source.",
     )
     for reynolds in (1000, 2000)
     for degrees in (30, 35)
