@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.atlas import ROWS, GridConvergence, grid_convergence, published, row_convergence
@@ -20,6 +20,7 @@ def converging(limit, error, order, cells=CELLS):
     return [np.atleast_1d(limit + np.asarray(error) * n**-order) for n in cells]
 
 
+@settings(max_examples=25, deadline=None)
 @given(st.floats(0.3, 4), st.floats(0.5, 50), st.sampled_from([CELLS, (64, 48, 32), (62, 47, 31)]))
 def test_the_order_of_an_error_that_is_a_power_is_found_and_the_band_holds_the_limit(order, error, cells):
     values = converging(3.0, error, order, cells)

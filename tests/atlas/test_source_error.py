@@ -22,9 +22,9 @@ def test_a_stated_error_is_taken_over_the_peak():
 @pytest.mark.parametrize("noise", [0.002, 0.02])
 def test_the_scatter_of_readings_about_a_curve_is_found(noise):
     rng = np.random.default_rng(1)
-    x = np.sort(rng.uniform(0, 10, 400))
+    x = np.sort(rng.uniform(0, 10, 200))
     read = np.sin(x) + rng.normal(0, noise, x.size)
-    assert reading_error(x, read) == pytest.approx(noise, rel=0.15)
+    assert reading_error(x, read) == pytest.approx(noise, rel=0.25)
     shuffled = rng.permutation(x.size)
     assert reading_error(x[shuffled], read[shuffled]) == pytest.approx(reading_error(x, read))
 

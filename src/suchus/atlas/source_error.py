@@ -56,10 +56,11 @@ def reading_error(x: np.ndarray, y: np.ndarray, period: float | None = None) -> 
     found = []
     for k in range(_SIDES, len(x) - _SIDES):
         near = [k + step for step in range(-_SIDES, _SIDES + 1) if step]
-        terms = np.vander(x[near] - x[k], 3)  # the parabola's value at the point is its last coefficient
         if np.unique(x[near]).size < 3:
             continue
-        weights = np.linalg.pinv(terms)[-1]
+        away = x[near] - x[k]
+        terms = np.vander(away / np.abs(away).max(), 3)  # the parabola's value at the point is its last coefficient
+        weights = np.linalg.solve(terms.T @ terms, terms.T)[-1]
         found.append(abs(y[k] - weights @ y[near]) / np.sqrt(1 + weights @ weights))
     if not found:
         return None
