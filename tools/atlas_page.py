@@ -29,8 +29,10 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
     rows = {
         entry.row.name: {
             "rms": found.rms, "over_range": found.over_range, "own": found.own, "bound": found.bound,
+            "scatter": found.scatter,
             "agrees": found.agrees, "index": entry.convergence.uncertainty, "order": entry.convergence.order,
             "refused": entry.convergence.refused,
+            "cycles": [min(found.cycles), max(found.cycles)] if found.cycles else [],
             "ours": dict(zip(_names(entry), found.ours.tolist(), strict=True)) if entry.row.kind == "numbers" else {},
         }
         for entry in listed if (found := entry.comparison) is not None
@@ -44,6 +46,7 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
         "minutes": sum(costs.values()) / 60,
         "converged": sorted(known),
         "beyond": sorted(name for name, row in known.items() if row["rms"] > row["index"]),
+        "within": sorted(name for name, row in known.items() if row["rms"] <= row["index"]),
         "refused": sorted(set(rows) - set(known)),
     }
 

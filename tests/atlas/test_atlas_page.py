@@ -107,6 +107,19 @@ def test_three_grids_tell_an_uncertainty_or_why_there_is_none():
     assert "32 cells failed" in page(told(*failed))
 
 
+def test_the_next_grid_counts_where_the_finest_was_not_computed_and_the_page_says_so():
+    every = on_grids(ROW, 1.0, 1.1, 1.3, cells=tuple(one.cells for one in CASES[ROW.case].grids))
+    text = page(told(*every[1:], outcome(NUMBERS)))
+    assert f"The finest of its grids, of {every[0].cells} cells, has not been computed: {every[1].cells} count." in text
+    assert text.count("The finest grids of duetsch_force have not been computed, and the next ones count.") == 1
+    assert "2 of 3 grids are there" in text
+    assert f"| {every[1].cells}, {every[2].cells} | 122 s |" in text
+    assert "Of 2 rows 2 were computed: the median" in text
+    whole = page(told(*every, outcome(NUMBERS)))
+    assert "The finest" not in whole
+    assert "Of 2 rows 2 were computed in full: the median" in whole
+
+
 def test_the_range_and_the_source_s_own_error_stand_beside_the_peak():
     found = told(outcome(ROW, 1.1))[0].comparison
     assert found.over_range == pytest.approx(found.rms * np.abs(found.theirs).max() / np.ptp(found.theirs))
@@ -162,6 +175,7 @@ def test_what_other_pages_state_is_of_the_rows_themselves():
     told_of = atlas_page.stated(told(*near, *far, outcome(NUMBERS, 1.01), rows=(ROW, LOOP, NUMBERS)))
     assert told_of["converged"] == [ROW.name, LOOP.name]
     assert told_of["beyond"] == [LOOP.name]
+    assert told_of["within"] == [ROW.name]
     assert told_of["refused"] == [NUMBERS.name]
     assert told_of["rows"][NUMBERS.name]["ours"]["mean drag"] == pytest.approx(1.335 * 1.01)
     assert told_of["rows"][ROW.name]["rms"] == 0

@@ -57,7 +57,7 @@ class Entry:
     row: AtlasRow
     """The row."""
     outcome: FlowOutcome | None
-    """Outcome of its flow; None if it was not computed."""
+    """Outcome of its flow on the finest grid that was computed; None if none was."""
     comparison: CurveComparison | None = None
     """Difference from the published data; None if there is nothing to compare."""
     failed: str = ""
@@ -90,7 +90,9 @@ def entries(rows: Sequence[AtlasRow], outcomes: Mapping[str, FlowOutcome]) -> li
     """Return each row with its result; outcomes are found by the names of the flows."""
     listed = []
     for row in rows:
-        outcome = outcomes.get(row.case)
+        numbers = range(1, len(CASES[row.case].grids) + 1)
+        there = [one for grid in numbers if (one := outcomes.get(flow_on(row.case, grid))) is not None]
+        outcome = there[0] if there else None
         found, failed = None, ""
         if outcome is not None:
             failed = outcome.failed
@@ -99,9 +101,9 @@ def entries(rows: Sequence[AtlasRow], outcomes: Mapping[str, FlowOutcome]) -> li
             except SuchusError as error:
                 failed = str(error)
         curves = {} if outcome is None else outcome.curves
-        numbers = range(2, len(CASES[row.case].grids) + 1)
-        coarser = tuple(one for grid in numbers if (one := outcomes.get(flow_on(row.case, grid))) is not None)
-        entry = Entry(row=row, outcome=outcome, comparison=found, failed=failed, curves=curves, coarser=coarser)
+        entry = Entry(
+            row=row, outcome=outcome, comparison=found, failed=failed, curves=curves, coarser=tuple(there[1:])
+        )  # fmt: skip
         listed.append(replace(entry, convergence=_convergence(entry)))
     return listed
 
@@ -130,10 +132,11 @@ def summary(listed: Sequence[Entry]) -> str:
     above = [entry.row.name for entry, found in judged if not found.agrees]
     ranges = [found.over_range for _, found in judged if found.over_range is not None]
     ranged = f" (of curves {100 * median(ranges):.1f} % of their range)" if ranges else ""
+    coarser = [entry.row.name for entry, _ in judged if entry.outcome is not None and entry.outcome.grid > 1]
     worst, most = max(judged, key=lambda pair: pair[1].rms)
     text = (
-        f"Of {len(listed)} rows {len(judged)} were computed in full: the median rms difference is "
-        f"{100 * median(found.rms for _, found in judged):.1f} % of the peak{ranged}, the largest "
+        f"Of {len(listed)} rows {len(judged)} were computed{'' if coarser else ' in full'}: the median rms difference "
+        f"is {100 * median(found.rms for _, found in judged):.1f} % of the peak{ranged}, the largest "
         f"{100 * most.rms:.1f} % ({worst.row.name}); {len(judged) - len(above)} are within their bounds"
     )
     text += f", above are {', '.join(above)}." if above else "."
@@ -143,6 +146,8 @@ def summary(listed: Sequence[Entry]) -> str:
             f" Three grids converge for {len(known)} of them, whose own uncertainty is {100 * median(known):.1f} % in "
             "the median."
         )
+    if coarser:
+        text += f" The finest grids of {', '.join(coarser)} have not been computed, and the next ones count."
     failed = [entry.row.name for entry in listed if entry.word == "failed"]
     return text + (f" There is no comparison for {', '.join(failed)}, which failed." if failed else "")
 
@@ -223,7 +228,7 @@ def _percent(value: float | None) -> str:
 def _section(entry: Entry) -> list[str]:
     """Return a row's own section."""
     row, case, outcome = entry.row, CASES[entry.row.case], entry.outcome
-    effort = case.quick if outcome is not None and outcome.quick else case.full
+    effort = case.full if outcome is None else case.effort(outcome.grid, quick=outcome.quick)
     lines = ["", f"### {row.title} {{#{row.name}}}", "", *_words(entry)]
     found = entry.comparison
     if found is not None and row.kind == "numbers":
@@ -255,7 +260,10 @@ def _words(entry: Entry) -> list[str]:
         sentences.append(_grid_words(entry))
     if entry.row.note:
         sentences.append(entry.row.note)
-    if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick):
+    if outcome.grid > 1:
+        planned = CASES[entry.row.case].full.cells
+        sentences.append(f"The finest of its grids, of {planned} cells, has not been computed: {outcome.cells} count.")
+    if outcome.digest != digest_of(CASES[entry.row.case], quick=outcome.quick, grid=outcome.grid):
         sentences.append("Computed by an earlier state of the solver or of this set-up.")
     return [" ".join(sentence for sentence in sentences if sentence)]
 
