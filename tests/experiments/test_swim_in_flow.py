@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign
+from suchus.blueprint import read_correction, write
+from suchus.control import Swimming
+from suchus.design import LinkFactors, SectionCorrection
+from suchus.errors import Doubtful, InvalidDesign, UnreadableFile
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free.in_flow import flow_speed, water_of
+from suchus.experiments.swim_free.in_flow import flow_speed, nearer, residual_text, speeds_beside, water_of
+from suchus.land import Run
 from suchus.land.waters import Slice, Space
+from suchus.robots import ROBOTS
+from suchus.water import swim_of
 
 
 def test_the_speed_is_that_of_the_last_cycle():
@@ -52,3 +58,75 @@ def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     assert "residual.md" in outcome.tables
     assert "swim_in_flow.gif" in outcome.films
     assert "solved together" in outcome.decides
+
+
+def test_a_correction_of_another_reynolds_number_or_robot_is_said(tmp_path):
+    caiman = EXPERIMENTS["swim_free"]
+    link = LinkFactors(bodies=("pelvis",), added=2.0, drag=3.0)
+    file = write(SectionCorrection(name="found", reynolds=(7e3, 7e3), links=(link,)), tmp_path / "found.toml")
+    one = replace(caiman, correction=str(file))
+    assert one._lake.correction is not None
+    assert one._lake.correction.factors == {"pelvis": link}
+    with pytest.warns(
+        Doubtful, match=r"'found' of the section model was found at f L2 / nu = 7e\+03, and this swim is at"
+    ):
+        one._doubt_correction()
+    with pytest.raises(InvalidDesign, match=r"factors for pelvis, and robot 'swimmer' has"):
+        replace(one, robot=ROBOTS["swimmer"]).quick().simulate()
+    with pytest.raises(UnreadableFile, match=r"there is no file"):
+        replace(caiman, correction=str(tmp_path / "none.toml")).quick().simulate()
+
+
+def test_the_page_says_whether_a_correction_is_earned():
+    names = ("rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high")
+    values = {f"residual_{name}": ("part", [1.0]) for name in (*names, "r2_fitted", "r2_held_out")}
+    about = {"part_kind": ("part", ["link"]), "reynolds": ((), 7e3)}
+    record = xr.Dataset(values | about, coords={"part": ["link_1"]})
+    assert "earned" not in residual_text(record)
+    assert "None is earned, and no file is written." in residual_text(record, "| link |\n")
+    assert "`correction.toml` beside this page" in residual_text(record, "| link |\n", is_earned=True)
+
+
+@pytest.mark.slow("three swims of five cycles in a slice")
+def test_what_swims_in_a_slice_earn_is_a_file_that_is_taken(tmp_path):
+    asked = replace(
+        EXPERIMENTS["swim_free"].quick(), water="slice", cells=48, reynolds=1500.0, flow_cycles=5,
+        in_flow=("whole", "tail_only", "trunk_only"),
+    )  # fmt: skip
+    outcome = asked.run()
+    text = outcome.tables["residual.md"]
+    assert "R2 in tail_only, shipped | corrected | R2 in trunk_only" in text
+    assert text.count("| yes |") > 0  # plane sections feel several times what round ones do
+    is_nearer = "speeds are nearer to the flow" in text
+    assert is_nearer or "speeds are no nearer to the flow" in text
+    assert ("correction.toml" in outcome.tables) == is_nearer
+    links = tuple(LinkFactors(bodies=(one.name,), added=1.0, drag=3.0) for one in asked.robot.axis)
+    file = write(SectionCorrection(name="mine", reynolds=(7e3, 7e3), links=links), tmp_path / "mine.toml")
+    assert read_correction(file).links == links
+    with pytest.warns(Doubtful, match="may mislead"):
+        other = replace(asked, water="sections", correction=str(file)).run()
+    plain, corrected = (one.measures["speed_whole"].value for one in (outcome, other))
+    assert abs(corrected - plain) > 0.02 * abs(plain)
+
+
+def test_forces_that_are_nearer_do_not_earn_a_correction_whose_speeds_are_not():
+    assert nearer([0.02, 0.0], [0.07, 0.03], [0.05, 0.03])
+    assert not nearer([0.02, 0.0], [0.07, -0.01], [0.07, 0.05])
+    assert not nearer([0.02], [0.05], [0.05])
+
+
+@pytest.mark.slow("six swims by sections")
+def test_speeds_beside_a_flow_are_of_its_water_and_decide():
+    robot = ROBOTS["floating_caiman"]
+    gait = swim_of(robot, frequency=1.0)
+    run = Run(robot=robot, gait=gait, water="space", control=Swimming(ramp=1.0), label="tail_only")
+    links = tuple(LinkFactors(bodies=(one.name,), added=1.0, drag=3.0) for one in robot.axis)
+    factors = SectionCorrection(name="mine", reynolds=(7e3, 7e3), links=links)
+    text, _ = speeds_beside([run], [0.0], 2, 1.5e-4, factors)
+    row = next(line for line in text.splitlines() if line.startswith("| tail_only"))
+    shipped, corrected = (1e-3 * float(cell.split()[0]) for cell in row.split("|")[3:5])
+    assert abs(shipped - corrected) > 1e-3
+    for at, expected in ((corrected, True), (shipped, False)):
+        text, is_nearer = speeds_beside([run], [at], 2, 1.5e-4, factors)
+        assert is_nearer is expected
+        assert ("no file is written" in text) is not expected

@@ -1,5 +1,6 @@
 """Robots, gaits and servos as TOML files that people write, and every mistake in them named at once."""
 
+from suchus.blueprint.corrections import read_correction
 from suchus.blueprint.gaits import read_gait
 from suchus.blueprint.mistakes import MistakenFile
 from suchus.blueprint.motors import read_motors
@@ -11,6 +12,7 @@ __all__ = [
     "described",
     "described_robot",
     "read",
+    "read_correction",
     "read_gait",
     "read_motors",
     "render",

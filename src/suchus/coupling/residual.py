@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.signal import savgol_filter
 
 from suchus import rotation
@@ -68,6 +68,52 @@ def residual_table(
         the section model's, ``r2`` as the model is shipped, factors ``added`` and ``drag`` on its two parts that are
         fitted to the first half of the cycles, with their intervals, and ``r2_held_out`` of the fit in the second half.
     """
+    parts = sections_beside(robot, record, first=first, viscosity=viscosity)
+    halves = (
+        parts.keep & (parts.time < 0.5 * (first + parts.time[-1])),
+        parts.keep & (parts.time >= 0.5 * (first + parts.time[-1])),
+    )
+    rows = [
+        _row(parts.flow[:, k], parts.added[:, k], parts.drag[:, k], parts.keep, halves, period / parts.step)
+        for k in range(len(parts.names))
+    ]
+    names = (
+        "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_fitted",
+        "r2_held_out",
+    )  # fmt: skip
+    data = {f"residual_{name}": ("part", [row[k] for row in rows]) for k, name in enumerate(names)}
+    kind = ["link"] * parts.links + ["joint"] * (len(parts.names) - parts.links)
+    return xr.Dataset({**data, "part_kind": ("part", kind)}, coords={"part": parts.names})
+
+
+class SectionsBeside(NamedTuple):
+    """What a flow did to links and joints along a record, and the two parts of what sections say of the same motion."""
+
+    names: list[str]
+    """Links from the head on, then joints."""
+    links: int
+    """How many of them are links [-]."""
+    time: Float[np.ndarray, " sample"]
+    """[s]."""
+    keep: Bool[np.ndarray, " sample"]
+    """Whether each sample counts [-]."""
+    flow: Float[np.ndarray, "sample part"]
+    """Force of the flow across each link, moment at each joint [N, N m]."""
+    added: Float[np.ndarray, "sample part"]
+    """The sections' part by the acceleration, with what is shed."""
+    drag: Float[np.ndarray, "sample part"]
+    """Their part by the speed."""
+    joints: list[str]
+    """Lateral joints [-]."""
+
+    @property
+    def step(self) -> float:
+        """From sample to sample [s]."""
+        return float(self.time[1] - self.time[0])
+
+
+def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
+    """Return what the flow of a record did, and beside it the section model; see ``residual_table``."""
     joints = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
     motion = motion_of(record, joints)
     bare = with_values(robot, {"hull": None})
@@ -75,21 +121,10 @@ def residual_table(
     still = replace(lake, added_mass=0.0)
     whole, dragged = (_across(sections_along(bare, joints, *motion, one), motion) for one in (lake, still))
     time = record.time.values
-    flow = _across(_flow_loads(record, joints), motion)
     keep = (time >= first) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
-    halves = keep & (time < 0.5 * (first + time[-1])), keep & (time >= 0.5 * (first + time[-1]))
-    parts = [str(name) for name in record.link.values] + joints
-    rows = [
-        _row(flow[:, k], whole[:, k] - dragged[:, k], dragged[:, k], keep, halves, period / float(time[1] - time[0]))
-        for k in range(len(parts))
-    ]
-    names = (
-        "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_fitted",
-        "r2_held_out",
-    )  # fmt: skip
-    data = {f"residual_{name}": ("part", [row[k] for row in rows]) for k, name in enumerate(names)}
-    kind = ["link"] * record.sizes["link"] + ["joint"] * len(joints)
-    return xr.Dataset({**data, "part_kind": ("part", kind)}, coords={"part": parts})
+    names = [str(name) for name in record.link.values] + joints
+    flow = _across(_flow_loads(record, joints), motion)
+    return SectionsBeside(names, record.sizes["link"], time, keep, flow, whole - dragged, dragged, joints)
 
 
 def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
@@ -116,7 +151,8 @@ def r2(values: np.ndarray, model: np.ndarray) -> float:
     return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
 
 
-def _fitted(values: np.ndarray, added: np.ndarray, drag: np.ndarray) -> np.ndarray:
+def fitted(values: np.ndarray, added: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    """Return the factors on two parts with which their sum comes nearest to values, shape (2,) [-]."""
     found, *_ = np.linalg.lstsq(np.column_stack([added, drag]), values, rcond=None)
     return np.asarray(found)
 
@@ -126,8 +162,8 @@ def _row(
     cycle: float,
 ) -> list[float]:  # fmt: skip
     one, other = halves
-    factors = _fitted(values[one], added[one], drag[one])
-    draws = _drawn(values[one], added[one], drag[one], max(round(0.5 * cycle), 2))
+    factors = fitted(values[one], added[one], drag[one])
+    draws = drawn(values[one], added[one], drag[one], max(round(0.5 * cycle), 2))
     low, high = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
 
     def fit(where: np.ndarray) -> float:
@@ -140,14 +176,14 @@ def _row(
     ]  # fmt: skip
 
 
-def _drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
+def drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
     """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2); NaN of too few blocks."""
     if len(values) < BLOCKS * block:
         return np.full((DRAWS, 2), np.nan)
     rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)
     out = np.empty((DRAWS, 2))
     for k in range(DRAWS):
-        start = rng.integers(max(len(values) - block, 0) + 1, size=count)
-        index = (start[:, None] + np.arange(min(block, len(values)))).ravel()
-        out[k] = _fitted(values[index], added[index], drag[index])
+        start = rng.integers(len(values), size=count)
+        index = ((start[:, None] + np.arange(block)) % len(values)).ravel()  # each sample is drawn as often
+        out[k] = fitted(values[index], added[index], drag[index])
     return out

@@ -3,6 +3,7 @@
 from suchus.design.article import crocodile, tables_of
 from suchus.design.body import Robot
 from suchus.design.chosen import Chosen, unit_at, value_at, with_values
+from suchus.design.correction import LinkFactors, SectionCorrection
 from suchus.design.ground import Contact
 from suchus.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring, Turn
 from suchus.design.hull import Chamber, Foam, Hull
@@ -68,10 +69,12 @@ __all__ = [
     "LimbPlace",
     "LinearActuator",
     "Link",
+    "LinkFactors",
     "Motor",
     "Pelvis",
     "Robot",
     "Rod",
+    "SectionCorrection",
     "Segment",
     "Servo",
     "Shell",

@@ -11,10 +11,12 @@ from mujoco.batch import Batch, SimulationError
 
 from suchus import hydro, threads
 from suchus.design import Robot, layout
+from suchus.design.correction import SectionCorrection
 from suchus.design.ground import Ground, Relief
 from suchus.design.pieces import pieces
 from suchus.land import wetting
 from suchus.land.afloat import surfaced
+from suchus.land.corrected import correct
 from suchus.land.lake import Waters, gravity, up
 from suchus.land.run import Afloat, Run
 from suchus.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
@@ -90,13 +92,14 @@ class SimulationBatch:
     """
 
     def __init__(self, runs: Sequence[Run], timestep: float) -> None:
-        bodies = [(run.robot, run.ground.relief) for run in runs]
+        corrections = [None if run.lake is None else run.lake.correction for run in runs]
+        bodies = [(run.robot, run.ground.relief, one) for run, one in zip(runs, corrections, strict=True)]
         wet = any(run.lake is not None or run.solved is not None for run in runs)
         if wet:
             wetting.install()
         room = max(len(pieces(run.robot)) for run in runs) if wet else 0
         solved = runs[0].solved is not None
-        models = {body: _model(body[0], timestep, body[1], room, solved=solved) for body in dict.fromkeys(bodies)}
+        models = {body: _model(body, timestep, room, solved=solved) for body in dict.fromkeys(bodies)}
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
@@ -403,15 +406,20 @@ class SimulationBatch:
             self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
 
 
-def _model(robot: Robot, timestep: float, relief: Relief | None, room: int, *, solved: bool = False) -> Any:
+def _model(
+    body: tuple[Robot, Relief | None, SectionCorrection | None], timestep: float, room: int, *, solved: bool = False
+) -> Any:  # fmt: skip
     """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
 
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
     """
+    robot, relief, correction = body
     if room:
         made = wet_model(robot, timestep, relief, room, acting=True, solved=solved)
     else:
         made = compile_model(robot, timestep, relief)
     model = copy.copy(made)
+    if correction is not None:
+        correct(model, correction)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     return model

@@ -13,8 +13,9 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import hydro
-from suchus.design import GRAVITY, Robot
+from suchus.design import GRAVITY, Robot, layout
 from suchus.design.checks import Checks, Course
+from suchus.design.correction import SectionCorrection
 from suchus.design.ground import Ground
 from suchus.design.water import Water
 from suchus.errors import InvalidDesign
@@ -82,6 +83,9 @@ class Lake:
     """Factor on the added mass of all pieces [-]."""
     shedding: float = 1.0
     """Factor on the momentum that is shed at the end of the tail [-]."""
+    correction: SectionCorrection | None = None
+    """Factors on what each link's sections feel, as a flow found them at one Reynolds number; None leaves all as they
+    are. ``coupling.earned_correction`` makes one."""
 
     def __post_init__(self) -> None:
         with Checks("lake", self) as check:
@@ -128,15 +132,20 @@ class Lake:
 
 def lake_text(lake: Lake | None) -> str:
     """Return a lake as JSON text; the empty one stands for none."""
-    return "" if lake is None else json.dumps(asdict(lake), sort_keys=True)
+    said = {} if lake is None else asdict(lake)
+    if said.get("correction", 0) is None:
+        del said["correction"]
+    return json.dumps(said, sort_keys=True) if said else ""
 
 
 def check_lake(robot: Robot, lake: Lake) -> None:
-    """Refuse an air fraction that a robot's hull has no air for.
+    """Refuse an air fraction that a robot's hull has no air for, and a correction of another robot.
 
     Raises:
-        InvalidDesign: air is let out, and the robot has no hull with air.
+        InvalidDesign: air is let out, and the robot has no hull with air; or it lacks a body that is corrected.
     """
+    if lake.correction is not None:
+        lake.correction.check(tuple(body.name for body in layout(robot).bodies), robot.name)
     hull = robot.hull
     if (hull is None or hull.air == 0.0) and lake.air_fraction != 1.0:
         raise InvalidDesign(

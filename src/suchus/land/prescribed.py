@@ -23,6 +23,7 @@ from suchus.design.pieces import pieces
 from suchus.hydro import column, packed, unpacked
 from suchus.hydro.table import HEADER, WIDTH
 from suchus.land import wetting
+from suchus.land.corrected import correct
 from suchus.land.lake import DEEPEST, Lake
 from suchus.model.build import SNOUT
 from suchus.model.wet import wet_model
@@ -175,6 +176,16 @@ def sections_along(
     return SectionLoads(links, moments)
 
 
+def link_bodies(robot: Robot, joints: Sequence[str]) -> list[tuple[str, ...]]:
+    """Return the bodies of each link between two lateral joints, from the head on."""
+    found: list[list[str]] = [[]]
+    for segment in robot.axis:
+        found[-1].append(segment.name)
+        if any(hinge.name in joints for hinge in segment.hinges):
+            found.append([])
+    return [tuple(one) for one in found]
+
+
 def _limbless(robot: Robot) -> tuple[Robot, dict[str, str]]:
     """Return a robot without limbs, and what its hinges that had another name are called there.
 
@@ -204,6 +215,8 @@ class _Submerged:
         wetting.install()
         self._model = copy(wet_model(bare, _TIMESTEP, None, len(pieces(bare)), acting=True))
         self._model.opt.gravity[:] = 0.0
+        if lake.correction is not None:
+            correct(self._model, lake.correction)
         self._data = mujoco.MjData(self._model)
         self._lake = replace(lake, level=DEEPEST)
         self._hinges = yaw_hinges(robot)
@@ -268,14 +281,7 @@ class _Submerged:
 
     def links(self, joints: Sequence[str]) -> list[list[int]]:
         """Return the bodies of each link between two of the lateral joints, from the head on."""
-        model, robot = self._model, self._robot
-        names = [segment.name for segment in robot.axis]
-        found: list[list[int]] = [[]]
-        for segment, name in zip(robot.axis, names, strict=True):
-            found[-1].append(int(model.body(name).id))
-            if any(hinge.name in joints for hinge in segment.hinges):
-                found.append([])
-        return found
+        return [[int(self._model.body(name).id) for name in names] for names in link_bodies(self._robot, joints)]
 
     def only(self, bodies: Sequence[int]) -> "_Submerged":
         """Return the same where water acts on some of the bodies alone."""

@@ -4,15 +4,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
+from warnings import warn
 
 import numpy as np
 import xarray as xr
 
 from suchus import rotation
+from suchus.blueprint import read_correction, render
 from suchus.control import Swimming
-from suchus.design import GRAVITY, Robot, with_spring, with_values
+from suchus.design import GRAVITY, Robot, SectionCorrection, with_spring, with_values
 from suchus.design.checks import Checks
 from suchus.design.water import Water
+from suchus.errors import Doubtful
 from suchus.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments._replayed import replayed
 from suchus.experiments._similar import similar
@@ -30,6 +33,7 @@ from suchus.experiments.swim_free.in_flow import (
 from suchus.figures.vortices import film_vortices
 from suchus.land import Lake, Run, simulate
 from suchus.land.afloat import check_floats
+from suchus.land.lake import check_lake
 from suchus.land.waters import Form
 from suchus.metrics import swim_numbers
 from suchus.motion import LIMBS_BACK, Gait, suits
@@ -118,6 +122,9 @@ class SwimFree(Experiment):
     """Frequency times length squared over viscosity in the flow [-], chosen for what the cells carry."""
     flow_cycles: int = 4
     """Cycles that are swum in the flow, from rest; speeds are of the last [-]."""
+    correction: str = ""
+    """File with factors on the section model, such as the ``correction.toml`` of a run in a flow. All swims by sections
+    then have them, and a line says if they are at another Reynolds number; empty leaves the model as it is."""
     tail_height: float = 0.0
     """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
     keep: str = ""
@@ -159,6 +166,22 @@ class SwimFree(Experiment):
         )  # fmt: skip
 
     @property
+    def _correction(self) -> SectionCorrection | None:
+        return read_correction(self.correction) if self.correction else None
+
+    @property
+    def _lake(self) -> Lake:
+        """The water of the swims by sections."""
+        return Lake(level=self.level, correction=self._correction)
+
+    def _doubt_correction(self) -> None:
+        """Say if the correction that is asked for was found at another Reynolds number."""
+        if self._correction is not None:
+            doubt = self._correction.outside(self.frequency * self.robot.length**2 / Water().viscosity)
+            if doubt:
+                warn(doubt, Doubtful, stacklevel=2)
+
+    @property
     def _duration(self) -> float:
         return (self.settle + self.cycles) / self.frequency
 
@@ -166,6 +189,8 @@ class SwimFree(Experiment):
         """Swim in every motion, stiffer, steered, in other waters, and at half the time step."""
         check_kept(self.keep)
         check_floats(self.robot, Lake(level=self.level))
+        check_lake(self.robot, self._lake)
+        self._doubt_correction()
         motion = swim_of(
             self.robot, frequency=self.frequency, reading=self.reading, limbs=(LIMBS_BACK[0], self.limb_pitch)
         )
@@ -195,13 +220,16 @@ class SwimFree(Experiment):
         )
         if not flow:
             return Simulated(record=record, replays=self._replays(record))
-        found, first = swum(flow, self.flow_cycles, self.keep, progress)
+        found, first, judgement, correction = swum(flow, self.flow_cycles, self.keep, progress)
         record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
         record.attrs["flow"] = self.water
         films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
         return Simulated(
             record=record, replays={**self._replays(record), **self._flow_replay(first)}, films=films,
-            tables={"residual.md": residual_text(record)},
+            tables={
+                "residual.md": residual_text(record, judgement, is_earned=correction is not None),
+                **({} if correction is None else {"correction.toml": render(correction)}),
+            },
             kept=all_kept(self.keep, flow_kept([run.label for run in flow])),
         )  # fmt: skip
 
@@ -230,7 +258,7 @@ class SwimFree(Experiment):
 
     def _deep(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
         """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
-        runs = submerged.deep_runs(self.robot, motion, Lake(level=self.level), self.depth)
+        runs = submerged.deep_runs(self.robot, motion, self._lake, self.depth)
         duration = (self.dive + self.cycles) / self.frequency
         return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
 
@@ -250,7 +278,7 @@ class SwimFree(Experiment):
 
     def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
         """Return every run; their labels say what they are."""
-        lake, whole = Lake(level=self.level), motions["whole"]
+        lake, whole = self._lake, motions["whole"]
         control = Swimming(ramp=1.0 / self.frequency)
         runs = [
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)

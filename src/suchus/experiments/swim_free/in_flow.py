@@ -2,17 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from suchus.control import Swimming
-from suchus.coupling import Swim, residual_table
-from suchus.design import Robot
+from suchus.coupling import Swim, earned_correction, judgement_text, residual_table
+from suchus.coupling.earned import LinkJudgement
+from suchus.design import Robot, SectionCorrection
+from suchus.design.water import Water
 from suchus.errors import Diverged
 from suchus.experiment import Measure, Measures, Progress, staged
-from suchus.land import Run
+from suchus.land import Lake, Run, simulate
 from suchus.land.waters import Slice, Space
 from suchus.motion import Gait
 from suchus.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
@@ -53,8 +56,21 @@ def flow_kept(labels: Sequence[str]) -> list[str]:
     return [f"flow {label}" for label in labels]
 
 
-def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return what is kept of swims in a flow, and the record of the first.
+class InFlow(NamedTuple):
+    """What became of the swims in a flow."""
+
+    kept: xr.Dataset
+    """What is kept of them."""
+    first: xr.Dataset
+    """Record of the first."""
+    judgement: str
+    """Whether they earn a correction of the section model, link by link, as Markdown."""
+    correction: SectionCorrection | None
+    """The correction that they have earned; None if they have none."""
+
+
+def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InFlow:
+    """Swim in a flow.
 
     A later swim that diverges ends there, with NaN beyond.
 
@@ -97,10 +113,10 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> tup
     }  # fmt: skip
     water = runs[0].solved
     assert water is not None
-    period = runs[0].gait.period
+    period, viscosity = runs[0].gait.period, swims[0].viscosity
     valid = first.isel(time=np.flatnonzero(np.isfinite(first.coupling_residual.values)))
     table = residual_table(
-        runs[0].robot, valid, period=period, first=_GROWN * period, viscosity=swims[0].viscosity
+        runs[0].robot, valid, period=period, first=_GROWN * period, viscosity=viscosity
     )  # fmt: skip
     numbers = {
         "flow_period": ((), period, {"units": "s"}),
@@ -112,7 +128,70 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> tup
         ),
     }  # fmt: skip
     names = {"coordinate": first.coordinate.values, "coordinate_too": first.coordinate_too.values}
-    return xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(seen), first
+    whole = [one for one in records if np.isfinite(one.coupling_residual.values[1:]).all()]
+    correction, found = None, dict[str, LinkJudgement]()
+    if whole and whole[0] is first:
+        others = [run.label for run, one in zip(runs, records, strict=True) if one is not first and _is_in(one, whole)]
+        correction, found = earned_correction(
+            runs[0].robot, whole, period=period, first=_GROWN * period, viscosity=viscosity,
+            name=f"{runs[0].robot.name}_{water.reynolds:.0f}",
+        )  # fmt: skip
+    kept = xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(seen)
+    text = judgement_text(found, others) if found else ""
+    if correction is not None:
+        held_out = [run for run in runs[1:] if run.label in others]
+        said, is_nearer = speeds_beside(held_out, [flow_speed(kept, name) for name in others], cycles, viscosity,
+                                        correction)  # fmt: skip
+        text, correction = text + said, correction if is_nearer else None
+    return InFlow(kept, first, text, correction)
+
+
+def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
+    """Return whether corrected speeds miss those in the flow by less in the mean than the model's as it is shipped."""
+    misses = [float(np.abs(np.subtract(one, flow)).mean()) for one in (shipped, corrected)]
+    return misses[1] < misses[0]
+
+
+def speeds_beside(
+    runs: Sequence[Run], in_flow: Sequence[float], cycles: int, viscosity: float, correction: SectionCorrection
+) -> tuple[str, bool]:
+    """Swim by sections as in the flow, with a correction and without, at the flow's viscosity and below the surface.
+
+    Forces that come nearer need not make speeds do so: a speed is a small difference of thrust and drag.
+
+    Args:
+        runs: in the flow, those that the fit did not see.
+        in_flow: their speeds there [m/s].
+        cycles: that are swum [-].
+        viscosity: kinematic, of the flow's water [m2/s].
+        correction: that forces have earned.
+
+    Returns:
+        What is to be said of it, as Markdown, and whether the speeds are nearer too.
+    """
+    water = Water(viscosity=viscosity)
+    lakes = [Lake(level=2 * runs[0].robot.length, water=water, correction=one) for one in (None, correction)]
+    both = [replace(run, water=None, lake=lake) for lake in lakes for run in runs]
+    period = runs[0].gait.period
+    x = simulate(both, duration=cycles * period).centre_of_mass.sel(xyz="x")
+    late = x.sel(time=slice((cycles - 1) * period - 1e-9, None)).transpose("run", "time").values
+    speeds = ((late[:, -1] - late[:, 0]) / period).reshape(2, len(runs))
+    is_nearer = nearer(in_flow, speeds[0], speeds[1])
+    head = "\n| speed in the last cycle | flow | sections as shipped | corrected |\n|---|---:|---:|---:|\n"
+    rows = [
+        f"| {run.label} | {1e3 * flow:.1f} mm/s | {1e3 * shipped:.1f} | {1e3 * corrected:.1f} |\n"
+        for run, flow, shipped, corrected in zip(runs, in_flow, *speeds, strict=True)
+    ]
+    end = (
+        "nearer to the flow with the factors"
+        if is_nearer
+        else "no nearer to the flow with the factors, so that no file is written"
+    )
+    return f"{head}{''.join(rows)}\nIn the mean these speeds are {end}.\n", is_nearer
+
+
+def _is_in(record: xr.Dataset, those: Sequence[xr.Dataset]) -> bool:
+    return any(record is one for one in those)
 
 
 class _Film:
@@ -190,8 +269,25 @@ def flow_measures(record: xr.Dataset) -> Measures:
     return found
 
 
-def residual_text(record: xr.Dataset) -> str:
-    """Return the table of the section model beside the flow, as Markdown."""
+def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = False) -> str:
+    """Return the table of the section model beside the flow, as Markdown.
+
+    Args:
+        record: of the experiment.
+        judgement: see ``InFlow``; empty for none.
+        is_earned: whether a correction is written beside it.
+    """
+    earned = (
+        "\n## Whether a correction is earned\n\nThe factors are fitted to the whole of the first swim and held against "
+        "the other ones, which the fit never saw: they are offered where they leave less of the force unexplained in "
+        "each of them, by more than its cycles differ, and swims by sections with them come nearer to its speeds. "
+        + (
+            "`correction.toml` beside this page has what is offered, for `suchus run swim_free --correction FILE`.\n\n"
+            if is_earned
+            else "None is earned, and no file is written.\n\n"
+        )
+        + judgement
+    )
     head = (
         "| part | rms in the flow | rms by sections | R2 | added mass x | drag x | R2 fitted | R2 held out |\n"
         "|---|---:|---:|---:|---:|---:|---:|---:|\n"
@@ -213,6 +309,7 @@ def residual_text(record: xr.Dataset) -> str:
         "cycles and held against the second; intervals need a half of one and a half cycles or more.\n\n"
         + head
         + "".join(rows)
+        + (earned if judgement else "")
     )
 
 
