@@ -50,6 +50,18 @@ def test_derivatives_are_those_of_the_places(name):
             assert here.turning[:, k] == pytest.approx((ahead.heading - behind.heading) / (2 * step), abs=1e-8)
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_a_force_spread_along_a_part_works_by_the_mean_of_its_velocity(name):
+    one = chain(name)
+    place, fine = bent(one, 0.5), 400
+    line, points = one.midline(place), one.centres(place)
+    for part, (a, b) in enumerate(zip(one.ends[:-1], one.ends[1:], strict=True)):
+        s = a + (b - a) * (np.arange(fine) + 0.5) / fine
+        for mean, values in ((points.place[:, part], line.place), (points.along[:, part, 3], line.along[:, :, 3])):
+            exact = [np.interp(s, one.outline.s, row).mean() for row in values]
+            assert mean == pytest.approx(exact, abs=1e-6)
+
+
 def test_the_work_of_a_force_is_that_of_its_parts():
     one, rng = chain("floating_caiman"), np.random.default_rng(1)
     place, rate = bent(one), rng.normal(size=one.size)

@@ -222,7 +222,7 @@ class SlipWater(Fluid):
                 sums, out[c], blend[c], bare[c], self._flat(mean), everywhere[c], mu1[c], p, owners[c], c, near, inner,
                 dt, keep,
             )  # fmt: skip
-        dilatation_work(sums, p, self._flat(self.source), owners[0], near, inner, dt)
+        dilatation_work(sums, p, self._flat(self.source), np.stack(owners), near, inner, dt)
         self.given += weight * sums
 
 

@@ -187,3 +187,22 @@ def test_the_middle_of_a_thick_slice_belongs_to_its_parts():
         x, row = faces.points[0, inside], faces.row[inside]
         assert x.size > 300
         assert row.tolist() == np.searchsorted([0.3, 0.6], x, side="right").tolist()
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi / 2])
+def test_what_presses_inside_a_part_is_where_the_part_is(turn):
+    """Of a pressure of 1 each part has its area and the place of its middle, wherever its ends cut the cells."""
+    s = np.linspace(0.0, 1.0, 65)
+    zero, wide = 0 * s, np.full(65, 0.12)
+    spine = flow.MidlineState(x=s, y=zero, heading=zero, half_width=wide, x_rate=zero, y_rate=zero, heading_rate=zero)
+    cuts = tuple(np.linspace(0.11, 0.89, 10))
+    shape = flow.Midline(spine=lambda _: spine, deforms=False, cuts=cuts)
+    grid = flow.Grid.covering((-0.5, 1.5), (-0.5, 1.5), cell=1 / 32)
+    body = flow.Body(shape=shape, motion=flow.Pose(angle=turn), name="bar")
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=2e-3, bodies=(body,), coarse=True))
+    found = sim.water.pressures(np.ones_like(sim.water.p), 1.0)[1:-1]
+    h, along = grid.cell, 1 + int(turn > 0)
+    middles = found[:, along] / found[:, 0] * h + grid.origin[along - 1]
+    ends = np.array(cuts)
+    assert middles == pytest.approx(0.5 * (ends[1:] + ends[:-1]), abs=0.15 * h)  # half a cell, where faces decide
+    assert found[:, 0].mean() * h * h == pytest.approx(0.24 * float(np.diff(ends).mean()), rel=0.05)

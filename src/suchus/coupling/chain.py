@@ -177,20 +177,28 @@ class MidlineChain:
         return np.asarray((1 - share) * values[..., k, :] + share * values[..., k + 1, :])
 
     @cached_property
-    def _middles(self) -> np.ndarray:
-        """Arc lengths of the middles of the parts [m]."""
-        return np.asarray(0.5 * (self.ends[1:] + self.ends[:-1]))
+    def _means(self) -> Float[np.ndarray, "part station"]:
+        """How the mean over each part is made of values at the stations, linear between them [-]."""
+        s = self.outline.s
+        weights = np.zeros((len(self.ends) - 1, s.size))
+        for part, (a, b) in enumerate(pairwise(self.ends)):
+            nodes = np.array([a, *s[(s > a) & (s < b)], b])
+            size = 0.5 * np.diff(nodes) / (b - a)
+            shares = np.array([np.interp(nodes, s, unit) for unit in np.eye(s.size)])
+            weights[part] = shares[:, :-1] @ size + shares[:, 1:] @ size
+        return weights
 
     def centres(self, place: np.ndarray) -> Points:
-        """Return the middles of the parts in a posture, which are worked out once as ``midline`` is."""
+        """Return the centres of the parts in a posture, which are worked out once as ``midline`` is.
+
+        They are means over each part, which bends: a force that is spread along it works by the mean velocity.
+        """
         known, key = self._recent_centres, place.tobytes()
         if key not in known:
             if len(known) == RECENT:
                 del known[next(iter(known))]
-            line = self.midline(place)
-            flat = np.concatenate([line.place[0, :, None], line.place[1, :, None], line.heading[:, None]], axis=1)
-            at, moves = (self._between(self._middles, each) for each in (flat, line.along))
-            known[key] = Points(at[:, :2].T, at[:, 2], moves, self._between(self._middles, line.turning))
+            line, mean = self.midline(place), self._means
+            known[key] = Points(line.place @ mean.T, mean @ line.heading, mean @ line.along, mean @ line.turning)
         return known[key]
 
     @cached_property

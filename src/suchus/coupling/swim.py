@@ -4,7 +4,10 @@ In each step of the flow the robot goes first, under the force of the last step 
 then the robot goes through the same time again under the force that the flow found, and the water gets what that
 changes by one solve of the pressure equation (``flow.twist``). With F the generalised force of the water, A the added
 mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
-were found last. What the robot was told in its last go, less what the flow says then, is the residual.
+were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
+lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
+momentum is the impulse of the water. A is one that answers as the water was seen to answer in each correction
+(Broyden's update), and is computed anew as the body bends.
 """
 
 import warnings
@@ -63,10 +66,13 @@ and the change of the acceleration, over its size, at which they have [-]."""
 _CHANGING = (
     "force",
     "push",
+    "owed",
+    "strayed",
     "added",
     "kept",
     "computed",
     "greatest",
+    "greatest_momentum",
     "strikes",
     "effort",
     "start_added",
@@ -195,10 +201,13 @@ class Swim:
         self._effort = 0.0
         self._force = np.zeros(self.chain.size)
         self._push = np.zeros(self.chain.size)
+        self._owed = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
+        self._strayed = np.zeros(2)  # see ``Stretch.strayed``; of the last step
         self._added = np.zeros((self.chain.size, self.chain.size))
         self._kept = self._added
         self._computed: np.ndarray | None = None
         self._greatest, self._strikes = 0.0, 0
+        self._greatest_momentum = 0.0
         self._stopped: set[str] = set()
         self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
         self.samples = Samples()
@@ -396,6 +405,23 @@ class Swim:
         """Return the size of a generalised force, each coordinate's over the root of its inertia."""
         return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added)).sum()))
 
+    def _learn(self, push: np.ndarray, answered: np.ndarray) -> np.ndarray:
+        """Let the added mass be one that answers an acceleration as the water was seen to; return what it gains.
+
+        Args:
+            push: acceleration more.
+            answered: force of the water against it.
+        """
+        weighted = np.diag(self.stepper.mass() + self._added) * push
+        gained = np.outer(answered - self._added @ push, weighted / max(float(weighted @ push), 1e-300))
+        self._added = self._added + gained
+        return gained
+
+    def _adrift(self, owed: np.ndarray) -> float:
+        """Return the size of an impulse on the whole robot over the greatest momentum that it has had [-]."""
+        greatest = self._greatest_momentum
+        return float(np.hypot(*owed[:2])) / greatest if greatest > 0.0 else 0.0
+
     def step(self, until: float) -> None:
         """Take one step of the flow and of the robot that does not go beyond a time [s].
 
@@ -417,7 +443,8 @@ class Swim:
         h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
         stepper.begin()
         newton = self._newton()
-        end, push = self._gone(count, self._force, self._push, self._push, newton)
+        foreseen = self._strayed
+        end, push = self._gone(count, self._force + _lessened(self._owed, foreseen) / h, self._push, self._push, newton)
         told = self._force - self._added @ (push - self._push)
         if not np.isfinite(end.rate).all():
             raise Diverged(
@@ -432,11 +459,13 @@ class Swim:
         found = self._found(began, posture)
         self._greatest = max(self._greatest, self._size(found))
         left = first = self._size(found - told) / max(self._greatest, 1e-300)
-        made, whole = 0, stepper.mass() + self._added
-        while made < self.water.corrections and left > self.water.tolerance:
+        stretch, made, mass = stepper.account(), 0, stepper.mass()
+        missed = _lessened(h * (found - told), stretch.strayed - foreseen)
+        while made < self.water.corrections and max(left, self._adrift(missed)) > self.water.tolerance:
+            foreseen = stretch.strayed
             asked, at = found, push
-            likely = push + np.linalg.solve(whole, found - told)
-            end, push = self._gone(count, asked, at, likely, newton)
+            likely = push + np.linalg.solve(mass + self._added, found - told)
+            end, push = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
             told = asked - self._added @ (push - at)
             other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
@@ -444,16 +473,27 @@ class Swim:
             self.path.go(start, began, start + h, posture)
             sim.accelerate({name: more})
             found = self._found(began, posture)
+            newton += np.linalg.solve(mass + self._kept, self._learn(push - at, asked - found))
             left, made = self._size(found - told) / self._greatest, made + 1
-        stretch = stepper.account()
+            stretch = stepper.account()
+            missed = _lessened(h * (found - told), stretch.strayed - foreseen)
         self._effort += stretch.effort
-        self._note(stretch, found, posture, (first, left), made)
-        self._force, self._push = found, push
+        self._note(stretch, found, self._stirred(stretch, push, h), posture, (first, left), made)
+        self._greatest_momentum = max(self._greatest_momentum, float(np.hypot(*stretch.momentum)))
+        self._force, self._push, self._owed, self._strayed = found, push, missed, stretch.strayed
         self._watch(left)
         self._renew(anew=made > 0 and left > self.water.tolerance)
 
+    def _stirred(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
+        """Return the water's work in a step beyond that of its mean force [J].
+
+        The part of it that answers accelerations changes with these within a step, as servos are commanded anew.
+        """
+        mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
+        return float((self._kept @ push) @ (stretch.way - mean))
+
     def _note(
-        self, stretch: Stretch, found: np.ndarray, posture: ChainState,
+        self, stretch: Stretch, found: np.ndarray, stirred: float, posture: ChainState,
         residual: tuple[float, float], made: int,
     ) -> None:  # fmt: skip
         series = self.series
@@ -465,7 +505,7 @@ class Swim:
         series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
         series.residual.append(residual)
         series.corrections.append(made)
-        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way), -power * h))
+        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way) + stirred, -power * h))
         series.energy.append(stretch.energy)
 
     def _drift(self) -> np.ndarray:
@@ -587,3 +627,8 @@ class Swim:
     def record(self) -> xr.Dataset:
         """Return the record so far, in the schema of a run with ``record.WATER`` and ``record.COUPLED``; NaN beyond."""
         return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
+
+
+def _lessened(impulse: np.ndarray, momentum: np.ndarray) -> np.ndarray:
+    """Return an impulse along the coordinates less a momentum of the whole robot."""
+    return np.concatenate([impulse[:2] - momentum, impulse[2:]])

@@ -88,8 +88,19 @@ def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, plac
                 sums[m, turn + 1] += mean[j - place[w], at] * given
 
 
+@part
+def _to_owners(sums, column, owners, o, at, columns, done):
+    """Add what is done in a cell to the parts that own its faces, to each by as many of these as it has."""
+    axes = len(owners)
+    share = done / (2 * axes)
+    for d in range(axes):
+        behind, beside = (1 if d == axes - 1 else 0), (0 if d == axes - 1 else 1 if d == 0 else columns)
+        sums[owners[d, o, at], column] += share
+        sums[owners[d, o + behind, at + beside], column] += share
+
+
 @compiled
-def dilatation_work(sums, p, source, owner, place, inner, dt):
+def dilatation_work(sums, p, source, owners, place, inner, dt):
     """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
     up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
     wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
@@ -100,15 +111,17 @@ def dilatation_work(sums, p, source, owner, place, inner, dt):
             for i in range(c0, c1):
                 o, at = j - place[w], (row - r0) * columns + i - c0
                 if source[o, at] != 0:
-                    sums[owner[o, at], turn + 1] += dt * np.float64(p[j, row * wide + i]) * source[o, at]
+                    done = dt * np.float64(p[j, row * wide + i]) * source[o, at]
+                    _to_owners(sums, turn + 1, owners, o, at, columns, done)
 
 
 @compiled
-def pressed(sums, p, mu0, owner, place, near, inner, weight):
+def pressed(sums, p, mu0, owners, place, near, inner, weight):
     """Add to ``sums`` (body, 1 + axes) what the pressure does inside the region of each body, times a weight.
 
     Columns: the pressure summed over its cells, each by the body's share, and its first moments from the grid's corner
-    [.., .. cells]. What lies in the window of ``place`` counts; ``owner`` is an array of the window ``near``.
+    [.., .. cells]. What lies in the window of ``place`` counts; ``owners``, one for each axis, are arrays of the window
+    ``near``.
     """
     up, w = len(inner), len(inner) + 2
     wide, columns = signed(row_length(inner, p.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
@@ -125,13 +138,13 @@ def pressed(sums, p, mu0, owner, place, near, inner, weight):
                 share = 1.0 - wet / (2 * up + 2)
                 if share <= 0.0:
                     continue
-                m = owner[j - near[w], (row - n0) * columns + i - n1]
+                o, at = j - near[w], (row - n0) * columns + i - n1
                 done = weight * share * np.float64(p[j, k])
-                sums[m, 0] += done
-                sums[m, 1] += done * (i - PAD + 0.5)
-                sums[m, 2] += done * ((row if up > 1 else j) - PAD + 0.5)
+                _to_owners(sums, 0, owners, o, at, columns, done)
+                _to_owners(sums, 1, owners, o, at, columns, done * (i - PAD + 0.5))
+                _to_owners(sums, 2, owners, o, at, columns, done * ((row if up > 1 else j) - PAD + 0.5))
                 if up > 1:
-                    sums[m, 3] += done * (j - PAD + 0.5)
+                    _to_owners(sums, 3, owners, o, at, columns, done * (j - PAD + 0.5))
 
 
 @compiled

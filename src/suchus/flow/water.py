@@ -475,7 +475,7 @@ class Fluid:
 
     def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
         """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
-        flat = self._flat(p), self._flat(self.widening), self._flat(self.owners[0])
+        flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
         dilatation_work(sums, *flat, self._near, self.inner, weight)
 
     def across(self, p: np.ndarray, weight: float) -> np.ndarray:
@@ -498,7 +498,7 @@ class Fluid:
         """
         sums = np.zeros_like(self.pressed)
         if self.window[1] > self.window[0]:
-            flat = self._flat(p), self._flat(self.mu0), self._flat(self.owners[0])
+            flat = self._flat(p), self._flat(self.mu0), self._flat(np.stack(self.owners))
             pressed(sums, *flat, self._layout[0], self._near, self.inner, weight)
         return sums
 

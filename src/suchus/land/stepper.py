@@ -71,6 +71,10 @@ class Stretch:
     """Kinetic energy at its end, the water's not counted [J]."""
     effort: float
     """Work of the servos, braking counted as much as driving [J]."""
+    momentum: Float[np.ndarray, "2"]
+    """Momentum of the whole robot at its end, along and to the left, the water's not counted [kg m/s]."""
+    strayed: Float[np.ndarray, "2"]
+    """Momentum that the robot gained without a force: MuJoCo's step holds the mass matrix of its start [kg m/s]."""
 
 
 @dataclass(slots=True)
@@ -81,16 +85,23 @@ class _Saved:
     step: int
     last: "_Decision | None"
     passive: np.ndarray
+    bias: np.ndarray
     inertia: np.ndarray
+    carried: np.ndarray
+    momentum: np.ndarray
     decisions: dict[int, "_Decision"] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
 class _Tape:
-    """What was seen in each physics step of a stretch, one a row; of velocities and passive forces also the start."""
+    """What was seen in each physics step of a stretch, one a row.
+
+    Velocities, passive forces and those of the motion itself are of its start too.
+    """
 
     velocity: list[np.ndarray]
     passive: list[np.ndarray]
+    bias: list[np.ndarray]
     served: list[np.ndarray] = field(default_factory=list)
     held: list[np.ndarray] = field(default_factory=list)
     smooth: list[np.ndarray] = field(default_factory=list)
@@ -166,7 +177,7 @@ class Stepper:
         self._served, self._passive, self._held = (
             self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")
         )
-        self._smooth = self._physics.bind("qfrc_smooth")
+        self._smooth, self._bias = self._physics.bind("qfrc_smooth"), self._physics.bind("qfrc_bias")
         self._whole = np.zeros((self.model.nv, self.model.nv))
         self.steps = 0
         self.at_begin: CoordinateState = self.now
@@ -185,7 +196,7 @@ class Stepper:
         self._is_looked_at = False
         self._look()
         self._damping = damping_of(self.model, self._data)
-        self._tape = _Tape([], [])
+        self._tape = _Tape([], [], [])
 
     # --- where it is -------------------------------------------------------------------------------------------
 
@@ -278,23 +289,28 @@ class Stepper:
         rows = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
         return rows, np.array(self.model.M_colind)[: len(rows)]
 
-    def _burdened(self) -> Float[np.ndarray, "dof dof"]:
-        """Return the mass matrix of all that moves, with what it has been burdened with."""
-        self._look()
-        (rows, columns), whole = self._entries, self._whole.copy()
+    def _carried(self) -> Float[np.ndarray, "dof dof"]:
+        """Return what the mass matrix of all that moves has been burdened with."""
+        (rows, columns), whole = self._entries, np.zeros_like(self._whole)
         given = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
-        whole[rows, columns] += given
-        across = rows != columns
-        whole[columns[across], rows[across]] += given[across]
+        whole[rows, columns] = whole[columns, rows] = given
         return whole
+
+    def _momentum(self) -> Float[np.ndarray, "2"]:
+        """Return the momentum of the whole robot along and to the left [kg m/s]."""
+        self._look()
+        return np.asarray(self._whole[:2] @ self._batch.qvel[0])
 
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
         """Begin a stretch here."""
         self.at_begin = self.now
-        state, passive = self._physics.state[0].copy(), self._passive[0].copy()
-        self._saved = _Saved(state, self.steps, self._last, passive, self._burdened())
+        state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
+        carried, momentum = self._carried(), self._momentum()
+        self._saved = _Saved(
+            state, self.steps, self._last, passive, bias, self._whole + carried, carried, momentum
+        )  # fmt: skip
 
     def until(self, time: float, most: int) -> int:
         """Return how many physics steps the next stretch may have, so that none goes beyond a time [s] or a trouble."""
@@ -324,7 +340,7 @@ class Stepper:
         self._applied[0] = 0.0
         self._applied[0, self.dofs] = force
         sensors, speeds, torques = self._batch.sensors[0], self._batch.velocities, self._batch.torques
-        tape = self._tape = _Tape([self._batch.qvel[0].copy()], [saved.passive])
+        tape = self._tape = _Tape([self._batch.qvel[0].copy()], [saved.passive], [saved.bias])
         for _ in range(count):
             if self.steps % self._per_tick == 0:
                 self._decide(saved)
@@ -339,6 +355,7 @@ class Stepper:
                 ) from error  # fmt: skip
             tape.velocity.append(self._batch.qvel[0].copy())
             tape.passive.append(self._passive[0].copy())
+            tape.bias.append(self._bias[0].copy())
             tape.served.append(self._served[0].copy())
             tape.held.append(self._held[0].copy())
             tape.smooth.append(self._smooth[0].copy())
@@ -348,20 +365,23 @@ class Stepper:
 
     def account(self) -> Stretch:
         """Return what became of the robot in the stretch that it went through last."""
-        assert self._saved is not None
+        saved = self._saved
+        assert saved is not None
         tape, dt = self._tape, self.timestep
         rate = np.array(tape.velocity)
         way, gained = 0.5 * dt * (rate[1:] + rate[:-1]), np.diff(rate, axis=0)
         # MuJoCo's implicit step takes dampers and servos at the velocity it leads to: by so much they differ from qfrc
-        later = gained / dt @ self._saved.inertia - np.array(tape.smooth) - np.array(tape.held)
+        later = gained / dt @ saved.inertia - np.array(tape.smooth) - np.array(tape.held)
         damped = -gained @ self._damping
-        self._look()
-        last = rate[-1]
+        last, momentum = rate[-1], self._momentum()
+        pushed = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.held)).sum(axis=0)
+        given = (pushed - saved.carried @ (last - rate[0]))[:2]
         return Stretch(
             way=way.sum(axis=0)[self.dofs],
             worked=float(((np.array(tape.served) + later - damped) * way).sum()),
             yielded=float(((np.array(tape.passive[:-1]) + np.array(tape.held) + damped) * way).sum()),
             energy=0.5 * float(last @ self._whole @ last), effort=dt * sum(tape.power),
+            momentum=momentum, strayed=momentum - saved.momentum - given,
         )  # fmt: skip
 
     def _decide(self, saved: _Saved) -> None:

@@ -36,7 +36,8 @@ class _Resolved:
     """Times that a step's motion is corrected by the forces that it met, and the water with it, at most [-]; one or two
     do where the added mass fits, since each leaves over a twentieth to a quarter."""
     tolerance: float = 5e-3
-    """Force that a step may leave over, over the greatest so far, each coordinate's by the root of its inertia [-]."""
+    """Force that a step may leave over, over the greatest so far, each coordinate's by the root of its inertia; and
+    impulse on the whole robot, over its greatest momentum so far, which is what counts where it is light [-]."""
     renewed: float = 0.25
     """Angle by which a joint turns before the added mass is computed anew [rad]."""
     parts: int = 45
