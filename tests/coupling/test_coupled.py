@@ -65,7 +65,9 @@ def test_the_robots_momentum_is_the_impulse_of_the_water():
 
 def test_momentum_that_comes_from_no_force_is_told():
     """MuJoCo's steps gain some where joints turn fast; a force and a push are none of it."""
-    stepper = Stepper(replace(disturbed(), noise=0.0, faults=()), MidlineChain(Outline(robot(), 33), 45).joints, 0.002, 50)
+    stepper = Stepper(
+        replace(disturbed(), noise=0.0, faults=()), MidlineChain(Outline(robot(), 33), 45).joints, 0.002, 50
+    )
     force = 0.2 * np.cos(np.arange(len(stepper.dofs)))
     carried = stepper.burden(0.5 * stepper.mass())
     strayed, given, most = np.zeros(2), np.zeros(2), 0.0

@@ -180,8 +180,8 @@ def swum(mass_factor=1.0, duration=0.6, **changes):
     return swim, np.array(momenta)
 
 
-@pytest.mark.parametrize(("factor", "told", "missed"), [(1.0, "0.95", 0.05), (0.2, "0.19", 0.1), (0.02, "0.019", 2.0)])
-def test_a_light_robot_and_its_water(factor, told, missed):
+@pytest.mark.parametrize(("factor", "told"), [(1.0, "0.95"), (0.2, "0.19"), (0.02, "0.019")])
+def test_a_light_robot_and_its_water(factor, told):
     swim, momenta = swum(factor)
     record = swim.record().isel(run=0)
     case, grid, box = f"coupled swimmer, {told} of the water's density", "64 cells/L", "moving with it"
@@ -195,10 +195,10 @@ def test_a_light_robot_and_its_water(factor, told, missed):
     note(case, "energy that is missing over the servos' work", energy, "at most 0.001", *shared)
     note(case, "force times velocity less the flow's power, over its work", power, "at most 0.002", *shared)
     note(case, "momentum less the impulse of the water, over its maximum", apart, "at most 0.01", *shared)
-    assert left < 0.02
-    assert energy < 0.005
-    assert power < 0.01
-    assert apart < missed
+    assert left < 0.01
+    assert energy < 1e-3
+    assert power < 2e-3
+    assert apart < 0.01
 
 
 def test_a_swim_on_two_threads():
