@@ -26,6 +26,7 @@ from suchus.motion import roll
 from suchus.progress import silent
 from suchus.record import COUPLED, WATER
 from suchus.water import Outline, swim_of
+from suchus.water.resolved import check_resolved_swim
 from suchus.water.setting import SwimSetting
 
 SLICE = Slice(cells=64, reynolds=1500.0)
@@ -302,6 +303,11 @@ def test_what_ends_a_swim_in_its_first_step_leaves_an_empty_record(monkeypatch):
 def test_cells_too_coarse_for_a_body_are_told_in_cells():
     with pytest.raises(InvalidDesign, match=r"robot 'swimmer' is 0\.04 m thick .* with 40 cells .* least 90 cells"):
         Swim(swim_run(water=Space(cells=40, reynolds=600.0)), 0.1)
+    robot = suchus.ROBOTS["swimmer"]
+    setting = SwimSetting(axes=3, cells=48, viscosity=1e-2, cycles=2)
+    with pytest.raises(InvalidDesign, match=r"robot 'swimmer' is 0\.04 m thick .* with 48 cells .* least 90 cells, or"):
+        check_resolved_swim(robot, swim_of(robot, frequency=1.0), setting)
+    check_resolved_swim(robot, swim_of(robot, frequency=1.0), replace(setting, cells=90))
 
 
 def test_an_added_mass_that_is_less_than_none_is_none():

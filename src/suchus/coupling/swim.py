@@ -33,7 +33,6 @@ from suchus.design.water import Water
 from suchus.errors import Diverged, Doubtful, InvalidDesign, NotConverged, OutsideLimits
 from suchus.fault import check_faults
 from suchus.flow import checkpoint as store
-from suchus.flow.immerse import THINNEST
 from suchus.flow.progress import Bar
 from suchus.land.afloat import check_floats
 from suchus.land.batch import Beginning
@@ -300,28 +299,13 @@ class Swim:
                 shape = flow.Limbed(
                     spine=bare.spine, half_height=bare.half_height, cuts=bare.cuts, limbs=folded(robot)
                 )  # fmt: skip
-        self._check_thickness(shape, grid.cell)
+        setting.check_thickness(robot, shape)
         body = flow.Body(shape=shape, motion=motion, name=robot.name)
         sides = flow.Sides(low=flow.Mirror()) if axes == 3 and not self._linked else flow.Sides()
         return flow.Setup(
             grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
             follow_axes=(True,) * 3 if self._linked else (True, True), tolerance=setting.largest_divergence(),
         )  # fmt: skip
-
-    def _check_thickness(self, shape: flow.SpaceShape | flow.Midline, cell: float) -> None:
-        """Refuse cells so coarse that the robot is nowhere thick enough for them.
-
-        Raises:
-            InvalidDesign: with the cells that would do.
-        """
-        most = float(shape.thickness(0.0)[1].max())
-        if isinstance(shape, flow.SpaceShape) and most < THINNEST * cell:
-            needed = int(np.ceil(THINNEST * self.run.robot.length / most))
-            raise InvalidDesign(
-                f"robot {self.run.robot.name!r} is {most:.3g} m thick at most, and with {self.water.cells} cells a "
-                f"length a cell is {cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least "
-                f'{needed} cells, or water="slice".'
-            )
 
     # --- between the robot's world and the flow's --------------------------------------------------------------
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from suchus import flow
-from suchus.design import WATER_DENSITY
+from suchus.design import WATER_DENSITY, Robot
 from suchus.design.checks import Checks
 from suchus.errors import InvalidDesign
+from suchus.flow.immerse import THINNEST
 
 DENSITY = WATER_DENSITY
 """Of the water [kg/m3]."""
@@ -145,6 +146,21 @@ class SwimSetting:
             cell=length / self.cells,
         )
         return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
+
+    def check_thickness(self, robot: Robot, shape: flow.Shape | flow.SpaceShape) -> None:
+        """Refuse cells in space so coarse that a robot is nowhere thick enough for them.
+
+        Raises:
+            InvalidDesign: with the cells that would do.
+        """
+        most, cell = float(shape.thickness(0.0)[1].max()), robot.length / self.cells
+        if self.in_space and most < THINNEST * cell:
+            needed = int(np.ceil(THINNEST * robot.length / most))
+            raise InvalidDesign(
+                f"robot {robot.name!r} is {most:.3g} m thick at most, and with {self.cells} cells a length a cell is "
+                f"{cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least {needed} cells, or a "
+                "slice."
+            )
 
     def check_margin(self) -> None:
         """Refuse a box in space so narrow that the body would leave it.

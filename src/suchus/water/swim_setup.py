@@ -110,7 +110,9 @@ class ResolvedSwim:
             check_speeds(self.robot, self.motion)
         self._check_layer()
         self.setting.check_margin()
-        self.setup.check()
+        setup = self.setup
+        self.setting.check_thickness(self.robot, setup.bodies[0].shape)
+        setup.check()
 
     def _check_layer(self) -> None:
         length, setting = self.robot.length, self.setting
