@@ -9,6 +9,8 @@ from suchus.flow.linked import between
 
 HINGE = np.array([0.1, 0.02, 0.0])
 ROD = flow.Spherocylinder(length=0.3, radius=0.05)
+OFF = 0.03
+"""How far the rod's middle is from the origin of its link [m]."""
 
 
 def states(position, vector, velocity, spin):
@@ -21,7 +23,7 @@ def states(position, vector, velocity, spin):
 def paddle(time, rate=2.0):
     """A link that turns about a hinge, beside one that rests."""
     angle, axis = 0.3 + rate * time, np.array([0.0, 0.6, 0.8])
-    arm = rotation.turn(angle * axis) @ np.array([0.15, 0.0, 0.0])
+    arm = rotation.turn(angle * axis) @ np.array([0.15 - OFF, 0.0, 0.0])
     return states([[0, 0, 0], HINGE + arm], [[0, 0, 0], angle * axis],
                   [[0, 0, 0], np.cross(rate * axis, arm)], [[0, 0, 0], rate * axis])  # fmt: skip
 
@@ -29,7 +31,10 @@ def paddle(time, rate=2.0):
 def paddler():
     """A ball with a rod that paddles beside it."""
     ball = flow.Ellipsoid(length=0.3, width=0.2, height=0.16)
-    return flow.Linked(pieces=(flow.LinkPiece(link=0, shape=ball), flow.LinkPiece(link=1, shape=ROD)), motion=paddle)
+    return flow.Linked(
+        pieces=(flow.LinkPiece(link=0, shape=ball), flow.LinkPiece(link=1, shape=ROD, at=(OFF, 0.0, 0.0))),
+        motion=paddle,
+    )
 
 
 def ellipsoid(points):
@@ -42,7 +47,7 @@ def rod_holds(points, time=0.0):
     """Whether points lie in the rod that paddles, from its formula."""
     now = paddle(time)
     own = now.matrix[1].T @ (points - now.position[1][:, None])
-    beyond = np.maximum(np.abs(own[0]) - 0.15, 0.0)
+    beyond = np.maximum(np.abs(own[0] - OFF) - 0.15, 0.0)
     return beyond**2 + own[1] ** 2 + own[2] ** 2 < 0.05**2
 
 
@@ -145,6 +150,7 @@ def setup(body, steps=6):
     return sim
 
 
+@pytest.mark.slow("two flows in space")
 def test_one_link_swims_as_its_piece_alone_does():
     ball = flow.Ellipsoid(length=0.4, width=0.25, height=0.2)
 
@@ -165,6 +171,7 @@ def test_one_link_swims_as_its_piece_alone_does():
     assert float(other.power) == pytest.approx(float(one.power), rel=1e-4)
 
 
+@pytest.mark.slow("a flow in space")
 def test_loads_on_the_links_add_up_and_do_the_power_s_work():
     sim = setup(flow.Body(shape=paddler()), steps=8)
     loads, h = sim.last("body"), 0.01
