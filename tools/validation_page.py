@@ -82,9 +82,22 @@ GROUPS = (
     Group(
         title="Robot and flow together",
         about="Bodies whose motion is solved together with the water: a hinge on a spring, the added mass of links "
-        "near each other, and what robot and water owe each other, of a robot nearly as heavy as the water that it "
-        "displaces and of lighter ones.",
-        cases=("ellipse on a torsion spring", "three bent ellipses", "coupled swimmer"),
+        "near each other, flags behind a cylinder as chains of links, three links that swim as viscosity falls, and "
+        "what robot and water owe each other, of a robot nearly as heavy as the water that it displaces and of "
+        "lighter ones.",
+        cases=(
+            "ellipse on a torsion spring",
+            "three bent ellipses",
+            "flag behind a cylinder",
+            "three-link swimmer",
+            "coupled swimmer",
+        ),
+        figures=(
+            (
+                "flag",
+                "Way of a flag's tip across the channel with 7, 14 and 28 links, and the published middle and range",
+            ),
+        ),
     ),
     Group(
         title="In three dimensions",
@@ -311,11 +324,31 @@ def _draw_convergence(rows: list[dict[str, Any]]) -> Figure:
     return figure
 
 
+def _draw_flag(rows: list[dict[str, Any]]) -> Figure:
+    figure = Figure(figsize=(9.6, 3.8), layout="constrained")
+    for axes, name in zip(figure.subplots(1, 2), ("FSI2", "FSI3"), strict=True):
+        for k, count in enumerate((7, 14, 28)):
+            curves = _curves(rows, f"flag behind a cylinder, {name}, {count} links", "tip across")
+            if not curves:
+                continue
+            time, tip = np.array(curves["t"]), np.array(curves["tip"])
+            axes.plot(time - time[-1], tip, color=(_OTHER, "0.55", _LINE)[k], lw=1.0 + 0.4 * k, label=f"{count} links")
+            if count == 28:
+                middle, half = float(curves["middle"]), float(curves["half"])
+                for edge, label in ((middle - half, "published range"), (middle + half, None)):
+                    axes.axhline(edge, color="k", ls="--", lw=1.0, label=label)
+        axes.set(xlabel="time from the end of the run [s]", ylabel="way of the tip across [mm]", title=name)
+        if axes.lines:
+            axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncols=2, frameon=False, **_SMALL)
+    return figure
+
+
 DRAWN: Final[Mapping[str, Callable[[list[dict[str, Any]]], Figure]]] = MappingProxyType(
     {
         "started": _draw_started,
         "energy": _draw_energy,
         "convergence": _draw_convergence,
+        "flag": _draw_flag,
     }
 )
 """The plots of the page by name: each is drawn from all rows."""
