@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from body_files import eight, hatchling
+from body_files import eight, hatchling, rigid
 from suchus import flow, rotation
 from suchus.control import OpenLoop, Swimming
 from suchus.coupling import Swim, simulate
@@ -15,6 +15,7 @@ from suchus.coupling.on_joints import floating
 from suchus.design.pieces import volumes
 from suchus.errors import InvalidDesign
 from suchus.flow.momentum import Reaction
+from suchus.gaits import own_gait
 from suchus.land import Run
 from suchus.land.links import RobotLinks
 from suchus.land.waters import Slice, Space
@@ -193,3 +194,21 @@ def test_links_have_no_raised_tail_and_are_for_space_alone():
         Space(linked=True, limbs=True)
     with pytest.raises(InvalidDesign, match=r"slice\.linked is for a body in space"):
         Slice(linked=True)
+
+
+@pytest.mark.slow("some steps of five bodies in space")
+@pytest.mark.parametrize(
+    ("body", "gait", "cells"),
+    [("strider", "tripod", 44), (eight, None, 56), (hatchling, None, 56), (rigid, None, 44), ("swimmer", None, 92)],
+)
+def test_any_body_swims_on_its_links_in_any_gait(body, gait, cells):
+    """Six and eight legs, a trunk that does not bend, 0.3 m, no limbs: each in a gait made for land."""
+    robot = floating(robot_of(body))
+    water = Space(cells=cells, reynolds=600.0, linked=True)
+    run = Run(robot=robot, gait=gait or own_gait(robot), water=water, control=OpenLoop(begin=0.0))
+    swim = Swim(run, run.gait.period)
+    for _ in range(6):
+        swim.step(run.gait.period)
+    assert swim.series.residual[-1][1] < 0.01
+    assert np.isfinite(swim.stepper.now.place).all()
+    assert np.abs(swim.stepper.now.rate[6:]).max() > 1e-3
