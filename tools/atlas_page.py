@@ -16,7 +16,7 @@ from typing import Any
 from lighter import lighten
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.atlas import CASES, ROWS, load_outcomes, published
+from suchus.atlas import CASES, GRIDS, ROWS, load_outcomes, published
 from suchus.errors import IncompatibleRecord, SuchusError
 from suchus.figures.atlas import Entry, entries, write_atlas
 from suchus.writing import MANIFEST
@@ -29,13 +29,13 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
     rows = {
         entry.row.name: {
             "rms": found.rms, "over_range": found.over_range, "own": found.own, "bound": found.bound,
-            "scatter": found.scatter,
+            "scatter": found.scatter, "cells": entry.outcome.cells, "grids": 1 + len(entry.coarser),
             "agrees": found.agrees, "index": entry.convergence.uncertainty, "order": entry.convergence.order,
             "refused": entry.convergence.refused,
             "cycles": [min(found.cycles), max(found.cycles)] if found.cycles else [],
             "ours": dict(zip(_names(entry), found.ours.tolist(), strict=True)) if entry.row.kind == "numbers" else {},
         }
-        for entry in listed if (found := entry.comparison) is not None
+        for entry in listed if entry.outcome is not None and (found := entry.comparison) is not None
     }  # fmt: skip
     known = {name: row for name, row in rows.items() if row["index"] is not None}
     costs = {one.flow: one.seconds for entry in listed if entry.outcome for one in (entry.outcome, *entry.coarser)}
@@ -47,6 +47,7 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
         "converged": sorted(known),
         "beyond": sorted(name for name, row in known.items() if row["rms"] > row["index"]),
         "within": sorted(name for name, row in known.items() if row["rms"] <= row["index"]),
+        "short": sorted(name for name, row in rows.items() if row["grids"] < GRIDS),
         "refused": sorted(set(rows) - set(known)),
     }
 

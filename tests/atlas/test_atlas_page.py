@@ -1,5 +1,6 @@
 """The page of the atlas: made of the outcomes, so that others make another one; failures stay in and are marked."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -115,6 +116,8 @@ def test_the_next_grid_counts_where_the_finest_was_not_computed_and_the_page_say
     assert "2 of 3 grids are there" in text
     assert f"| {every[1].cells}, {every[2].cells} | 122 s |" in text
     assert "Of 2 rows 2 were computed: the median" in text
+    assert " The grids that were computed took 3 minutes of processor time." in text
+    assert " All flows together took 3 minutes" in page(told(*every, rows=(ROW,)))
     whole = page(told(*every, outcome(NUMBERS)))
     assert "The finest" not in whole
     assert "Of 2 rows 2 were computed in full: the median" in whole
@@ -176,10 +179,17 @@ def test_what_other_pages_state_is_of_the_rows_themselves():
     assert told_of["converged"] == [ROW.name, LOOP.name]
     assert told_of["beyond"] == [LOOP.name]
     assert told_of["within"] == [ROW.name]
-    assert told_of["refused"] == [NUMBERS.name]
+    assert told_of["refused"] == told_of["short"] == [NUMBERS.name]
     assert told_of["rows"][NUMBERS.name]["ours"]["mean drag"] == pytest.approx(1.335 * 1.01)
     assert told_of["rows"][ROW.name]["rms"] == 0
     assert told_of["minutes"] == pytest.approx(7 * 61 / 60)
+
+
+def test_the_page_in_the_documentation_has_the_numbers_that_other_pages_state():
+    kept = json.loads((atlas_page.DOCS.parent / "tests" / "docs" / "stated" / "atlas.json").read_text())
+    lines = (atlas_page.DOCS / "atlas.md").read_text().splitlines()
+    table = {line.partition("](#")[2].partition(")")[0]: line.split("|")[2] for line in lines if line[:3] == "| ["}
+    assert {name: f" {100 * row['rms']:.1f} % " for name, row in kept["rows"].items()} == table
 
 
 def test_only_the_rows_that_were_asked_for_are_on_the_page(tmp_path):

@@ -161,7 +161,7 @@ def page(listed: Sequence[Entry]) -> str:
         "flow-atlas` computes the flows and `make atlas` writes this page from the results; nothing on it is typed in "
         "by hand. Exact answers and budgets, which have no published data, are on the page "
         "[validation](validation.md); [limits](flow_limits.md) says what the differences mean.", "",
-        summary(listed) + f" All flows together took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
+        f"{summary(listed)} {_so_far(listed)} took {sum(costs.values()) / 60:.0f} minutes of processor time.", "",
         "The difference of a row is the root mean square (rms) over the published points, divided by the largest "
         "published magnitude, and beside it by the range from the least published value to the largest; for single "
         "numbers it is the rms of the relative differences. The scatter is the same "
@@ -209,6 +209,12 @@ def _summary_line(entry: Entry) -> str:
     if outcome is None:
         cells[6:] = ["", "", word, "", ""]
     return f"| {' | '.join(cells)} |"
+
+
+def _so_far(listed: Sequence[Entry]) -> str:
+    """Return what the processor time on the page is of: all flows on all their grids, or part of them."""
+    whole = all(len(_every(entry)) == len(CASES[entry.row.case].grids) for entry in listed)
+    return "All flows together" if whole else "The grids that were computed"
 
 
 def _every(entry: Entry) -> tuple[FlowOutcome, ...]:
@@ -388,6 +394,7 @@ def draw_parity(listed: Sequence[Entry]) -> Figure:
         left.axline((0, 0), slope=1, color="k", linewidth=0.8)
         left.set(xlabel="published, over the peak of its row [-]", ylabel="computed, over the same [-]", aspect="equal")
         left.set(xlim=(-_FARTHEST, _FARTHEST), ylim=(-_FARTHEST, _FARTHEST))
+        left.set_anchor("N")
         for place, (entry, found) in enumerate(reversed(shown)):
             colour = _ABOVE if entry.bad else _OURS
             right.plot([0, 100 * found.rms], [place, place], color=colour, linewidth=3)
