@@ -38,8 +38,8 @@ class _Resolved:
     tolerance: float = 5e-3
     """Force that a step may leave over, over the greatest so far, each coordinate's by the root of its inertia; and
     impulse on the whole robot, over its greatest momentum so far, which is what counts where it is light [-]."""
-    renewed: float = 0.25
-    """Angle by which a joint turns before the added mass is computed anew [rad]."""
+    renewed: float = 0.5
+    """Angle by which a joint turns before the added mass is computed anew [rad]; until then corrections teach it."""
     parts: int = 45
     """Rigid parts that the body is taken for where forces become moments of joints, at least [-]."""
     tail_height: float = 0.0
