@@ -48,17 +48,17 @@ def metered(monkeypatch, tmp_path, cases):
 
 
 def test_the_dear_are_listed_and_the_cheap_are_not(monkeypatch, tmp_path):
-    dear, cheap = costly.LIMIT + 0.1, costly.LIMIT - 0.1
+    dear, cheap = costly.LIMIT + 0.1, 0.5 * costly.LIMIT
     assert metered(monkeypatch, tmp_path, [("a::dear", dear, {}), ("a::cheap", cheap, {})]) == {
-        "a::dear": round(dear, 1)
+        "a::dear": round(dear, 2)
     }
 
 
 def test_a_quick_form_counts_for_all_that_ask_for_it_where_it_is_too_dear(monkeypatch, tmp_path):
     cases = [
-        ("a::first", 0.1, {"long": costly.QUICK_LIMIT + 1}),
-        ("a::second", 0.1, {"long": 0.0}),
-        ("a::third", 0.1, {"short": costly.QUICK_LIMIT - 1}),
+        ("a::first", 0.5 * costly.LIMIT, {"long": costly.QUICK_LIMIT + 1}),
+        ("a::second", 0.5 * costly.LIMIT, {"long": 0.0}),
+        ("a::third", 0.5 * costly.LIMIT, {"short": costly.QUICK_LIMIT - 1}),
     ]
     assert set(metered(monkeypatch, tmp_path, cases)) == {"a::first", "a::second"}
 
