@@ -181,7 +181,7 @@ class LinkWay(Way):
         self._seen_links.clear()
 
     def at(self, time: float) -> ChainState:
-        """Return the posture at the end of the way that is nearer to a time [s]; between them there are only links."""
+        """Return the posture at the end of the path that is nearer to a time [s]; between them there are only links."""
         first, last = self._times
         return self._start if abs(time - first) < abs(time - last) else self._end
 
