@@ -9,10 +9,13 @@ from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
 from suchus.control import Swimming
+from suchus.design import GRAVITY
 from suchus.errors import InvalidDesign
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free.experiment import _ends, _radius, _speed, _uneven
 from suchus.experiments.swim_free.figure import draw_below
+from suchus.experiments.swim_free.flow_figure import _fins
+from suchus.experiments.swim_free.in_flow import fins, passive_joints
 from suchus.experiments.swim_free.submerged import DEEP
 from suchus.motion import LIMBS_UP, intended
 from suchus.robots import ROBOTS
@@ -118,3 +121,65 @@ def test_pitch_is_drawn_nose_down_positive_as_in_fig_11():
     pitch = draw_below(record, DEEP).axes[1]
     assert "nose down positive" in pitch.get_ylabel()
     assert pitch.lines[0].get_ydata().tolist() == np.degrees(record.deep_pitch.values[0]).tolist()
+
+
+def swum_with_fins(speeds, powers):
+    """What is kept of swims in a flow with softer and stiffer passive ends: steady ones, two cycles of 1 s."""
+    time = np.linspace(0.0, 2.0, 201)
+    names = ["whole", *(f"whole_fin_{k:g}" for k in (0.1, 0.4, 1.6))]
+    x = np.array([0.1, *speeds])[:, None] * time
+    centre = np.stack([x, 0 * x, 0 * x], axis=-1)
+    power = np.array([1.0, *powers])[:, None] + 0 * x
+    return xr.Dataset(
+        {
+            "flow_centre_of_mass": (("flow_run", "flow_time", "xyz"), centre),
+            "flow_servo_power": (("flow_run", "flow_time"), power),
+            "flow_period": ((), 1.0),
+            "reynolds": ((), 3000.0),
+            "mass": ("run", [2.0]),
+        },
+        coords={"flow_run": names, "flow_time": time, "xyz": list("xyz")},
+        attrs={"flow": "slice"},
+    )
+
+
+@pytest.mark.parametrize(("speeds", "at"), [((0.1, 0.2, 0.15), 1), ((0.3, 0.2, 0.15), 0), ((0.1, np.nan, 0.15), 2)])
+def test_the_best_fin_is_the_fastest_of_those_that_were_tried(speeds, at):
+    record = swum_with_fins(speeds, (1.0, 4.0, 1.0))
+    tried = fins(record)
+    assert tried.stiffness.values.tolist() == [0.1, 0.4, 1.6]
+    assert tried.speed.values == pytest.approx(speeds, nan_ok=True)
+    costs = np.array([1.0, 4.0, 1.0]) / (2.0 * GRAVITY * np.array(speeds))
+    assert tried.cost.values == pytest.approx(costs, nan_ok=True)
+    assert int(np.nanargmax(tried.speed.values)) == at
+    titles = [ax.get_title(loc="left") for ax in _fins(record, tried).axes]
+    assert titles[0] == f"best at {tried.stiffness[at]:g} N m/rad" + ("" if at == 1 else ", the end of what was tried")
+
+
+def test_a_swim_backwards_has_no_cost_of_transport():
+    assert np.isnan(fins(swum_with_fins((-0.1, 0.2, 0.1), (1.0, 1.0, 1.0))).cost.values[0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"fin": (0.1,)}, 'water is "sections"'),
+        ({"fin": (-0.1,), "water": "slice"}, "fin.0. is -0.1 N m/rad"),
+        ({"fin": (float("nan"),), "water": "slice"}, "fin.0. is nan"),
+        ({"fin": (0.1,), "water": "slice", "robot": ROBOTS["swimmer"]}, "no passive lateral joint"),
+    ],
+)
+def test_a_fin_that_cannot_be_is_refused(changes, words):
+    with pytest.raises(InvalidDesign, match=words):
+        replace(EXPERIMENTS["swim_free"], **changes)
+
+
+def test_fins_are_swum_from_the_softest_on_and_nothing_else_changes():
+    experiment = replace(EXPERIMENTS["swim_free"], water="slice", fin=(0.8, 0.2, 0.8), in_flow=("whole",))
+    runs = experiment._flow_runs({"whole": SWIM, "reversed": SWIM.reversed()})
+    assert [run.label for run in runs] == ["whole", "whole_fin_0.2", "whole_fin_0.8"]
+    joints = passive_joints(experiment.robot)
+    for run, stiffness in zip(runs[1:], (0.2, 0.8), strict=True):
+        hinges = {hinge.name: hinge for hinge in run.robot.axis_hinges}
+        assert {hinges[name].drive.stiffness for name in joints} == {stiffness}
+        assert replace(run, robot=runs[0].robot, label="whole") == runs[0]

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import pi
+from math import isfinite, pi
 from typing import Any
 from warnings import warn
 
@@ -23,9 +23,11 @@ from suchus.experiments.swim_free import submerged
 from suchus.experiments.swim_free.figure import draw_below, draw_speeds, draw_tail
 from suchus.experiments.swim_free.flow_figure import draw_in_flow, film_slice
 from suchus.experiments.swim_free.in_flow import (
+    fin_runs,
     flow_kept,
     flow_measures,
     flow_runs,
+    passive_joints,
     residual_text,
     swum,
     water_of,
@@ -125,6 +127,9 @@ class SwimFree(Experiment):
     correction: str = ""
     """File with factors on the section model, such as the ``correction.toml`` of a run in a flow. All swims by sections
     then have them, and a line says if they are at another Reynolds number; empty leaves the model as it is."""
+    fin: tuple[float, ...] = ()
+    """Stiffness of each joint of the passive end in further swims in the flow, by the whole wave: speed and cost of
+    transport are drawn over it; none where it is empty [N m/rad]."""
     tail_height: float = 0.0
     """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
     keep: str = ""
@@ -151,6 +156,21 @@ class SwimFree(Experiment):
             check.whole("cells", 32, 4096)
             check.number("reynolds", 10.0, 1e7, "")
             check.whole("flow_cycles", 2, 1000)
+            for number, stiffness in enumerate(self.fin):
+                check.that(
+                    isfinite(stiffness) and 1e-6 <= stiffness <= 1e6,
+                    f"swim_free.fin[{number}] is {stiffness:g} N m/rad; stiffnesses are from 1e-6 to 1e6",
+                )
+            if self.fin:
+                check.that(
+                    self.water != "sections",
+                    'fin is of swims in a flow, and water is "sections"; take "slice" or "space", or leave out fin',
+                )
+                check.that(
+                    bool(passive_joints(self.robot)),
+                    f"robot {self.robot.name!r} has no passive lateral joint with a spring for fin to be the stiffness "
+                    "of; leave it out",
+                )
             check.number("tail_height", 0.0, 1.0, "m")
             swims = [name + ending for name in MOTIONS for ending in ("", "_stiff")]
             odd = [name for name in self.in_flow if name not in swims]
@@ -162,7 +182,7 @@ class SwimFree(Experiment):
         """Return the first cycle alone, coefficients as they are."""
         return replace(
             self, settle=0, cycles=1, spread=(), dive=0, in_flow=("whole",), cells=min(self.cells, 60),
-            reynolds=min(self.reynolds, 3000.0), flow_cycles=2,
+            reynolds=min(self.reynolds, 3000.0), flow_cycles=2, fin=self.fin[:2],
         )  # fmt: skip
 
     @property
@@ -238,7 +258,8 @@ class SwimFree(Experiment):
         if self.water == "sections":
             return []
         water = water_of(self.water, self.cells, self.reynolds, self.tail_height)
-        return flow_runs(self._joints, motions, ("whole", *self.in_flow), water)
+        runs = flow_runs(self._joints, motions, ("whole", *self.in_flow), water)
+        return [*runs, *fin_runs(runs[0], self.fin)]
 
     def _flow_replay(self, record: xr.Dataset) -> Mapping[str, Replay]:
         """Return the page of the first swim in the flow."""

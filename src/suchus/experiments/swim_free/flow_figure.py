@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.experiments.swim_free.in_flow import FIN, fins
 from suchus.figures.fields import VORTICITY, draw_body, draw_field, move_body, smooth, span
 from suchus.figures.film import film
 from suchus.figures.style import COLOURS, captioned, panels, styled
@@ -19,8 +20,10 @@ def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
     Args:
         record: of the experiment ``swim_free`` with a flow; see ``in_flow``.
     """
+    tried = fins(record)
+    drawn = {"flow_fin": _fins(record, tried)} if tried.stiffness.size > 1 else {}
     return {
-        "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
+        **drawn, "flow_speeds": _speeds(record), "flow_links": _links(record), "flow_residual": _residual(record),
         "flow_balance": _balance(record),
     }  # fmt: skip
 
@@ -63,8 +66,9 @@ def _speeds(record: xr.Dataset) -> Figure:
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)
         left, right = axes[0]
+        swims = [str(name) for name in record.flow_run.values if FIN not in str(name)]
         every = max(round(period / float(time[1] - time[0])), 1)
-        for k, name in enumerate(record.flow_run.values):
+        for k, name in enumerate(swims):
             x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values[::every]
             cycles = np.arange(1, x.size)
             left.plot(
@@ -144,6 +148,31 @@ def _residual(record: xr.Dataset) -> Figure:
         f"in {_where(record)}, and what the section model says of "
         "the same motion in the same water. Numbers are R², the share of the variance that the section model explains; "
         "below 0 a constant would be nearer.",
+    )
+
+
+def _fins(record: xr.Dataset, tried: xr.Dataset) -> Figure:
+    stiffness, speed, cost = tried.stiffness.values, tried.speed.values, tried.cost.values
+    with styled():
+        figure, axes = panels(1, 2, width=9.5, height=3.8)
+        for ax, values, label, best in (
+            (axes[0, 0], speed, "speed in the last cycle [m/s]", np.nanmax),
+            (axes[0, 1], cost, "cost of transport [-]", np.nanmin),
+        ):
+            ax.semilogx(stiffness, values, "o-", color=COLOURS["ours"])
+            if np.isfinite(values).any():
+                at = int(np.flatnonzero(values == best(values))[0])
+                ax.plot(stiffness[at], values[at], "o", color=COLOURS["tail_still"], markersize=10, fillstyle="none")
+                edge = ", the end of what was tried" if at in (0, len(values) - 1) else ""
+                ax.set_title(f"best at {stiffness[at]:g} N m/rad{edge}", fontsize=11)
+            ax.set(xlabel="stiffness of each passive joint [N m/rad]", ylabel=label)
+            ax.set_xlim(0.8 * stiffness[0], 1.25 * stiffness[-1])
+            ax.set_xticks(stiffness, [f"{one:g}" for one in stiffness])
+            ax.minorticks_off()
+    return captioned(
+        figure,
+        "How stiff the passive end of the tail is best, in the last cycle of the whole wave from rest in "
+        f"{_where(record)}: speed, and the servos' power over weight in air times speed.",
     )
 
 

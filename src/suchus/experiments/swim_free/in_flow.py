@@ -11,7 +11,7 @@ import xarray as xr
 from suchus.control import Swimming
 from suchus.coupling import Swim, earned_correction, judgement_text, residual_table
 from suchus.coupling.earned import LinkJudgement
-from suchus.design import Robot, SectionCorrection
+from suchus.design import GRAVITY, Robot, SectionCorrection, Spring, with_spring
 from suchus.design.water import Water
 from suchus.errors import Diverged
 from suchus.experiment import Measure, Measures, Progress, staged
@@ -29,6 +29,8 @@ _KEPT = (
 _COUPLING = ("coupling_residual", "coupling_first", "coupling_iterations", "energy_error", "power_error")
 FRAMES = 24
 """Instants of the last cycle that are filmed [-]."""
+FIN = "_fin_"
+"""What stands between the motion and the stiffness in the label of a swim with another passive end."""
 _GROWN = 1.0
 """Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
 
@@ -49,6 +51,48 @@ def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: S
         for name, gait in motions.items()
         if name + ending in asked
     ]
+
+
+def passive_joints(robot: Robot) -> list[str]:
+    """Return the lateral joints of the axis that springs alone hold, no cable among them."""
+    cabled = {name for cable in robot.cables for name in cable.hinges}
+    return [
+        hinge.name
+        for hinge in robot.axis_hinges
+        if hinge.turn == "yaw" and isinstance(hinge.drive, Spring) and hinge.name not in cabled
+    ]
+
+
+def fin_runs(run: Run, stiffnesses: Sequence[float]) -> list[Run]:
+    """Return a run with other stiffnesses of the passive end's joints, the softest first.
+
+    Args:
+        run: in a flow.
+        stiffnesses: of each joint [N m/rad].
+    """
+    joints = passive_joints(run.robot)
+    return [
+        replace(run, robot=with_spring(run.robot, joints, stiffness), label=f"{run.label}{FIN}{stiffness:g}")
+        for stiffness in sorted(set(stiffnesses))
+    ]
+
+
+def fins(record: xr.Dataset) -> xr.Dataset:
+    """Return speed [m/s] and cost of transport [-] in the last cycle over the stiffness of the passive end [N m/rad].
+
+    The cost is that of the servos, of the robot's weight in air and as far as it comes ahead. Swims that broke off have
+    NaN; a record without such swims has none.
+    """
+    names = [str(name) for name in record.flow_run.values if FIN in str(name)]
+    last = record.flow_servo_power.sel(flow_time=slice(float(record.flow_time[-1] - record.flow_period) - 1e-9, None))
+    weight = float(record.mass.isel(run=0) if "run" in record.mass.dims else record.mass) * GRAVITY
+    speeds = np.array([flow_speed(record, name) for name in names])
+    powers = np.array([float(last.sel(flow_run=name).mean(skipna=False)) for name in names])
+    costs = np.divide(powers, weight * speeds, out=np.full(speeds.shape, np.nan), where=speeds > 0)
+    return xr.Dataset(
+        {"speed": ("stiffness", speeds), "cost": ("stiffness", costs)},
+        coords={"stiffness": [float(name.partition(FIN)[2]) for name in names]},
+    )
 
 
 def flow_kept(labels: Sequence[str]) -> list[str]:
@@ -244,7 +288,16 @@ def flow_measures(record: xr.Dataset) -> Measures:
     period, found = float(record.flow_period), Measures()
     later = record.sel(flow_time=slice(_GROWN * period, None))
     last = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
-    for name in (str(one) for one in record.flow_run.values):
+    tried = fins(record)
+    if np.isfinite(tried.speed.values).any():
+        fastest = tried.isel(stiffness=int(np.nanargmax(tried.speed.values)))
+        found["fin_fastest"] = Measure(float(fastest.stiffness), "N m/rad")
+        found["fin_speed"] = Measure(float(fastest.speed), "m/s")
+        found["fin_slowest"] = Measure(float(tried.speed.min()), "m/s")
+        if np.isfinite(tried.cost.values).any():
+            found["fin_cheapest"] = Measure(float(tried.stiffness[int(np.nanargmin(tried.cost.values))]), "N m/rad")
+            found["fin_cost"] = Measure(float(tried.cost.min()), "-")
+    for name in (str(one) for one in record.flow_run.values if FIN not in str(one)):
         ending = rung if name == "whole" else f"{rung}_{name}"
         found[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
         found[f"servo_power_{ending}"] = Measure(float(last.flow_servo_power.sel(flow_run=name).mean()), "W")
