@@ -24,7 +24,7 @@ from suchus.flow.body import measure_all
 from suchus.flow.compiled import PAD
 from suchus.flow.immerse import LEAST_SHARE, fill_source, immerse
 from suchus.flow.momentum import collect, dilatation_work
-from suchus.flow.water import MOST_ROUNDS, Fluid, Taken
+from suchus.flow.water import MOST_ROUNDS, Fluid, PlannedStage
 
 OUT = 1.5
 """Distance from the wall from which the velocity is carried into the body: all its neighbours are wet [cells]."""
@@ -178,14 +178,14 @@ class SlipWater(Fluid):
     def _stages(self, step, push, limits):
         self.solves, half, now = [], self.dtype(0.5), self.velocity
         self.given[:] = 0
-        stage = Taken(self._predicted, now, now, now, self.dtype(0), step)
+        stage = PlannedStage(self._predicted, now, now, now, self.dtype(0), step)
         self._advance(stage, push)
         self._project(self._predicted, step, limits)
         self._collect(stage, 0.5)
         self.border.update_induced(self._predicted, self.window)
         predicted = self._predicted.copy()
         self._unblended(self._predicted)
-        stage = Taken(self._corrected, predicted, now, self._predicted, half, step)
+        stage = PlannedStage(self._corrected, predicted, now, self._predicted, half, step)
         self._advance(stage, push)
         self._project(self._corrected, half * step, limits)
         self._collect(stage, 0.5)

@@ -27,7 +27,7 @@ from suchus.flow.integrator import Integrator
 from suchus.flow.pose import Pose
 from suchus.flow.scheme import Scheme
 from suchus.flow.sides import NAMES, Side, Sides
-from suchus.flow.water import Fluid, Taken
+from suchus.flow.water import Fluid, PlannedStage
 
 MARGIN = 4
 """Coarse cells that a patch keeps from the sides of the domain that it does not share [-]: what is read around it must
@@ -339,11 +339,11 @@ class Nested(Fluid):
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
         return super()._begin(dt, stream, push, time)
 
-    def _plan(self, span: float) -> list[Taken]:
+    def _plan(self, span: float) -> list[PlannedStage]:
         both = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
         return [stage._replace(beyond=beyond) for stage, beyond in both]
 
-    def _take(self, stage: Taken, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+    def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
         coarse, beyond = self.coarse, stage.beyond
         self._advance(stage, push)
         coarse._advance(beyond, self._push)
@@ -354,14 +354,14 @@ class Nested(Fluid):
         self._replace(stage.out, beyond.out)
         self._give_pressure()
 
-    def _hear(self, stage: Taken) -> float:
+    def _hear(self, stage: PlannedStage) -> float:
         return self.coarse._hear(stage.beyond)
 
     @property
     def _learns(self) -> bool:
         return True
 
-    def _settled(self, last: Taken, limits: tuple[float, float]) -> bool:
+    def _settled(self, last: PlannedStage, limits: tuple[float, float]) -> bool:
         far, before, self._before = self._hear(last), self._before, self._values
         if not before:
             return False

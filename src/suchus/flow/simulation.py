@@ -110,7 +110,7 @@ class Simulation(Fields):
                 component[:] = setup.began(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
         self._placed = False
-        self._taken: _Taken | None = None
+        self._latest: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
@@ -260,8 +260,8 @@ class Simulation(Fields):
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
         self.time, self._last = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
-        self._taken = _Taken(dt, poses, push, drift, self._log.held)
-        self._note(self._taken)
+        self._latest = _LatestStep(dt, poses, push, drift, self._log.held)
+        self._note(self._latest)
         self._log.control(self.water, dt, push)
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
@@ -285,12 +285,12 @@ class Simulation(Fields):
             return pose.position
         return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
-    def _note(self, taken: "_Taken") -> None:
-        water, setup, dt, poses, outlines = self.water, self.setup, taken.dt, taken.poses, self._outlines
+    def _note(self, step: "_LatestStep") -> None:
+        water, setup, dt, poses, outlines = self.water, self.setup, step.dt, step.poses, self._outlines
         fastest = self._fastest = water.fastest()
         about = [self._about(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        self._loads, along = self._log.reactions(water, outlines, about, dt, taken.push, taken.before), []
+        self._loads, along = self._log.reactions(water, outlines, about, dt, step.push, step.before), []
         for k, (body, markers, point, loads) in enumerate(
             zip(self._bodies, outlines, about, self._loads, strict=True)
         ):  # fmt: skip
@@ -304,8 +304,8 @@ class Simulation(Fields):
                 if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
                     asked = swimmer.go if self.axes == 3 else None
                     swimmer.take_added(added_mass(water, markers, point, setup.density, k, asked), self.time)
-            values += columns(load, act, taken.drift, place, self._watch.errors[k])
-            along += part_columns(body, loads.parts, point, poses[k], self.time, taken.drift)
+            values += columns(load, act, step.drift, place, self._watch.errors[k])
+            along += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, water.imposed(self.time))
@@ -326,14 +326,14 @@ class Simulation(Fields):
             UnknownName: there is no such body.
             OutsideLimits: no step has been taken since the simulation was set up or resumed.
         """
-        if self._taken is None:
+        if self._latest is None:
             raise OutsideLimits("the loads of the last step are asked for before any step was taken; call advance.")
         return self._loads[self._number(name)]
 
     @property
     def drift(self) -> np.ndarray:
         """Mean velocity of the grid in the last step, shape (axis,) [m/s]."""
-        return np.zeros(self.axes) if self._taken is None else self._taken.drift
+        return np.zeros(self.axes) if self._latest is None else self._latest.drift
 
     def accelerate(self, more: Mapping[str, Twists]) -> None:
         """Let bodies have moved otherwise at the end of the last step, and the water with them; see ``twist``.
@@ -347,7 +347,7 @@ class Simulation(Fields):
             OutsideLimits: no step has been taken yet.
             Diverged: see ``advance``.
         """
-        if self._taken is None:
+        if self._latest is None:
             raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
         each = [none(len(rows), self.axes) for rows in self.water.rows]
         for name, motion in more.items():
@@ -358,11 +358,11 @@ class Simulation(Fields):
                     f"give one for each part, from the first to the last."
                 )
             each[number] = motion
-        accelerate(self.water, joined(each), self._taken.dt)
+        accelerate(self.water, joined(each), self._latest.dt)
         self._outlines = [moved_on(one, motion) for one, motion in zip(self._outlines, each, strict=True)]
         self.forget()
         self._log.rows.pop()
-        self._note(self._taken)
+        self._note(self._latest)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
         """Return the added mass of a body for motions of its parts, the sides held.
@@ -399,7 +399,7 @@ class Simulation(Fields):
         """Go back to a snapshot of this simulation; what follows is what followed it then, to the same bytes."""
         give(self, kept)
         self.forget()
-        self._taken = None
+        self._latest = None
         if kept.arrays["b"].size:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
@@ -549,7 +549,7 @@ class Simulation(Fields):
         return sample(self.water, skin, self.setup.density)
 
 
-class _Taken(NamedTuple):
+class _LatestStep(NamedTuple):
     """What is known of a step that was taken."""
 
     dt: float

@@ -49,7 +49,7 @@ def _inflow(given: np.ndarray, axis: int) -> np.ndarray:
     return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (given.ndim - 1)]
 
 
-class Taken(NamedTuple):
+class PlannedStage(NamedTuple):
     """A stage of an integrator at work: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
 
     B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
@@ -365,17 +365,17 @@ class Fluid:
         self.border.prepare(self.velocity, self.window, float(span), stream, time)
         return span, tuple(real(part * h) for part in push)
 
-    def _plan(self, span: float) -> list[Taken]:
+    def _plan(self, span: float) -> list[PlannedStage]:
         """Return the stages of a step of a length [cells per (m/s)]; with Heun's method two."""
         plan, last, rooms = [], self.velocity, (self._corrected, self._predicted)
         stages = self.integrator.stages
         for left, stage in zip(reversed(range(len(stages))), stages, strict=True):
             out, dt = rooms[left % 2], self.dtype(stage.span) * span
-            plan.append(Taken(out, last, self.velocity, last, self.dtype(stage.keep), dt))
+            plan.append(PlannedStage(out, last, self.velocity, last, self.dtype(stage.keep), dt))
             last = out
         return plan
 
-    def _stages(self, plan: list[Taken], push: tuple[float, ...], limits: tuple[float, float]) -> None:
+    def _stages(self, plan: list[PlannedStage], push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take the stages of a step, each immersed and its divergence projected out.
 
         On return ``_corrected`` is the velocity at the step's end, ``p`` its pressure, and ``given`` what the immersion
@@ -392,12 +392,12 @@ class Fluid:
         if len(plan) == 1:  # else the sides would go on from what they have never seen
             self._hear(plan[0])
 
-    def _take(self, stage: Taken, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+    def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
         """Take one stage."""
         self._advance(stage, push)
         self._project(stage.out, stage.solved, limits)
 
-    def _hear(self, stage: Taken) -> float:
+    def _hear(self, stage: PlannedStage) -> float:
         """Let the water beyond the sides know what a stage came to; return by how much it moves them [m/s]."""
         return self.border.update_induced(stage.out, self.window)
 
@@ -406,7 +406,7 @@ class Fluid:
         """Whether water beyond the sides, or around a patch, has to come to terms with a first step."""
         return self.border.water is not None
 
-    def _settled(self, last: Taken, limits: tuple[float, float]) -> bool:
+    def _settled(self, last: PlannedStage, limits: tuple[float, float]) -> bool:
         """Return whether the first step would be the same again, whose last stage is given."""
         return self._hear(last) <= limits[1]
 
@@ -418,8 +418,8 @@ class Fluid:
         """Let the velocity be that at the step's end."""
         self.velocity, self._corrected = self._corrected, self.velocity
 
-    def _advance(self, stage: Taken, push: tuple[float, ...]) -> None:
-        """On return ``out`` of the stage is what ``Taken`` says, and fits the sides; its divergence is left."""
+    def _advance(self, stage: PlannedStage, push: tuple[float, ...]) -> None:
+        """On return ``out`` of the stage is what ``PlannedStage`` says, and fits the sides; its divergence is left."""
         out, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         self._advance_all(
@@ -453,7 +453,7 @@ class Fluid:
                     image, source = (PAD - 1 - start, PAD - start) if low else (n, n - 1)
                     planes[image] = planes[source]
 
-    def _collect(self, stage: Taken, weight: float) -> None:
+    def _collect(self, stage: PlannedStage, weight: float) -> None:
         """Add what the immersion gave in this stage, by the share that it has in the step."""
         if self.window[1] <= self.window[0]:
             return
