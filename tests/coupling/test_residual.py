@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
-from suchus.coupling.residual import _row, r2
+from suchus.coupling.residual import _between_joints, _row, r2
 from suchus.design import with_values
 from suchus.land import Lake
 from suchus.land.prescribed import sections_along
@@ -75,3 +76,21 @@ def test_a_record_that_is_too_short_has_no_interval():
     *_, low, high, _, _, _, _, _ = _row(wave[0] + wave[1], *wave, ALL, (TIME < 1.6, TIME >= 1.6), 100.0)
     assert low <= 1.0 + 1e-9
     assert high >= 1.0 - 1e-9
+
+
+def test_bodies_that_have_each_their_own_force_are_added_up_between_lateral_joints():
+    robot = ROBOTS["floating_caiman"]
+    joints = [hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"]
+    bodies = [segment.name for segment in robot.axis]
+    names = [*reversed(bodies), "LF_tibia"]  # in no particular order, and a limb
+    force = np.random.default_rng(2).normal(size=(3, len(names), 3))
+    loads = {"link_force": (("time", "link", "xyz"), force), "link_torque": (("time", "link"), force[..., 2])}
+    record = xr.Dataset(loads, coords={"link": names, "xyz": list("xyz")})
+    found = _between_joints(robot, record, joints)
+    assert list(found.link.values) == [f"link_{k + 1}" for k in range(len(joints) + 1)]
+    first = bodies[: 1 + next(k for k, one in enumerate(robot.axis) if any(h.name in joints for h in one.hinges))]
+    summed = record.link_force.sel(link=first).sum("link")
+    assert found.link_force.sel(link="link_1").values == pytest.approx(summed.values)
+    whole = record.link_force.sel(link=bodies).sum("link")
+    assert found.link_force.sum("link").values == pytest.approx(whole.values)
+    assert _between_joints(robot, found, joints) is found

@@ -32,6 +32,7 @@ def test_the_speed_is_that_of_the_last_cycle():
 def test_the_rung_has_the_settings_that_were_asked_for():
     assert water_of("slice", 64, 1e3, 0.1) == Slice(cells=64, reynolds=1e3)
     assert water_of("space", 64, 1e3, 0.1) == Space(cells=64, reynolds=1e3, tail_height=0.1)
+    assert water_of("space", 64, 1e3, 0.0, linked=True) == Space(cells=64, reynolds=1e3, linked=True)
 
 
 def test_impossible_settings_are_refused():
@@ -40,6 +41,11 @@ def test_impossible_settings_are_refused():
         replace(one, in_flow=("sideways",))
     with pytest.raises(InvalidDesign, match="flow_cycles is 1"):
         replace(one, flow_cycles=1)
+    for rung in ("slice", "sections"):
+        with pytest.raises(InvalidDesign, match=f'linked is of swims in space, and water is "{rung}"'):
+            replace(one, water=rung, linked=True)
+    with pytest.raises(InvalidDesign, match=r"tail_height raises its tail to 0.1 m; leave out one"):
+        replace(one, water="space", linked=True, tail_height=0.1)
 
 
 @pytest.mark.slow("two cycles of a robot in a flow")
@@ -58,6 +64,21 @@ def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     assert "residual.md" in outcome.tables
     assert "swim_in_flow.gif" in outcome.films
     assert "solved together" in outcome.decides
+
+
+@pytest.mark.slow("two cycles of a robot on its links in a flow")
+def test_a_robot_swims_on_its_links_beside_its_swims_at_the_surface():
+    outcome = replace(EXPERIMENTS["swim_free"].quick(), water="space", linked=True).run()
+    m = {name: measure.value for name, measure in outcome.measures.items()}
+    assert 0.0 < m["coupling_residual"] < 0.01
+    assert m["power_error"] < 2e-3
+    assert abs(m["speed_space"]) > 1e-3
+    assert {"link_r2", "joint_r2"} <= m.keys()
+    assert "LF_tibia" in outcome.record.link.values
+    drawn = EXPERIMENTS["swim_free"].draw(outcome)
+    assert {"flow_speeds", "flow_links", "flow_residual", "flow_balance"} <= {*drawn}
+    assert "residual.md" in outcome.tables
+    assert not outcome.films  # its vortices would be drawn around a midline
 
 
 def test_a_correction_of_another_reynolds_number_or_robot_is_said(tmp_path):

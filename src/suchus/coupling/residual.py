@@ -18,7 +18,7 @@ from suchus import rotation
 from suchus.design import Robot, with_values
 from suchus.design.water import Water
 from suchus.land import Lake
-from suchus.land.prescribed import SectionLoads, sections_along
+from suchus.land.prescribed import SectionLoads, link_bodies, sections_along
 
 DRAWS = 400
 """Draws of the bootstrap, blocks of half a cycle [-]."""
@@ -114,7 +114,10 @@ class SectionsBeside(NamedTuple):
 
 def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
     """Return what the flow of a record did, and beside it the section model; see ``residual_table``."""
-    joints = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
+    lateral = {hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"}
+    felt = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
+    joints = [name for name in felt if name in lateral]
+    record = _between_joints(robot, record, joints)
     motion = motion_of(record, joints)
     bare = with_values(robot, {"hull": None})
     lake = Lake(level=0.0, water=replace(Water(), viscosity=viscosity))
@@ -125,6 +128,24 @@ def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity
     names = [str(name) for name in record.link.values] + joints
     flow = _across(_flow_loads(record, joints), motion)
     return SectionsBeside(names, record.sizes["link"], time, keep, flow, whole - dragged, dragged, joints)
+
+
+def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> xr.Dataset:
+    """Return a record whose links lie between lateral joints: of one that has each body for itself, their sums.
+
+    Limbs are left out, as sections leave them out.
+    """
+    groups, there = link_bodies(robot, joints), {str(name) for name in record.link.values}
+    if not any(body in there for group in groups for body in group):
+        return record
+    names = [f"link_{k + 1}" for k in range(len(groups))]
+    loads = {
+        name: xr.concat(
+            [record[name].sel(link=[body for body in group if body in there]).sum("link") for group in groups], "link"
+        ).transpose("time", "link", ...)
+        for name in ("link_force", "link_torque")
+    }
+    return record.drop_dims("link").assign(loads).assign_coords(link=names)
 
 
 def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:

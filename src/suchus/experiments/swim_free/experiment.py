@@ -68,10 +68,10 @@ class SwimFree(Experiment):
     without chambers.
 
     With ``water`` "slice" or "space" the robot swims, beside all this, in a flow that is solved with it, deep
-    below the surface and in its plane: the same servos, cable and passive end, but the water is that of the
-    Navier-Stokes equations. ``speed_space`` is then set beside the speeds above, ``coupling_residual`` is the force
-    that a step left over and ``energy_error`` what is missing in the robot's balance of energy. The section model is
-    held against that flow link by link and joint by joint along the motion that the robot took there.
+    below the surface and, unless it is ``linked``, in its plane: the same servos, cable and passive end, but the water
+    is that of the Navier-Stokes equations. ``speed_space`` is then set beside the speeds above, ``coupling_residual``
+    is the force that a step left over and ``energy_error`` what is missing in the robot's balance of energy. The
+    section model is held against that flow link by link and joint by joint along the motion that the robot took there.
     """
 
     title = "How does it swim in six degrees of freedom, at the surface?"
@@ -130,6 +130,9 @@ class SwimFree(Experiment):
     fin: tuple[float, ...] = ()
     """Stiffness of each joint of the passive end in further swims in the flow, by the whole wave: speed and cost of
     transport are drawn over it; none where it is empty [N m/rad]."""
+    linked: bool = False
+    """In space: whether each piece of the robot, its limbs too, is in the water as its own joints move it and the root
+    goes in all six ways. Without it there is the body alone, which bends in its plane, and half of the water."""
     tail_height: float = 0.0
     """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
     keep: str = ""
@@ -172,6 +175,16 @@ class SwimFree(Experiment):
                     "of; leave it out",
                 )
             check.number("tail_height", 0.0, 1.0, "m")
+            if self.linked:
+                check.that(
+                    self.water == "space",
+                    f'linked is of swims in space, and water is "{self.water}"; take "space", or leave out linked',
+                )
+                check.that(
+                    self.tail_height == 0.0,
+                    f"linked has the robot's own pieces in the water, and tail_height raises its tail to "
+                    f"{self.tail_height:g} m; leave out one of them",
+                )
             swims = [name + ending for name in MOTIONS for ending in ("", "_stiff")]
             odd = [name for name in self.in_flow if name not in swims]
             check.that(not odd, f"in_flow names {', '.join(odd)}; there is {', '.join(swims)}")
@@ -242,7 +255,7 @@ class SwimFree(Experiment):
             return Simulated(record=record, replays=self._replays(record))
         found, first, judgement, correction = swum(flow, self.flow_cycles, self.keep, progress)
         record = xr.merge([record, found], join="exact", compat="no_conflicts", combine_attrs="override")
-        record.attrs["flow"] = self.water
+        record.attrs.update(flow=self.water, linked=int(self.linked))
         films = {"swim_in_flow.gif": film_vortices(record)} if "vortices" in record else film_slice(record)
         return Simulated(
             record=record, replays={**self._replays(record), **self._flow_replay(first)}, films=films,
@@ -257,7 +270,7 @@ class SwimFree(Experiment):
         """Return the runs in a flow; none on the rung of sections."""
         if self.water == "sections":
             return []
-        water = water_of(self.water, self.cells, self.reynolds, self.tail_height)
+        water = water_of(self.water, self.cells, self.reynolds, self.tail_height, linked=self.linked)
         runs = flow_runs(self._joints, motions, ("whole", *self.in_flow), water)
         return [*runs, *fin_runs(runs[0], self.fin)]
 

@@ -53,12 +53,17 @@ def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
         return {"swim_in_flow.gif": film(figure, show, len(values), seconds=2.4, caption=caption)}
 
 
+_MANY = 16
+"""Names beside a picture that are written as large as usual [-]."""
+
+
 def _called(name: object) -> str:
     return str(name).replace("_", " ")
 
 
 def _where(record: xr.Dataset) -> str:
-    return f"a {record.attrs['flow']} of water at f L² / ν = {float(record.reynolds):.0f}"
+    water = "a slice of water" if record.attrs["flow"] == "slice" else "water in space"
+    return f"{water} at f L² / ν = {float(record.reynolds):.0f}"
 
 
 def _speeds(record: xr.Dataset) -> Figure:
@@ -114,15 +119,16 @@ def _links(record: xr.Dataset) -> Figure:
             limit = float(np.abs(values).max()) or 1.0
             shown = ax.imshow(values.T, aspect="auto", cmap="RdBu_r", vmin=-limit, vmax=limit,
                               extent=(0.0, 1.0, len(names) - 0.5, -0.5), interpolation="nearest")  # fmt: skip
-            ax.set_yticks(range(len(names)), names)
+            ax.set_yticks(range(len(names)), names, fontsize="medium" if len(names) <= _MANY else 5)
             ax.grid(visible=False)
             ax.set_xlabel("phase of the last cycle")
             figure.colorbar(shown, ax=ax, label=unit)
-        axes[0, 0].set_ylabel("link, from the head on")
+        axes[0, 0].set_ylabel("link" if record.attrs["linked"] else "link, from the head on")
+    which = "rigid link of the robot" if record.attrs["linked"] else "link between two lateral joints"
     return captioned(
         figure,
-        f"What the water does to each link between two lateral joints, and about each of these joints, over the last "
-        f"cycle of the whole wave in {_where(record)}.",
+        f"What the water does to each {which}, and about each lateral joint, over the last cycle of the whole wave in "
+        f"{_where(record)}.",
     )
 
 

@@ -53,6 +53,11 @@ def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: S
     ]
 
 
+def is_linked(run: Run) -> bool:
+    """Return whether a run's flow is around all pieces of the robot, each with its own pose."""
+    return isinstance(run.solved, Space) and run.solved.linked
+
+
 def passive_joints(robot: Robot) -> list[str]:
     """Return the lateral joints of the axis that springs alone hold, no cable among them."""
     cabled = {name for cable in robot.cables for name in cable.hinges}
@@ -132,7 +137,7 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
     records, seen = [], xr.Dataset()
     for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
         part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
-        film = _Film(swim, cycles) if number == 0 else None
+        film = _Film(swim, cycles) if number == 0 and not is_linked(run) else None
         with suppress(*([Diverged] if number else [])):
             swim.go(
                 swim.ticks * swim.stepper.period, progress=part, watch=film,
@@ -372,8 +377,8 @@ def _factor(row: Mapping[str, float], name: str) -> str:
     return f"{row[name]:.2f}" + (f" ({low:.2f} to {high:.2f})" if low <= high else "")
 
 
-def water_of(rung: str, cells: int, reynolds: float, tail_height: float) -> Slice | Space:
-    """Return the flow of a rung, "slice" or "space"."""
+def water_of(rung: str, cells: int, reynolds: float, tail_height: float, *, linked: bool = False) -> Slice | Space:
+    """Return the flow of a rung, "slice" or "space"; in space ``linked`` if all of the robot's pieces are to move."""
     if rung == "slice":
         return Slice(cells=cells, reynolds=reynolds)
-    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height)
+    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height, linked=linked)
