@@ -101,11 +101,26 @@ def test_a_correction_of_another_reynolds_number_or_robot_is_said(tmp_path):
 def test_the_page_says_whether_a_correction_is_earned():
     names = ("rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high")
     values = {f"residual_{name}": ("part", [1.0]) for name in (*names, "r2_fitted", "r2_held_out")}
+    swims = {f"swim_{name}": (("flow_run", "part"), [[1.0]]) for name in ("r2", "added", "drag", "r2_fitted")}
     about = {"part_kind": ("part", ["link"]), "reynolds": ((), 7e3)}
-    record = xr.Dataset(values | about, coords={"part": ["link_1"]})
+    record = xr.Dataset(values | swims | about, coords={"part": ["link_1"], "flow_run": ["whole"]})
     assert "earned" not in residual_text(record)
     assert "None is earned, and no file is written." in residual_text(record, "| link |\n")
     assert "`correction.toml` beside this page" in residual_text(record, "| link |\n", is_earned=True)
+
+
+def test_the_page_has_the_links_of_every_swim_that_came_to_its_end():
+    about = {"part_kind": ("part", ["link", "link", "joint"]), "reynolds": ((), 7e3)}
+    shapes = {"rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high",
+              "r2_fitted", "r2_held_out"}  # fmt: skip
+    values = {f"residual_{name}": ("part", [1.0, 1.0, 1.0]) for name in shapes}
+    swims = np.array([[0.1, 0.1, 0.1], [0.25, 0.75, 0.9], [np.nan] * 3])
+    by_swim = {f"swim_{name}": (("flow_run", "part"), swims) for name in ("r2", "added", "drag", "r2_fitted")}
+    names = {"part": ["front", "rear", "hinge"], "flow_run": ["whole", "tail_only", "broken_off"]}
+    text = residual_text(xr.Dataset(values | by_swim | about, coords=names))
+    assert "| tail_only | links | 0.50 (0.25 to 0.75) |" in text
+    assert "| tail_only | joints | 0.90 (0.90 to 0.90) |" in text
+    assert "broken_off" not in text
 
 
 @pytest.mark.slow("three swims of five cycles in a slice")
@@ -116,6 +131,11 @@ def test_what_swims_in_a_slice_earn_is_a_file_that_is_taken(tmp_path):
     )  # fmt: skip
     outcome = asked.run()
     text = outcome.tables["residual.md"]
+    assert "| tail_only | links |" in text
+    m = {name: measure.value for name, measure in outcome.measures.items()}
+    assert m["link_r2_in_tail_only"] < m["link_r2_fitted_in_tail_only"] <= 1.0
+    links = [name for name in m if name.startswith("link_r2_of_")]
+    assert min(m[name] for name in links) <= m["link_r2"] <= max(m[name] for name in links)
     assert "R2 in tail_only, shipped | corrected | R2 in trunk_only" in text
     assert text.count("| yes |") > 0  # plane sections feel several times what round ones do
     is_nearer = "speeds are nearer to the flow" in text

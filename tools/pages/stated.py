@@ -14,6 +14,7 @@ import json
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from math import floor, log10, nan
 from pathlib import Path
@@ -39,6 +40,8 @@ KEPT = ROOT / "tests" / "docs" / "stated"
 CLAIM_SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
 VERDICTS = DOCS / "verdicts.json"
 WIDTH = 118
+RUNS = {**EXPERIMENTS, "swim_free_space": replace(EXPERIMENTS["swim_free"], water="space")}  # type: ignore[type-var]
+"""What is run for measures that are kept, by source: experiments as they are, and forms of theirs that pages state."""
 
 
 def three_digits(value: float) -> str:
@@ -166,13 +169,19 @@ def keep(source: str, measured: Mapping[str, Any]) -> None:
 
 
 def measured(outcome: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
-    """Return the name and what is kept of an outcome of an experiment or a search."""
+    """Return the name and what is kept of an outcome of an experiment, in a form of ``RUNS``, or of a search."""
     if "optimisation" in outcome:
         return f"optimise_{outcome['optimisation']}", outcome
-    if outcome["experiment"] not in EXPERIMENTS:
-        raise KeyError(outcome["experiment"])
+    source = next((name for name, one in RUNS.items() if _is_of(outcome, one)), None)
+    if source is None:
+        raise KeyError(f"{outcome['experiment']} {', '.join(outcome['differs'])}")
     values = {name: one["value"] for name, one in outcome["measures"].items()}
-    return outcome["experiment"], {name: nan if value is None else value for name, value in values.items()}
+    return source, {name: nan if value is None else value for name, value in values.items()}
+
+
+def _is_of(outcome: Mapping[str, Any], run: experiment.Experiment) -> bool:
+    settings = json.loads(json.dumps(run.settings()))
+    return bool(outcome["experiment"] == run.name() and outcome["settings"] == settings)
 
 
 def main(files: Sequence[str]) -> None:

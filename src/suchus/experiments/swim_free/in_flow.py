@@ -31,6 +31,8 @@ FRAMES = 24
 """Instants of the last cycle that are filmed [-]."""
 FIN = "_fin_"
 """What stands between the motion and the stiffness in the label of a swim with another passive end."""
+_SHOWN = ("r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_held_out")
+"""What is measured of every link and joint in the first swim in a flow."""
 _GROWN = 1.0
 """Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
 
@@ -163,10 +165,8 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
     water = runs[0].solved
     assert water is not None
     period, viscosity = runs[0].gait.period, swims[0].viscosity
-    valid = first.isel(time=np.flatnonzero(np.isfinite(first.coupling_residual.values)))
-    table = residual_table(
-        runs[0].robot, valid, period=period, first=_GROWN * period, viscosity=viscosity
-    )  # fmt: skip
+    whole = [one for one in records if np.isfinite(one.coupling_residual.values[1:]).all()]
+    table = _beside_sections(runs, records, whole, viscosity)
     numbers = {
         "flow_period": ((), period, {"units": "s"}),
         "flow_radius": ("flow_run", [float(record.radius) for record in records], {"units": "1"}),
@@ -177,7 +177,6 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
         ),
     }  # fmt: skip
     names = {"coordinate": first.coordinate.values, "coordinate_too": first.coordinate_too.values}
-    whole = [one for one in records if np.isfinite(one.coupling_residual.values[1:]).all()]
     correction, found = None, dict[str, LinkJudgement]()
     if whole and whole[0] is first:
         others = [run.label for run, one in zip(runs, records, strict=True) if one is not first and _is_in(one, whole)]
@@ -193,6 +192,28 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
                                         correction)  # fmt: skip
         text, correction = text + said, correction if is_nearer else None
     return InFlow(kept, first, text, correction)
+
+
+def _beside_sections(
+    runs: Sequence[Run], records: Sequence[xr.Dataset], whole: Sequence[xr.Dataset], viscosity: float
+) -> xr.Dataset:
+    """Return the residual table of the first swim, and of every one by ``flow_run``, as ``swim_NAME``, what it says.
+
+    A later swim that broke off has NaN.
+    """
+    period = runs[0].gait.period
+    tables = []
+    for run, record in zip(runs, records, strict=True):
+        valid = record.isel(time=np.flatnonzero(np.isfinite(record.coupling_residual.values)))
+        if not tables or _is_in(record, whole):
+            tables.append(residual_table(run.robot, valid, period=period, first=_GROWN * period, viscosity=viscosity))
+        else:
+            tables.append(tables[0].map(lambda one: one if one.dtype.kind in "US" else one * np.nan))
+    swims = {
+        f"swim_{name}": (("flow_run", "part"), np.stack([one[f"residual_{name}"].values for one in tables]))
+        for name in ("rms", "r2", "added", "drag", "r2_fitted", "r2_held_out")
+    }
+    return tables[0].assign(swims)
 
 
 def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
@@ -324,6 +345,13 @@ def flow_measures(record: xr.Dataset) -> Measures:
         felt = part.isel(part=np.flatnonzero(part.residual_rms.values > 0.1 * float(part.residual_rms.max())))
         for name, unit in (("r2", "-"), ("r2_held_out", "-"), ("added", "-"), ("drag", "-")):
             found[f"{kind}_{name}"] = Measure(float(felt[f"residual_{name}"].median()), unit)
+        for name in _SHOWN:
+            for there in part.part.values:
+                found[f"{kind}_{name}_of_{there}"] = Measure(float(part[f"residual_{name}"].sel(part=there)), "-")
+        for swim in (str(one) for one in record.flow_run.values[1:] if FIN not in str(one)):
+            for name in ("r2", "r2_fitted", "added", "drag"):
+                middle = felt[f"swim_{name}"].sel(flow_run=swim).median(skipna=False)
+                found[f"{kind}_{name}_in_{swim}"] = Measure(float(middle), "-")
     return found
 
 
@@ -367,8 +395,33 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
         "cycles and held against the second; intervals need a half of one and a half cycles or more.\n\n"
         + head
         + "".join(rows)
+        + _other_swims(record)
         + (earned if judgement else "")
     )
+
+
+def _other_swims(record: xr.Dataset) -> str:
+    """Return how much sections explain of each further swim, and its own factors; empty for one swim."""
+    whole = [swim for swim in record.flow_run.values[1:] if np.isfinite(record.swim_r2.sel(flow_run=swim)).all()]
+    parts = {kind: np.flatnonzero(record.part_kind.values == kind) for kind in ("link", "joint")}
+    rows = [
+        f"| {swim} | {kind}s | {_spread_text(record.sel(flow_run=swim).isel(part=where))} |\n"
+        for swim in whole
+        for kind, where in parts.items()
+    ]
+    if not rows:
+        return ""
+    return (
+        "\n## The other swims\n\nEach along its own motion, with factors of its own: median, and from the least to the "
+        "greatest, of all links and of all joints.\n\n| swim | of | R2 | added mass x | drag x | R2 fitted |\n"
+        "|---|---|---:|---:|---:|---:|\n" + "".join(rows)
+    )
+
+
+def _spread_text(swim: xr.Dataset) -> str:
+    """Return median, least and greatest over the parts of one swim, cell by cell."""
+    values = [swim[f"swim_{name}"] for name in ("r2", "added", "drag", "r2_fitted")]
+    return " | ".join(f"{float(one.median()):.2f} ({float(one.min()):.2f} to {float(one.max()):.2f})" for one in values)
 
 
 def _factor(row: Mapping[str, float], name: str) -> str:
