@@ -115,7 +115,7 @@ def test_what_ran_in_another_form_is_kept_by_the_name_of_the_form_or_refused():
     for name, form in (("swim_free", one), ("swim_free_space", replace(one, water="space"))):
         outcome = {"experiment": "swim_free", "settings": json.loads(json.dumps(form.settings())), "measures": {}}
         assert measured(outcome) == (name, {})
-    other = {"experiment": "swim_free", "settings": {}, "differs": ["cells"], "measures": {}}
+    other = {"experiment": "swim_free", "settings": {}, "differs": [{"name": "cells"}], "measures": {}}
     with pytest.raises(KeyError, match="swim_free cells"):
         measured(other)
 

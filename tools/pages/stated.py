@@ -13,7 +13,7 @@ Usage: python tools/pages/stated.py OUTCOME.json ...: keep what these outcomes m
 import json
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from math import floor, log10, nan
@@ -77,6 +77,11 @@ def greatest(measures: Mapping[str, float], start: str) -> float:
     return max(value for name, value in measures.items() if name.startswith(start))
 
 
+def naturally(names: Iterable[str]) -> list[str]:
+    """Return names in order, numbers in them by their size."""
+    return sorted(names, key=lambda name: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)])
+
+
 @cache
 def templates() -> Environment:
     """Return where the words of the passages come from."""
@@ -84,7 +89,7 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "numbers": numbers,
-                            "greatest": greatest}  # fmt: skip
+                            "greatest": greatest, "naturally": naturally}  # fmt: skip
     return environment
 
 
@@ -174,7 +179,7 @@ def measured(outcome: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
         return f"optimise_{outcome['optimisation']}", outcome
     source = next((name for name, one in RUNS.items() if _is_of(outcome, one)), None)
     if source is None:
-        raise KeyError(f"{outcome['experiment']} {', '.join(outcome['differs'])}")
+        raise KeyError(" ".join([outcome["experiment"], *(one["name"] for one in outcome["differs"])]))
     values = {name: one["value"] for name, one in outcome["measures"].items()}
     return source, {name: nan if value is None else value for name, value in values.items()}
 

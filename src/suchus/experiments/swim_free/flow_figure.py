@@ -73,12 +73,15 @@ def _speeds(record: xr.Dataset) -> Figure:
         left, right = axes[0]
         swims = [str(name) for name in record.flow_run.values if FIN not in str(name)]
         every = max(round(period / float(time[1] - time[0])), 1)
-        for k, name in enumerate(swims):
+        colours = dict(zip(dict.fromkeys(name.removesuffix("_stiff") for name in swims), _LINES, strict=False))
+        for name in swims:
             x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values[::every]
             cycles = np.arange(1, x.size)
+            motion = name.removesuffix("_stiff")
             left.plot(
-                cycles, np.diff(x) / period, "o-", color=_LINES[k % len(_LINES)], label=str(name).replace("_", " ")
-            )
+                cycles, np.diff(x) / period, "o-" if name == motion else "s--", color=colours[motion],
+                label=_called(motion) + ", stiffer joints" * (name != motion),
+            )  # fmt: skip
         left.axhline(0.0, color=COLOURS["neutral"], linewidth=0.8)
         left.set(xlabel="cycle", ylabel="speed [m/s]", xticks=cycles)
         left.legend()
