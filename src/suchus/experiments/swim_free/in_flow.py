@@ -202,7 +202,7 @@ def _beside_sections(
     A later swim that broke off has NaN.
     """
     period = runs[0].gait.period
-    tables = []
+    tables = list[xr.Dataset]()
     for run, record in zip(runs, records, strict=True):
         valid = record.isel(time=np.flatnonzero(np.isfinite(record.coupling_residual.values)))
         if not tables or _is_in(record, whole):
