@@ -192,6 +192,38 @@ def test_a_body_that_is_accelerated_after_a_step_takes_the_water_along():
     assert forces["fine"] < -3.0  # a body of its own size of water, at 5 m/s^2
 
 
+@pytest.mark.parametrize("across", [(0.0, 1.0), (0.2, 0.8)], ids=["walls", "inside"])
+def test_small_accelerations_count_as_much_as_large_ones(across):
+    """On a patch that ends on a channel's walls or inside it, as on fine cells everywhere, down to 1e-6 of the stream."""
+    whole = flow.Grid.covering((0.0, 2.0), (0.0, 1.0), cell=1 / 24)
+    body = flow.Body(
+        shape=flow.Ellipse(length=0.4, width=0.25), motion=flow.Pose(position=(0.9, 0.48)), name="ellipse"
+    )
+    setup = flow.Setup(
+        grid=whole.patch((0.4, 1.5), across, ratio=2), around=whole, viscosity=2e-3, bodies=(body,), coarse=True,
+        sides=flow.Sides(
+            left=flow.Inflow(profile=lambda y: 6 * y * (1 - y)), right=flow.Outflow(), bottom=flow.Wall(),
+            top=flow.Wall(),
+        ),
+    )  # fmt: skip
+    push = flow.Twists(about=np.array([[0.9, 0.48]]), linear=np.array([[0.02, 0.03]]), angular=np.array([[0.1]]))
+    found = {}
+    for name, one in (("patch", setup), ("fine", uniform(setup))):
+        sim = flow.Simulation(one)
+        for _ in range(3):
+            sim.advance(0.01)
+        begun = sim.snapshot()
+        for size in (1.0, 1e-3, 1e-6):
+            sim.restore(begun)
+            sim.advance(0.01)
+            before = sim.last("ellipse").whole
+            sim.accelerate({"ellipse": push * size})
+            after = sim.last("ellipse").whole
+            found[name, size] = np.array([*(after.force - before.force), *(after.moment - before.moment)]) / size
+    for size in (1.0, 1e-3, 1e-6):
+        assert found["patch", size] == pytest.approx(found["fine", 1.0], rel=5e-3, abs=5e-4)
+
+
 def test_the_first_step_taken_again_is_the_same():
     sim = flow.Simulation(STREAM)
     begun = sim.snapshot()

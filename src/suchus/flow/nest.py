@@ -315,10 +315,11 @@ class Nested(Fluid):
             fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
         average(fine, coarse, tuple(starts), tuple(steps), tuple(spans))
 
-    def _give_pressure(self) -> None:
+    def _give_pressure(self) -> float:
         """Put the mean pressure of the fine cells in the place of the coarse one, and make both count from one level.
 
-        The level is that at which the outermost coarse cells of the patch have the mean that they had.
+        The level is that at which the outermost coarse cells of the patch have the mean that they had; returns by how
+        much it rose [m^2/s^2].
         """
         inside = self.coarse.p[self._cells]
         mean = np.empty_like(inside)
@@ -329,6 +330,7 @@ class Nested(Fluid):
         self.p += level
         inside[:] = mean + level
         self.coarse._seal(self.coarse.p)
+        return float(level)
 
     # --- one step ----------------------------------------------------------------------------------------------
 
@@ -388,21 +390,30 @@ class Nested(Fluid):
         """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
         self._given = self._coarsened(given)
         self.coarse.potential(self._given, TIGHTER * limit)
-        through = np.zeros(self.velocity.shape)
-        self._rim.write(through, self._rim.read(self.coarse._gained(self._given)))
-        return self._answering(given, through, limit)
+        return self._answering(given, self._through(self._given), limit)
 
     def press(self, given: np.ndarray, dt: float, limit: float) -> np.ndarray:
-        """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``."""
-        before = self.p.copy()
-        self.coarse.press(self._coarsened(given), dt, TIGHTER * limit)
-        self.velocity[:, *self.here] += given.astype(self.dtype)
-        self._surround(self.velocity, self.coarse.velocity)
+        """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``.
+
+        What is solved for on both grids is the change alone: with what the step itself has left over of divergence in
+        it, a change ten thousand times smaller than the velocity drowns.
+        """
         span = self.dtype(dt / self.grid.cell)
-        self._project(self.velocity, span, (limit, 10 * limit))
+        self.coarse.press(self._coarsened(given), dt, TIGHTER * limit)
+        x = self._answering(given, self._through(self._coarsened(given)), limit)
+        self._answer_with(given, dt)
+        self._surround(self.velocity, self.coarse.velocity)
         self._replace(self.velocity, self.coarse.velocity)
-        self._give_pressure()
-        return (self.p - before) * span
+        return x + (self._give_pressure() * span - self._level_of(x))  # as it was added to the pressure
+
+    def _through(self, given: np.ndarray) -> np.ndarray:
+        """Return what the coarse ``potential``'s last answer moves on the sides of the patch, a velocity of all of it.
+
+        ``given`` is what that answers, on the faces of the coarse window.
+        """
+        through = np.zeros(self.velocity.shape)
+        self._rim.write(through, self._rim.read(self.coarse._gained(given)))
+        return through
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of ``potential``'s last answer along the sides of the domain; see ``Fluid``."""

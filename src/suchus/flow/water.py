@@ -208,7 +208,11 @@ class Fluid:
     @property
     def level(self) -> float:
         """Mean pressure along the outermost cells of the domain, from which pressures count [m^2/s^2]."""
-        cells = self.p[(slice(PAD, -PAD),) * self.axes]
+        return self._level_of(self.p)
+
+    def _level_of(self, p: np.ndarray) -> float:
+        """Return the mean of a field at the cells along the outermost ones of this grid."""
+        cells = p[(slice(PAD, -PAD),) * self.axes]
         sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.axes) for end in (0, -1)]
         return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
 
@@ -585,14 +589,22 @@ class Fluid:
         Raises:
             NotConverged: the pressure solver got stuck.
         """
-        x, one, none = self.potential(given, limit), self.dtype(1), self.dtype(0)
-        self.velocity[:, *self.here] += given.astype(self.dtype)
-        solved, rest, gain = self._x, self._part(multigrid.X), self.dtype(self.grid.cell / dt)
-        velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
-        correct(velocity, p, solved, rest, one, none, passage, self._layout[0], self.inner, gain)
-        self._seal(self.p)
+        x = self.potential(given, limit)
+        self._answer_with(given, dt)
         self.border.fill(self.velocity)
         return x
+
+    def _answer_with(self, given: np.ndarray, dt: float) -> None:
+        """Add what is given on the faces of the window to the velocity, and the last ``potential``, which answers it.
+
+        The sides are left as they are.
+        """
+        solved, rest, one, none = self._x, self._part(multigrid.X), self.dtype(1), self.dtype(0)
+        self.velocity[:, *self.here] += given.astype(self.dtype)
+        velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
+        gain = self.dtype(self.grid.cell / dt)
+        correct(velocity, p, solved, rest, one, none, passage, self._layout[0], self.inner, gain)
+        self._seal(self.p)
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""
