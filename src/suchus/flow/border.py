@@ -205,8 +205,8 @@ class Edge:
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""
         n, f, step = self.normal(velocity), self.face, self.sign
-        others = [d for d in range(len(velocity)) if d != self.axis]
         inner = PAD if self.low else PAD + self.cells - 1
+        others = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
         if isinstance(self.side, Periodic):
             lines = [n, *(self.across(velocity[d]) for d in others)]
             for k in range(1, PAD + 1):
@@ -215,13 +215,12 @@ class Edge:
                     a[to] = a[source]
             return
         straight = not self.side.passes or (self.unbounded and not self.leaves)
-        beyond = [self._along(k, d, step, stream) for k, d in enumerate(others)]
-        how = beyond[0][0]
-        values = tuple(n.dtype.type(value) for _, value in beyond)
+        how, value = self._along(0, others[0], step, stream)
         if len(others) == 1:
             along = self.across(velocity[others[0]])
-            _fill_side(n, along, f, inner, step, self.prescribed, straight, how, values[0])
+            _fill_side(n, along, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
         else:
+            values = tuple(n.dtype.type(each) for each in (value, self._along(1, others[1], step, stream)[1]))
             line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
             strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
             flat = velocity.reshape(3, -1)
@@ -317,10 +316,12 @@ class Border:
         for edge in self.edges:
             ahead = grown * (edge.induced - edge.seen)
             if edge.side.opens:
-                rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                carried = self._carried(edge, velocity, dt) + (rise + ahead)
                 held = edge.sign * stream[edge.axis] + edge.induced + ahead
-                edge.prescribed[:] = edge.leaves * carried + (1 - edge.leaves) * held
+                if edge.leaves:
+                    rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
+                    carried = self._carried(edge, velocity, dt) + (rise + ahead)
+                    held = edge.leaves * carried + (1 - edge.leaves) * held
+                edge.prescribed[:] = held
             edge.seen[:] = edge.induced
             edge.induced += ahead
         self.steps, self.span = self.steps + 1, dt
@@ -329,10 +330,12 @@ class Border:
 
     def _refuse_gain(self, time: float) -> None:
         """Refuse water that enters through sides and cannot leave, or the reverse."""
+        if any(e.leaves or e.unbounded for e in self.edges):
+            return
         through = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
         net = sum(float(p.sum(dtype=np.float64)) for p in through)
         most = sum(float(np.abs(p).sum(dtype=np.float64)) for p in through)
-        if abs(net) > LOST * most and not any(e.leaves or e.unbounded for e in self.edges):
+        if abs(net) > LOST * most:
             driven = ", ".join(e.name for e in self.edges if e.side.passes)
             way = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
@@ -383,7 +386,9 @@ class Border:
                 room += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
         if room:
             for edge in self.edges:
-                edge.prescribed -= (edge.leaves if free else float(edge.unbounded)) * net / room
+                share = edge.leaves if free else float(edge.unbounded)
+                if share:
+                    edge.prescribed -= share * net / room
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""

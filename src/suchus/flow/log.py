@@ -79,12 +79,11 @@ class Log:
         for rows, point, cut in zip(water.rows, about, water.cut, strict=True):
             place = np.array(point)
             own = [sums[rows.start : rows.stop] for sums in (water.given, before, self.held)]
-            whole, parts = (
-                reaction(
-                    *sums, dt=dt, push=push, about=place, origin=grid.origin, h=grid.cell, density=self.setup.density
-                ).whole(cut)
-                for sums in ([each[0] + each[1:].sum(axis=0) for each in own], own)
-            )  # fmt: skip
+            sums = own if len(rows) == 1 else [np.concatenate([each[:1] + each[1:].sum(axis=0), each]) for each in own]
+            both = reaction(
+                *sums, dt=dt, push=push, about=place, origin=grid.origin, h=grid.cell, density=self.setup.density
+            ).whole(cut)
+            whole, parts = both[0], both if len(rows) == 1 else both[1:]
             scale = 2 ** sum(cut) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
             pressed = scale * water.pressed[rows.start : rows.stop]
             pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (place - np.array(grid.origin))

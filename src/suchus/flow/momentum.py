@@ -252,7 +252,7 @@ def skins(
     around = (place[a] * v[b] - place[b] * v[a] for a, b in TURNS[axes])
     columns = (*v, *around, 0.5 * square, np.ones(w.size), *place)
     if count == 1 or markers.part is None:
-        return np.array([[(w * column).sum() for column in columns]])
+        return (w * np.array(columns)).sum(axis=1)[None]
     return np.stack([np.bincount(markers.part, w * column, count) for column in columns], axis=1)
 
 
@@ -272,6 +272,10 @@ class Reaction:
     def torque(self) -> np.ndarray:
         """Torque about z, shape (...) [N, N m]."""
         return self.moment[..., -1]
+
+    def __getitem__(self, which: int | slice) -> "Reaction":
+        """Return that on one or some of several bodies or parts."""
+        return Reaction(force=self.force[which], moment=self.moment[which], power=self.power[which])
 
     def whole(self, cut: tuple[bool, ...]) -> "Reaction":
         """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.

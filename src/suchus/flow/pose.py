@@ -88,6 +88,8 @@ class Pose:
                 f"a pose has pitch {self.pitch:.4g} rad, roll {self.roll:.4g} rad and the spins {self.spin_x:.4g} and "
                 f"{self.spin_y:.4g} rad/s; in the plane a body has an angle and a spin alone. Leave the others 0."
             )
+        if position is self.position and velocity is self.velocity:
+            return self
         return replace(self, position=position, velocity=velocity)
 
     def _refuse_endless(self) -> None:

@@ -122,11 +122,15 @@ class Fluid:
         self._q: np.ndarray = np.zeros(slabs, dtype)
         self._layout = poisson.levels(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
+        parts = (multigrid.level(self._store, self._layout, self.inner, kind, 0) for kind in range(multigrid.FACES))
+        faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
+        self._views = (*parts, faces.reshape(vector))  # of its finest level
         self._patches = patch.rects(self._layout, self.repeats)
         self._room: np.ndarray = np.zeros((patch.FACES + self.axes, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
         self._near = self._layout[0].copy()
         self._look_at((PAD,) * (2 * self.axes))
+        self._laid = self.window  # that of the levels
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
@@ -136,6 +140,7 @@ class Fluid:
         self.pressed = np.zeros((0, 1 + self.axes))
         self._jointed = False
         self.widening: np.ndarray = np.zeros((0,) * self.axes, dtype)
+        self._widens = False
         self.mean: list[np.ndarray] = [np.zeros((0,) * self.axes, dtype)] * self.axes
         self.owners = [np.zeros((0,) * self.axes, np.int8)] * self.axes
 
@@ -231,14 +236,12 @@ class Fluid:
         self.border.resume(state)
 
     def _part(self, kind: int) -> np.ndarray:
-        part: np.ndarray = multigrid.level(self._store, self._layout, self.inner, kind, 0)
-        return part
+        return self._views[kind]
 
     @property
     def passage(self) -> np.ndarray:
         """Share of the pressure's gradient that acts on the faces before the cells, shape (axis, ...) [-]."""
-        faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
-        return faces.reshape(self.velocity.shape)
+        return self._views[multigrid.FACES]
 
     @property
     def arrays(self) -> float:
@@ -266,24 +269,29 @@ class Fluid:
         self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
         if not around:
             return
-        poisson.place_window(self._layout, unite(around, self.axes))
-        both = self._layout[0].copy()
-        poisson.place_window(self._layout[:1], new)
+        moved = new != self._laid
+        if moved:
+            self._laid = ()
+            poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
-            self.mean = list(0.5 * (self._in_window(was, old) + self.b))
+            self.mean = list(0.5 * ((self._in_window(was, old) if new != old else was) + self.b))
             self._widening(bodies)
-        self._layout[0] = both
+        if moved:
+            poisson.place_window(self._layout, unite(around, self.axes))
         multigrid.coarsen(self._store, self._layout, self.inner)
-        poisson.place_window(self._layout, new)
-        self._patches = patch.rects(self._layout, self.repeats)
-        self._room = patch.room_for(self._room, self._patches)
+        if moved:
+            poisson.place_window(self._layout, new)
+            self._laid = new
+            self._patches = patch.rects(self._layout, self.repeats)
+            self._room = patch.room_for(self._room, self._patches)
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
 
     def _widening(self, bodies: list[AnyBody]) -> None:
         """Write what ``source`` is for the mean of the step's start and end; bodies that do not bend have none."""
         self.widening = np.zeros_like(self.source)
-        if not all(body.shape.rigid for body in bodies):
+        self._widens = not all(body.shape.rigid for body in bodies)
+        if self._widens:
             widening, mean, mu0 = (self._flat(a) for a in (self.widening, np.array(self.mean), self.mu0))
             fill_source(widening, mean, mu0, self._layout[0], self._near, self.inner)
 
@@ -479,6 +487,8 @@ class Fluid:
 
     def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
         """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
+        if not self._widens:
+            return
         flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
         dilatation_work(sums, *flat, self._near, self.inner, weight)
 
