@@ -1,6 +1,7 @@
 """What a coupled swim costs beside one along the commanded midline: processor time of both in one process.
 
-Ratios travel, times do not. Both swim the same grid, the motion of ``suchus run swim_3d``; each is measured from a
+Ratios travel, times do not. Both swim the same grid, the motion of ``suchus run swim_3d``, in space or, with
+``--plane``, in a slice; each is measured from a
 quarter of a second on, when kernels are loaded and the first added mass is known.
 """
 
@@ -13,7 +14,7 @@ from suchus.coupling import Swim
 from suchus.coupling.on_joints import floating
 from suchus.experiments import EXPERIMENTS
 from suchus.land.run import Run
-from suchus.land.waters import Space
+from suchus.land.waters import Slice, Space
 from suchus.motion import LIMBS_BACK, with_limbs
 from suchus.progress import silent
 from suchus.water import fit, printed_wave
@@ -36,20 +37,22 @@ def main():
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--cells", type=int, default=80, help="per body length")
     options.add_argument("--until", type=float, default=1.25, help="time that is swum, more than 0.25 [s]")
+    options.add_argument("--plane", action="store_true", help="swim in a slice")
     options.add_argument("--tail-height", type=float, default=0.0, help="of a fin on the last third [m]")
     chosen = options.parse_args()
     question = EXPERIMENTS["swim_3d"]
     wave = printed_wave(question.robot, question.reading, frequency=question.frequency, sign=-1)
     gait = fit(question.robot, wave).gait
     setting = SwimSetting(
-        axes=3, cells=chosen.cells, viscosity=question.viscosity, cycles=2, tail_height=chosen.tail_height
+        axes=2 if chosen.plane else 3, cells=chosen.cells, viscosity=question.viscosity, cycles=2,
+        tail_height=chosen.tail_height,
     )  # fmt: skip
+    reynolds = question.robot.length**2 / (gait.period * question.viscosity)
     alone = flow.Simulation(ResolvedSwim(robot=question.robot, motion=gait, setting=setting).setup, thread_count=1)
     run = Run(
         robot=floating(question.robot), gait=with_limbs(question.robot, gait, LIMBS_BACK),
-        water=Space(
-            cells=chosen.cells, reynolds=question.robot.length**2 / (gait.period * question.viscosity),
-            tail_height=chosen.tail_height,
+        water=Slice(cells=chosen.cells, reynolds=reynolds) if chosen.plane else Space(
+            cells=chosen.cells, reynolds=reynolds, tail_height=chosen.tail_height
         ),
         control=Swimming(ramp=GROWS * gait.period),
     )  # fmt: skip
