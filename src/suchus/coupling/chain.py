@@ -131,50 +131,37 @@ class MidlineChain:
         return np.searchsorted(np.sort(self.outline.places), middle)
 
     @cached_property
-    def _shares(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """How headings depend on the joints: between stations, at stations, and at the root."""
-        s = self.outline.s
-        at_root = self.outline.joints_at(np.array([self.root]))
-        return self.outline.joints_at(0.5 * (s[1:] + s[:-1])), self.outline.joints_at(s), at_root[0]
+    def _shares(self) -> tuple[np.ndarray, np.ndarray]:
+        """How headings beyond the root's depend on the joints: between stations, and at stations."""
+        s, at_root = self.outline.s, self.outline.joints_at(np.array([self.root]))
+        return self.outline.joints_at(0.5 * (s[1:] + s[:-1])) - at_root, self.outline.joints_at(s) - at_root
 
     def midline(self, place: np.ndarray) -> Points:
-        """Return the stations in a posture, which is worked out once: a step asks for the same ones often."""
-        known, key = self._recent, place.tobytes()
-        if key not in known:
-            if len(known) == RECENT:
-                del known[next(iter(known))]
-            known[key] = self._line(place)
-        return known[key]
-
-    @cached_property
-    def _recent(self) -> dict[bytes, Points]:
-        return {}
-
-    def _line(self, place: np.ndarray) -> Points:
         """Return the stations in a posture; places and their derivatives follow by summing tangents from the root."""
-        middle, station, at_root = self._shares
-        step, joints = self.outline.robot.length / (self.outline.stations - 1), place[3:]
-        bend, heading = (place[2] + (share - at_root) @ joints for share in (middle, station))
-        tangent = step * np.stack([np.cos(bend), np.sin(bend)])
-        normal = np.stack([-tangent[1], tangent[0]])
-        turns = np.column_stack([np.ones(bend.size), middle - at_root])
-        summed = np.stack([_summed(line) for line in tangent])[..., None]
-        swept = np.stack([_summed(line[:, None] * turns) for line in normal])
-        s = self.outline.s
-        where, away = (line - self._between(np.array([self.root]), line) for line in (summed, swept))
-        along = np.zeros((2, s.size, self.size))
+        (middle, station), joints = self._shares, place[3:]
+        tangent, normal = self._tangents(place[2] + middle @ joints)
+        along = np.zeros((2, self.outline.stations, self.size))
         along[0, :, 0] = along[1, :, 1] = 1.0
-        along[:, :, 2:] = away
-        turning = np.zeros((s.size, self.size))
-        turning[:, 2], turning[:, 3:] = 1.0, station - at_root
-        return Points(where[..., 0] + place[:2, None], heading, along, turning)
+        turns = np.column_stack([np.ones(len(middle)), middle])
+        along[:, :, 2:] = self._from_root(np.einsum("cs,sk->cks", normal, turns)).transpose(0, 2, 1)
+        turning = np.zeros((self.outline.stations, self.size))
+        turning[:, 2], turning[:, 3:] = 1.0, station
+        where = self._from_root(tangent) + place[:2, None]
+        return Points(where, place[2] + station @ joints, along, turning)
 
-    def _between(self, arc: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Return values at arc lengths of values at the stations, along the axis before the last."""
+    def _tangents(self, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the steps from station to station, and their normals, of headings between them [m]."""
+        along = self.outline.robot.length / (self.outline.stations - 1) * np.stack([np.cos(heading), np.sin(heading)])
+        return along, np.stack([-along[1], along[0]])
+
+    def _from_root(self, steps: np.ndarray) -> np.ndarray:
+        """Return where steps along the last axis lead from the root on."""
+        summed = np.zeros((*steps.shape[:-1], steps.shape[-1] + 1))
+        np.cumsum(steps, axis=-1, out=summed[..., 1:])
         s = self.outline.s
-        k = np.clip(np.searchsorted(s, arc) - 1, 0, s.size - 2)
-        share = ((arc - s[k]) / (s[k + 1] - s[k]))[:, None]
-        return np.asarray((1 - share) * values[..., k, :] + share * values[..., k + 1, :])
+        k = min(max(int(np.searchsorted(s, self.root)) - 1, 0), s.size - 2)
+        share = (self.root - s[k]) / (s[k + 1] - s[k])
+        return summed - ((1 - share) * summed[..., k] + share * summed[..., k + 1])[..., None]
 
     @cached_property
     def _means(self) -> Float[np.ndarray, "part station"]:
@@ -189,7 +176,7 @@ class MidlineChain:
         return weights
 
     def centres(self, place: np.ndarray) -> Points:
-        """Return the centres of the parts in a posture, which are worked out once as ``midline`` is.
+        """Return the centres of the parts in a posture, which are worked out once: a step asks for the same ones often.
 
         They are means over each part, which bends: a force that is spread along it works by the mean velocity.
         """
@@ -218,15 +205,19 @@ class MidlineChain:
             posture: of the chain.
             least: half-width below which the body is thickened [m].
         """
-        line = self.midline(posture.place)
-        rate, turn = line.along @ posture.rate, line.turning @ posture.rate
-        centre, drift = line.place @ self._weights, rate @ self._weights
-        (x, y), (u, v) = line.place - centre[:, None], rate - drift[:, None]
+        middle, station = self._shares
+        (place, rate), turned = posture, station @ np.stack([posture.place[3:], posture.rate[3:]], axis=1)
+        tangent, normal = self._tangents(place[2] + middle @ place[3:])
+        swept = self._from_root(np.concatenate([tangent, normal * (rate[2] + middle @ rate[3:])]))
+        heading, turn = place[2] + turned[:, 0], rate[2] + turned[:, 1]
+        line = swept + np.concatenate([place[:2], rate[:2]])[:, None]
+        centre = line @ self._weights
+        x, y, u, v = line - centre[:, None]
         bare = flow.MidlineState(
-            x=x, y=y, heading=line.heading, half_width=self.outline.silhouette.half_width, x_rate=u, y_rate=v,
+            x=x, y=y, heading=heading, half_width=self.outline.silhouette.half_width, x_rate=u, y_rate=v,
             heading_rate=turn,
         )  # fmt: skip
-        pose = flow.Pose(position=(centre[0], centre[1]), velocity=(drift[0], drift[1]))
+        pose = flow.Pose(position=(centre[0], centre[1]), velocity=(centre[2], centre[3]))
         return (bare.thickened(least) if least > 0.0 else bare), pose
 
     def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
@@ -315,11 +306,6 @@ class MidlineChain:
     def motion(self, path: "Way", axes: int, least: float) -> Callable[[float], flow.Pose]:
         """Return where the centre of the same body is along a path."""
         return lambda time: path.seen(time, lambda posture: self.state(posture, least))[1].along(axes)
-
-
-def _summed(steps: np.ndarray) -> np.ndarray:
-    """Return where steps along the first axis lead from nothing."""
-    return np.concatenate([np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)])
 
 
 class Way:
