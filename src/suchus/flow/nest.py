@@ -14,14 +14,13 @@ one cycle a stage of McCormick's fast adaptive composite grids (1989).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
-from scipy import sparse
 
 from suchus.errors import InvalidDesign
 from suchus.flow.body import AnyBody
-from suchus.flow.compiled import PAD, compiled
+from suchus.flow.compiled import PAD, UNIT, compiled, unsigned
 from suchus.flow.grid import RATIOS, Grid
 from suchus.flow.integrator import Integrator
 from suchus.flow.pose import Pose
@@ -151,15 +150,70 @@ def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
                 coarse[k, j, i] = share * total
 
 
+@compiled
+def _read(coarse, runs, first, weights, taps, out):  # type: ignore[no-untyped-def]
+    """Write values around a patch, each a weighted sum over a box of coarse ones; three axes each, the last one first.
+
+    Args:
+        coarse: padded values, shape (slab, row, cell).
+        runs: values of one slab and one row of the patch, one after the other, with consecutive numbers along the row:
+            slab, row, number of the first and end, and which value is the first, shape (run, 5).
+        first: first coarse place of a box, by axis and number in the patch.
+        weights: of the coarse places along an axis, by axis, number in the patch, and place.
+        taps: coarse places of a box along each axis.
+        out: the values, shape (value,).
+    """
+    line = np.empty(coarse.shape[2], out.dtype)
+    for n in range(unsigned(runs.shape[0])):
+        k, j, start, end, place = runs[n, 0], runs[n, 1], runs[n, 2], runs[n, 3], runs[n, 4]
+        low, high = first[2, start], first[2, end - UNIT] + taps[2]
+        for column in range(low, high):
+            line[column] = 0
+        for a in range(taps[0]):
+            for b in range(taps[1]):
+                share, slab, row = weights[0, k, a] * weights[1, j, b], first[0, k] + a, first[1, j] + b
+                for column in range(low, high):
+                    line[column] += share * coarse[slab, row, column]
+        for i in range(start, end):
+            total = out.dtype.type(0)
+            for c in range(taps[2]):
+                total += weights[2, i, c] * line[first[2, i] + c]
+            out[place + i - start] = total
+
+
+class Around(NamedTuple):
+    """What one component of the velocity around a patch is read by; see ``_read``."""
+
+    places: np.ndarray
+    """Where its values belong in the patch, flat."""
+    runs: np.ndarray
+    """Their runs along the rows."""
+    first: np.ndarray
+    """First coarse places."""
+    weights: np.ndarray
+    """Weights of the coarse values."""
+    taps: np.ndarray
+    """Coarse places of a box along each axis."""
+
+
+def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return the runs along the rows of flat places, which rise, in an array of three axes, shape (run, 5)."""
+    slab, row, number = np.unravel_index(places, shape)
+    begins = np.flatnonzero(np.diff(places, prepend=-2) - 1 + (np.diff(row, prepend=-1) != 0))
+    ends = np.append(begins[1:], places.size) - 1
+    return np.stack([slab[begins], row[begins], number[begins], number[ends] + 1, begins], axis=1).astype(unsigned)
+
+
 class Rim:
     """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
 
     def __init__(self, patch: Grid, around: Grid, sides: Sides, dtype: type) -> None:
+        self._dtype = dtype
         ratio, corner = place_of(patch, around)
         axes = patch.axes
-        shape, wide = (tuple(n + 2 * PAD for n in reversed(grid.cells)) for grid in (patch, around))
+        shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
         goes_on, repeats = [isinstance(side, Beyond) for side in sides.around(axes)], sides.repeats(axes)
-        self._places, self._reads = [], []
+        self._around = []
         for c in range(axes):
             outside, beyond = np.zeros(shape, bool), np.zeros(shape, bool)
             for d, n in enumerate(patch.cells):
@@ -171,26 +225,37 @@ class Rim:
                     else:
                         no[end] = True
             places = np.flatnonzero(outside & ~beyond)
-            count, reads, weights = len(places), np.zeros((len(places), 1), np.int64), np.ones((len(places), 1))
-            for axis, index in enumerate(np.unravel_index(places, shape)):
-                d = axes - 1 - axis
-                where, share = _weights(index, ratio, on_faces=c == d)
-                where = where + corner[d] + PAD
-                reads = (reads[:, :, None] * wide[axis] + where[:, None, :]).reshape(count, -1)
-                weights = (weights[:, :, None] * share[:, None, :]).reshape(count, -1)
-            rows = np.repeat(np.arange(count), reads.shape[1])
-            matrix = sparse.csr_matrix((weights.ravel(), (rows, reads.ravel())), shape=(count, int(np.prod(wide))))
-            matrix.eliminate_zeros()
-            self._places.append(places)
-            self._reads.append(matrix.astype(dtype))
+            self._around.append(self._component(c, places, shape, ratio, corner))
+
+    def _component(
+        self, c: int, places: np.ndarray, shape: tuple[int, ...], ratio: int, corner: tuple[int, ...]
+    ) -> Around:
+        """Return what the component along an axis is read by at flat places of a patch of a padded shape."""
+        axes = len(shape)
+        flat = 3 - axes  # of a plane the first of three axes is a single place
+        first, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
+        weights: np.ndarray = np.zeros((3, max(shape), 4), self._dtype)
+        weights[:flat, 0, 0] = 1
+        for axis, n in enumerate(shape):
+            d = axes - 1 - axis
+            where, share = _weights(np.arange(n), ratio, on_faces=c == d)
+            first[flat + axis, :n] = where[:, 0] + corner[d] + PAD
+            taps[flat + axis] = share.shape[1]
+            weights[flat + axis, :n, : share.shape[1]] = share
+        return Around(places, _runs(places, (1,) * flat + shape), first, weights, taps)
 
     def read(self, coarse: np.ndarray) -> list[np.ndarray]:
         """Return what the velocity around the patch is, component by component, by that on the coarse faces."""
-        return [read @ part.reshape(-1) for read, part in zip(self._reads, coarse, strict=True)]
+        found = []
+        for part, (places, *by) in zip(coarse, self._around, strict=True):
+            out: np.ndarray = np.empty(places.size, self._dtype)
+            _read(part if part.ndim == 3 else part[None], *by, out)
+            found.append(out)
+        return found
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
         """Write what was read to the padded velocity of the patch."""
-        for part, places, found in zip(velocity, self._places, values, strict=True):
+        for part, (places, *_), found in zip(velocity, self._around, values, strict=True):
             part.reshape(-1)[places] = found
 
 
