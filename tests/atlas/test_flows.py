@@ -46,9 +46,9 @@ def test_both_grids_of_a_flow_lie_at_the_same_place(name, quick, monkeypatch):
     case, module = CASES[name], import_module(getattr(CASES[name].run, "func", CASES[name].run).__module__)
 
     def go_on(coarse, setup):
-        ours, theirs = setup.grid, coarse.setup.grid
+        ours, theirs = (now.around or now.grid for now in (setup, coarse.setup))
         assert (*ours.origin, *ours.size) == pytest.approx((*theirs.origin, *theirs.size))
-        assert ours.cell < theirs.cell
+        assert setup.grid.cell < coarse.setup.grid.cell
         raise Begun
 
     monkeypatch.setattr(marching, "_FORMED", {})
@@ -111,12 +111,15 @@ def test_the_ensemble_of_two_states_holds_each_run_and_its_mirror_image(monkeypa
 
     def march(sim, until, progress):
         nonlocal across
-        across = next(forces)
+        assert until == (60.0 if sim.setup.grid.cell == 1 / 4 else 50.0)
+        across = next(forces) if sim.setup.grid.cell == 1 / 8 else 0.0
         return Told()
 
     across = 0.0
     monkeypatch.setattr(still, "march", march)
-    found = CASES["two_states"].run(RunEffort(cells=8, until=11.0), lambda *words: None)
+    monkeypatch.setattr(marching, "_FORMED", {})
+    effort = RunEffort(cells=8, until=5.0, coarse=4, before=6.0)
+    found = CASES["two_states"].run(effort, lambda *words: None)
     assert len(found) == 2 * 2 * 2 * 4
     assert [float(found[f"force across {k}"][1, 9]) for k in (1, 2, 3, 9, 10)] == [3, -3, 3, 5, -5]
     assert np.array_equal(found["force along 1"], found["force along 2"])

@@ -8,7 +8,18 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
-from suchus.atlas.marching import formed, march, middles, nudged, refined, shedding
+from suchus.atlas.marching import (
+    Grids,
+    Span,
+    even,
+    formed,
+    march,
+    middles,
+    nested,
+    nudged,
+    refined,
+    shedding,
+)
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
@@ -17,13 +28,19 @@ _PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged
 _READINGS = 0.1  # [s] between two readings of the skin
 _INSTANTS = ((0.5, "0p5"), (1.5, "1p5"))  # [s] at which the skin of the started cylinder at Re 1000 is read
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
+_WIDE, _NEAR = ((-8.0, 16.0), (-8.0, 8.0)), ((-1.25, 4.75), (-1.5, 1.5))  # [m]; of a wake, and of its fine cells
+_FINER = 2
+"""Times as many cells around a cylinder and its wake's vortices where they form as in the rest of the domain [-]."""
+_THIN, _NEAR_THIN = ((-2.5, 3.5), (-2.0, 2.0)), ((-0.8, 2.0), (-0.85, 0.85))  # [m]; of a start with a thin layer
+_FINER_THIN = 4
+"""Times as many cells around the started cylinder and the vortices that it sheds, whose layer is thin [-]."""
 
 Stream = tuple[float, float] | Callable[[float], tuple[float, float]]
 
 
-def _cylinder(cells: int, reynolds: float, x: tuple[float, float], y: tuple[float, float]) -> flow.Setup:
+def _cylinder(grids: Grids, reynolds: float) -> flow.Setup:
     return flow.Setup(
-        grid=flow.Grid.covering(x, y, cell=1 / cells), viscosity=1 / reynolds, stream=(1.0, 0.0), coarse=True,
+        **grids, viscosity=1 / reynolds, stream=(1.0, 0.0), coarse=True,
         bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0)),),
     )  # fmt: skip
 
@@ -40,10 +57,16 @@ def wake_length(sim: flow.Simulation) -> float:
     return float(behind[k] - u[k] * (behind[k + 1] - behind[k]) / (u[k + 1] - u[k]) - 0.5)
 
 
-def _started(
-    effort: RunEffort, progress: Progress, *, reynolds: float, x: tuple[float, float], y: tuple[float, float]
-) -> Curves:
-    sim = flow.Simulation(_cylinder(effort.cells, reynolds, x, y))
+def _started(effort: RunEffort, progress: Progress, *, reynolds: float, domain: tuple[Span, Span]) -> Curves:
+    return _from_start(flow.Simulation(_cylinder(even(domain, cells=effort.cells), reynolds)), effort, progress)
+
+
+def _started_finely(effort: RunEffort, progress: Progress, *, reynolds: float) -> Curves:
+    grids = nested(_THIN, _NEAR_THIN, cells=effort.cells, ratio=_FINER_THIN)
+    return _from_start(flow.Simulation(_cylinder(grids, reynolds)), effort, progress)
+
+
+def _from_start(sim: flow.Simulation, effort: RunEffort, progress: Progress) -> Curves:
     lengths: list[tuple[float, float]] = []
 
     def note(now: flow.Simulation) -> None:
@@ -55,7 +78,7 @@ def _started(
 
 def _started_skin(effort: RunEffort, progress: Progress) -> Curves:
     """Compute the started cylinder at Re 1000 with its parts of the drag and the vorticity on it at two instants."""
-    sim = flow.Simulation(_cylinder(effort.cells, 1000.0, (-1.5, 2.5), (-1.5, 1.5)))
+    sim = flow.Simulation(_cylinder(nested(_THIN, _NEAR_THIN, cells=effort.cells, ratio=_FINER_THIN), 1000.0))
     parts: list[tuple[float, float]] = []
 
     def note(now: flow.Simulation) -> None:
@@ -82,7 +105,8 @@ def turning(time: float) -> flow.Pose:
 
 def _turning(effort: RunEffort, progress: Progress) -> Curves:
     body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=turning)
-    sim = flow.Simulation(replace(_cylinder(effort.cells, 200.0, (-4.0, 10.0), (-5.0, 5.0)), bodies=(body,)))
+    grids = even(((-4.0, 10.0), (-5.0, 5.0)), cells=effort.cells)
+    sim = flow.Simulation(replace(_cylinder(grids, 200.0), bodies=(body,)))
     record = march(sim, effort.until, progress)
     return {"drag": np.stack([middles(record), 2 * record.force()[:, 0]])}
 
@@ -115,40 +139,42 @@ def _shedding(effort: RunEffort, progress: Progress) -> Curves:
 
 def _on_two_grids(effort: RunEffort, reynolds: float, stream: Stream, progress: Progress) -> flow.Simulation:
     """Return a wake in 24 x 16 diameters that has formed on the coarse grid, at the start of its time on the fine."""
-    box = ((-8.0, 16.0), (-8.0, 8.0))
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(replace(_cylinder(effort.coarse, reynolds, *box), stream=stream))
+        wake = flow.Simulation(replace(_cylinder(even(_WIDE, cells=effort.coarse), reynolds), stream=stream))
         march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.5))
         return wake
 
     wake = formed(("cylinder", reynolds, effort.coarse, effort.before), form)
-    return refined(wake, _cylinder(effort.cells, reynolds, *box))
+    return refined(wake, _cylinder(nested(_WIDE, _NEAR, cells=effort.cells, ratio=_FINER), reynolds))
 
+
+_PATCH = "a patch of 6 x 3 diameters around it, half of them elsewhere"
+_PATCH_THIN = "a patch of 2.8 x 1.7 diameters around it and what it sheds, a quarter of them elsewhere"
 
 CASES = (
     Case(
-        name="started_re40", run=partial(_started, reynolds=40.0, x=(-5.0, 7.0), y=(-5.0, 5.0)),
+        name="started_re40", run=partial(_started, reynolds=40.0, domain=((-5.0, 7.0), (-5.0, 5.0))),
         grids=grids((48, 32, 24), 5.0), quick=RunEffort(cells=12, until=1.0), code=_CODE,
         setup="A cylinder that starts at once in water at rest; {cells} cells a diameter, unbounded "
         "domain, of which 12 x 10 diameters are computed. The length of the recirculation ends where the velocity on "
         "the axis is zero.",
     ),
     Case(
-        name="started_re550", run=partial(_started, reynolds=550.0, x=(-2.5, 4.0), y=(-2.5, 2.5)),
+        name="started_re550", run=partial(_started, reynolds=550.0, domain=((-2.5, 4.0), (-2.5, 2.5))),
         grids=grids((96, 64, 48), 3.5), quick=RunEffort(cells=16, until=1.0), code=_CODE,
         setup="The same in 6.5 x 5 diameters, {cells} cells a diameter.",
     ),
     Case(
-        name="started_re3000", run=partial(_started, reynolds=3000.0, x=(-1.5, 2.5), y=(-1.5, 1.5)),
-        grids=grids((192, 128, 96), 3.0), quick=RunEffort(cells=24, until=0.8), code=_CODE,
-        setup="The same in 4 x 3 diameters, {cells} cells a diameter.",
+        name="started_re3000", run=partial(_started_finely, reynolds=3000.0),
+        grids=grids((256, 192, 128), 3.0), quick=RunEffort(cells=48, until=0.5), code=_CODE,
+        setup=f"The same in 6 x 4 diameters, {{cells}} cells a diameter in {_PATCH_THIN}.",
     ),
     Case(
         name="started_re1000", run=_started_skin, grids=grids((192, 128, 96), 2.8),
-        quick=RunEffort(cells=24, until=1.6), code=_CODE,
-        setup="The same in 4 x 3 diameters, {cells} cells a diameter. Friction is the integral of the vorticity at the "
-        "wall, the pressure part the force exchanged less that.",
+        quick=RunEffort(cells=48, until=1.6), code=_CODE,
+        setup=f"The same in 6 x 4 diameters, {{cells}} cells a diameter in {_PATCH_THIN}. Friction is the integral of "
+        "the vorticity at the wall, the pressure part the force exchanged less that.",
     ),
     Case(
         name="turning_re200", run=_turning, grids=grids((48, 32, 24), 12.0),
@@ -158,16 +184,16 @@ CASES = (
     ),
     Case(
         name="steady_re40", run=_steady, code=_CODE, grids=grids((32, 24, 16), 8.0, coarse=12, before=40.0),
-        quick=RunEffort(cells=12, until=1.0, coarse=6, before=2.0),
+        quick=RunEffort(cells=16, until=1.0, coarse=6, before=2.0),
         setup="A cylinder in a stream, in an unbounded domain, of which 24 x 16 diameters are computed; 40 diameters "
-        "of travel with {coarse} cells a diameter and eight with {cells}.",
+        f"of travel with {{coarse}} cells a diameter and eight with {{cells}} in {_PATCH}.",
     ),
     Case(
         name="shedding_re100", run=_shedding, code=_CODE, grids=grids((32, 24, 16), 45.0, coarse=12, before=80.0),
-        quick=RunEffort(cells=10, until=45.0, coarse=8, before=50.0),
+        quick=RunEffort(cells=16, until=45.0, coarse=8, before=50.0),
         setup="A cylinder in a stream with a short gust at the start, in an unbounded domain, of which 24 x 16 "
-        "diameters are computed; 80 diameters of travel with {coarse} cells a diameter and 45 with {cells}, means "
-        "over the last five periods of shedding.",
+        f"diameters are computed; 80 diameters of travel with {{coarse}} cells a diameter and 45 with {{cells}} in "
+        f"{_PATCH}; means over the last five periods of shedding.",
     ),
 )  # fmt: skip
 """The flows of this module."""

@@ -1,6 +1,7 @@
 """What the flows of the atlas share: marching with progress, a finer grid, mean values over periods, a nudge."""
 
 from collections.abc import Callable, Hashable, Sequence
+from typing import Any, TypedDict, TypeVar
 
 import numpy as np
 from scipy.ndimage import map_coordinates
@@ -10,6 +11,7 @@ from suchus.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.signals import last_periods
 from suchus.flow.simulation import Watcher
+from suchus.flow.water import Fluid
 from suchus.progress import Progress
 
 _REPORTS = 200  # times per run that the progress is reported
@@ -68,11 +70,43 @@ def shedding(record: flow.Record, count: int) -> dict[str, np.ndarray]:
     }  # fmt: skip
 
 
-_FORMED: dict[Hashable, flow.Simulation] = {}
+Span = tuple[float, float]
+"""First and last place along an axis [m]."""
 
 
-def formed(key: Hashable, form: Callable[[], flow.Simulation]) -> flow.Simulation:
-    """Return the flow in which a wake has formed, from which each grid of a case goes on; the last one is kept.
+class Grids(TypedDict):
+    """What a set-up says of its grids."""
+
+    grid: flow.Grid
+    """That of the bodies."""
+    around: flow.Grid | None
+    """Coarser cells in all of the domain; None where the others fill it."""
+
+
+def even(domain: tuple[Span, Span], *, cells: int) -> Grids:
+    """Return the grids of a set-up with as many cells along a length of 1 m in all of a domain."""
+    return Grids(grid=flow.Grid.covering(*domain, cell=1 / cells), around=None)
+
+
+def nested(domain: tuple[Span, Span], near: tuple[Span, Span], *, cells: int, ratio: int) -> Grids:
+    """Return the grids of a set-up with fine cells near a body and coarser ones in all of a domain.
+
+    Args:
+        domain: its ends along x and y.
+        near: those of the patch of fine cells.
+        cells: fine cells along a length of 1 m.
+        ratio: fine cells along a coarse one.
+    """
+    whole = flow.Grid.covering(*domain, cell=ratio / cells)
+    return Grids(grid=whole.patch(*near, ratio=ratio), around=whole)
+
+
+_FORMED: dict[Hashable, Any] = {}
+Formed = TypeVar("Formed")
+
+
+def formed(key: Hashable, form: Callable[[], Formed]) -> Formed:
+    """Return the flow, or flows, in which a wake has formed, from which each grid of a case goes on; the last are kept.
 
     So that the three grids of a case, which begin from one state, compute it once in a process. It is read only.
 
@@ -84,19 +118,20 @@ def formed(key: Hashable, form: Callable[[], flow.Simulation]) -> flow.Simulatio
         made = form()
         _FORMED.clear()
         _FORMED[key] = made
-    return _FORMED[key]
+    found: Formed = _FORMED[key]
+    return found
 
 
 def refined(coarse: flow.Simulation, setup: flow.Setup) -> flow.Simulation:
     """Return a simulation that begins at time 0 with the velocity and pressure of another one, linear in between.
 
     Bodies begin where ``setup`` has them at time 0, so a periodic motion goes on if the other run ended with a whole
-    period. Only for grids that rest.
+    period. Only for grids that rest. A patch begins with what the other's patch holds, as far as that reaches.
 
     Raises:
-        InvalidDesign: the two grids do not begin and end at the same places.
+        InvalidDesign: the two domains do not begin and end at the same places.
     """
-    ours, theirs = setup.grid, coarse.setup.grid
+    ours, theirs = ((now.around or now.grid) for now in (setup, coarse.setup))
     here, there = (np.array([grid.origin, np.add(grid.origin, grid.size)]) for grid in (ours, theirs))
     if np.abs(here - there).max() > 1e-6 * theirs.cell:
         raise InvalidDesign(
@@ -104,11 +139,27 @@ def refined(coarse: flow.Simulation, setup: flow.Setup) -> flow.Simulation:
             f"{theirs.size} m; give both the same corners."
         )
     fine = flow.Simulation(setup)
-    ratio = ours.cell / theirs.cell
-    for name, offsets in (("u", (0.5, 0.0)), ("v", (0.0, 0.5)), ("p", (0.5, 0.5))):
-        field, old = getattr(fine.water, name), getattr(coarse.water, name)
-        at = [(np.arange(n) - PAD + o) * ratio + PAD - o for n, o in zip(field.shape, offsets, strict=True)]
-        field[:] = map_coordinates(
-            np.asarray(old, float), np.meshgrid(*at, indexing="ij"), order=1, mode="nearest"
-        )  # fmt: skip
+    whole, *finer = reversed(coarse.water.layers)
+    for layer in fine.water.layers:
+        _take_over(layer, whole, everywhere=True)
+        for known in finer:
+            _take_over(layer, known, everywhere=False)
     return fine
+
+
+def _take_over(layer: Fluid, known: Fluid, *, everywhere: bool) -> None:
+    """Write velocity and pressure of other water to a layer, where that reaches or, beyond it, as at its ends."""
+    ratio = layer.grid.cell / known.grid.cell
+    shift = [(a - b) / known.grid.cell for a, b in zip(layer.grid.origin, known.grid.origin, strict=True)][::-1]
+    for name, offsets in (("u", (0.5, 0.0)), ("v", (0.0, 0.5)), ("p", (0.5, 0.5))):
+        field, old = getattr(layer, name), getattr(known, name)
+        at = [
+            (np.arange(n) - PAD + o) * ratio + s + PAD - o
+            for n, o, s in zip(field.shape, offsets, shift, strict=True)
+        ]  # fmt: skip
+        spans = [
+            slice(*np.searchsorted(a, (PAD, n - PAD - 1), "left")) for a, n in zip(at, old.shape, strict=True)
+        ] if not everywhere else [slice(None)] * field.ndim  # fmt: skip
+        places = np.meshgrid(*(a[span] for a, span in zip(at, spans, strict=True)), indexing="ij")
+        if places[0].size:
+            field[tuple(spans)] = map_coordinates(np.asarray(old, float), places, order=1, mode="nearest")

@@ -7,7 +7,17 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
-from suchus.atlas.marching import formed, march, middles, nudged, refined, shedding
+from suchus.atlas.marching import (
+    Grids,
+    even,
+    formed,
+    march,
+    middles,
+    nested,
+    nudged,
+    refined,
+    shedding,
+)
 from suchus.atlas.skin import WallValues, read_skin
 from suchus.progress import Progress, staged
 
@@ -19,6 +29,13 @@ NATURAL = 0.195
 
 AMPLITUDE = 0.2
 """Amplitude of the motion [m]."""
+
+_DOMAIN, _NEAR = ((-4.0, 12.0), (-5.0, 5.0)), ((-1.25, 2.25), (-1.5, 1.5))  # [m]; 24 x 16 m give the same
+_FINER = 4
+"""Times as many cells around the cylinder, where the skin is read, as in the rest of the domain [-]."""
+
+_FINER_FIRST = 2
+"""The same in the run in which the wake forms [-]."""
 
 _CODE = ("oscillated.py", "marching.py", "skin.py")
 _COARSE = 24
@@ -42,11 +59,11 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     whole, first = round(effort.until), round(effort.before)
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(_setup(effort.coarse, rate))
+        wake = flow.Simulation(_setup(nested(_DOMAIN, _NEAR, cells=effort.coarse, ratio=_FINER_FIRST), rate))
         march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
         return wake
 
-    sim = refined(formed(("oscillated", ratio, effort.coarse, first), form), _setup(effort.cells, rate))
+    sim = refined(formed(("oscillated", ratio, effort.coarse, first), form), _setup(_near(effort), rate))
     uppermost, down = list[WallValues](), list[WallValues]()
 
     def onward(until: float) -> flow.Record:
@@ -72,12 +89,16 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     }  # fmt: skip
 
 
-def _setup(cells: int, rate: float) -> flow.Setup:
+def _near(effort: RunEffort) -> Grids:
+    return nested(_DOMAIN, _NEAR, cells=effort.cells, ratio=_FINER)
+
+
+def _setup(grids: Grids, rate: float) -> flow.Setup:
     """Return the set-up with a motion that begins at its lowest place, or at rest for a rate of 0 [rad/s]."""
     motion = flow.Oscillation(frequency=rate / (2 * np.pi), heave=(0.0, AMPLITUDE), phase=-np.pi / 2)
     still = flow.Pose()
     return flow.Setup(
-        grid=flow.Grid.covering((-4.0, 12.0), (-5.0, 5.0), cell=1 / cells), viscosity=1 / 185, stream=(1.0, 0.0),
+        **grids, viscosity=1 / 185, stream=(1.0, 0.0),
         bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion if rate else still),), coarse=True,
     )  # fmt: skip
 
@@ -86,11 +107,11 @@ def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(replace(_setup(effort.coarse, 0.0), stream=nudged))
+        wake = flow.Simulation(replace(_setup(even(_DOMAIN, cells=effort.coarse), 0.0), stream=nudged))
         march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
         return wake
 
-    sim = refined(formed(("held", effort.coarse, effort.before), form), _setup(effort.cells, 0.0))
+    sim = refined(formed(("held", effort.coarse, effort.before), form), _setup(_near(effort), 0.0))
     record = march(sim, effort.until, staged(progress, "fine grid", _COARSE_SHARE, 1.0))
     return shedding(record.after(_SETTLED), _PERIODS)
 
@@ -103,30 +124,31 @@ def mean_skin(skins: list[WallValues]) -> WallValues:
     )  # fmt: skip
 
 
+_PATCH = "a patch of 3.5 x 3 diameters around it, a quarter of them elsewhere"
+
 CASES = (
     *(
         Case(
             name=f"shaken_{ratio:g}".replace(".", "p"),
             run=partial(_oscillated, ratio=ratio),
-            grids=grids((32, 24, 16), 9.0, coarse=_COARSE, before=9.0)
-            if ratio > _BEATS
-            else grids((48, 32, 24), 3.0, coarse=_COARSE, before=9.0),
-            quick=RunEffort(cells=16, until=1.0, coarse=8, before=1.0),
+            grids=grids((48, 32, 24), 9.0 if ratio > _BEATS else 3.0, coarse=_COARSE, before=9.0),
+            quick=RunEffort(cells=24, until=1.0, coarse=16, before=1.0),
             code=_CODE,
             setup=f"Re 185, amplitude 0.2 diameters across the stream, frequency {ratio:g} times 0.195 U/D; unbounded "
             "domain, of which 16 x 10 diameters are computed; nine periods from rest with {coarse} cells a diameter "
-            f"and {'nine' if ratio > _BEATS else 'three'} with {{cells}}, all but the first of which are read.",
+            f"and {'nine' if ratio > _BEATS else 'three'} with {{cells}} in {_PATCH}, all but the first of which are "
+            "read.",
         )
         for ratio in RATIOS
     ),
     Case(
         name="held_re185",
         run=_at_rest,
-        grids=grids((32, 24, 16), 38.0, coarse=16, before=60.0),
-        quick=RunEffort(cells=12, until=36.0, coarse=8, before=40.0),
+        grids=grids((48, 32, 24), 38.0, coarse=16, before=60.0),
+        quick=RunEffort(cells=24, until=36.0, coarse=8, before=40.0),
         code=_CODE,
         setup="The same cylinder at rest, with a short gust at the start; 60 diameters of travel with {coarse} cells a "
-        "diameter and 38 with {cells}, the last five periods of shedding.",
+        f"diameter and 38 with {{cells}} in {_PATCH}, the last five periods of shedding.",
     ),
 )
 """The flows of this module."""

@@ -6,24 +6,27 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids, published
-from suchus.atlas.marching import formed, march, middles, refined
+from suchus.atlas.marching import Grids, even, formed, march, middles, nested, refined
 from suchus.progress import Progress, staged
 
 # At a Reynolds number of 2000 the wake has two states, in one of which the lift is a quarter larger. At 35 degrees it
 # goes over into that one after some 48 chords on 64 cells, and later on 32; see docs/flow_limits.md.
 _CODE = ("snake.py", "marching.py", "case.py")
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
+_DOMAIN, _NEAR = ((-3.5, 8.5), (-4.0, 4.0)), ((-0.95, 2.25), (-0.9, 0.75))  # [m]
+_FINER = 4
+"""Times as many cells around the body as in the domain: the source's too are finest there and wider far away [-]."""
 
 
 def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: int) -> Curves:
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(_setup(effort.coarse, reynolds, degrees))
+        wake = flow.Simulation(_setup(even(_DOMAIN, cells=effort.coarse), reynolds, degrees))
         march(wake, effort.before, staged(progress, "coarse grid", 0.0, 0.2))
         return wake
 
     wake = formed(("snake", reynolds, degrees, effort.coarse, effort.before), form)
-    sim = refined(wake, _setup(effort.cells, reynolds, degrees))
+    sim = refined(wake, _setup(nested(_DOMAIN, _NEAR, cells=effort.cells, ratio=_FINER), reynolds, degrees))
     record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
     late = record.after(_SETTLED)
     drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
@@ -31,11 +34,11 @@ def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: i
     return {"mean drag": np.array(drag), "mean lift": np.array(lift), "Strouhal": np.array(strouhal)}
 
 
-def _setup(cells: int, reynolds: float, degrees: int) -> flow.Setup:
+def _setup(grids: Grids, reynolds: float, degrees: int) -> flow.Setup:
     table = published(f"snake_{degrees}_outline")
     outline = np.stack([table.values("x"), table.values("y")], axis=1)
     return flow.Setup(
-        grid=flow.Grid.covering((-2.5, 6.5), (-3.0, 3.0), cell=1 / cells), viscosity=1 / reynolds, coarse=True,
+        **grids, viscosity=1 / reynolds, coarse=True,
         stream=(1.0, 0.0), bodies=(flow.Body(shape=flow.from_outline(outline)),),
     )  # fmt: skip
 
@@ -44,12 +47,13 @@ CASES = tuple(
     Case(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
-        grids=grids((64, 48, 32), 40.0, coarse=32, before=48.0),
+        grids=grids((64, 48, 32), 40.0, coarse=32, before=24.0),
         quick=RunEffort(cells=24, until=18.0, coarse=16, before=6.0),
         code=_CODE,
-        setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 9 x 6 chords are "
-        "computed; 48 chords of travel from rest with {coarse} cells a chord and 40 with {cells}, means over the last "
-        "32, as many as in the source.",
+        setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 12 x 8 chords are "
+        f"computed; 24 chords of travel from rest with {{coarse}} cells a chord and 40 with {{cells}} in a patch of "
+        f"{_NEAR[0][1] - _NEAR[0][0]:.1f} x {_NEAR[1][1] - _NEAR[1][0]:.2g} chords around it, a quarter of them "
+        "elsewhere; means over the last 32, the 32nd to the 64th, as in the source.",
     )
     for reynolds in (1000, 2000)
     for degrees in (30, 35)

@@ -1,12 +1,13 @@
 """Bodies that move to and fro in water at rest."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
-from suchus.atlas.marching import march, middles
+from suchus.atlas.marching import formed, march, middles, refined
 from suchus.progress import Progress, staged
 
 _CODE = ("still.py", "marching.py")
@@ -31,7 +32,7 @@ def _in_line(effort: RunEffort, progress: Progress) -> Curves:
 
 
 _SWINGS = 10.0  # [-]; number of Keulegan and Carpenter at Re 200, and the period in [s]
-_READ_FROM = 7  # cycles at Re 200 that are left out
+_READ = 4  # cycles at Re 200 at the end that are read
 _GUSTS = (0.0, 2.5)
 """Times at which the gusts of the ensemble begin, at two phases of the motion [s]."""
 _GUST, _LASTING = 0.1, 2.0  # [m/s], [s]; of a gust
@@ -47,29 +48,40 @@ def gust(time: float, begin: float) -> tuple[float, float]:
 def _two_states(effort: RunEffort, progress: Progress) -> Curves:
     """Compute a cylinder that moves with ``-cos(2 pi t / T)``, KC 10, once for each gust.
 
-    A gust to the other side gives the mirror image, whose force across has the other sign: each run is two members.
+    ``effort.before`` cycles form the wake on the coarse grid, ``effort.until`` follow on the finer one, of which the
+    last are read. A gust to the other side gives the mirror image, whose force across has the other sign: each run is
+    two members.
     """
-    motion = flow.Oscillation(frequency=1 / _SWINGS, heave=(-_SWINGS / (2 * np.pi), 0.0))
+    first, whole = round(effort.before), round(effort.until)
+    half = 0.5 / len(_GUSTS)
+
+    def form() -> list[flow.Simulation]:
+        wakes = []
+        for k, begin in enumerate(_GUSTS):
+            wakes.append(flow.Simulation(replace(_swinging(effort.coarse), stream=partial(gust, begin=begin))))
+            march(wakes[-1], first * _SWINGS, staged(progress, f"gust {k + 1}, coarse grid", k * half, (k + 1) * half))
+        return wakes
+
     curves: dict[str, np.ndarray] = {}
     phase = np.linspace(0.0, 1.0, _PHASES)
-    whole = round(effort.until)
-    for k, begin in enumerate(_GUSTS):
-        sim = flow.Simulation(
-            flow.Setup(
-                grid=flow.Grid.covering((-6.0, 6.0), (-6.0, 6.0), cell=1 / effort.cells), viscosity=1 / 200,
-                stream=partial(gust, begin=begin), coarse=True,
-                bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),),
-            )
-        )  # fmt: skip
-        part = staged(progress, f"gust {k + 1}", k / len(_GUSTS), (k + 1) / len(_GUSTS))
-        record = march(sim, whole * _SWINGS, part)
+    for k, wake in enumerate(formed(("two states", effort.coarse, first), form)):
+        part = staged(progress, f"gust {k + 1}, fine grid", 0.5 + k * half, 0.5 + (k + 1) * half)
+        record = march(refined(wake, _swinging(effort.cells)), whole * _SWINGS, part)
         turns, (along, across) = middles(record) / _SWINGS, record.force().T
-        for cycle in range(min(_READ_FROM, whole - 1), whole):
+        for cycle in range(max(whole - _READ, 0), whole):
             for sign in (1, -1):
                 number = 1 + len(curves) // 2
                 curves[f"force along {number}"] = np.stack([phase, np.interp(cycle + phase, turns, along)])
                 curves[f"force across {number}"] = np.stack([phase, sign * np.interp(cycle + phase, turns, across)])
     return curves
+
+
+def _swinging(cells: int) -> flow.Setup:
+    motion = flow.Oscillation(frequency=1 / _SWINGS, heave=(-_SWINGS / (2 * np.pi), 0.0))
+    return flow.Setup(
+        grid=flow.Grid.covering((-6.0, 6.0), (-6.0, 6.0), cell=1 / cells), viscosity=1 / 200, coarse=True,
+        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),),
+    )  # fmt: skip
 
 
 def flapping(time: float) -> flow.Pose:
@@ -120,15 +132,15 @@ CASES = (
         "are computed; {cells} cells a diameter; the last of five periods.",
     ),
     Case(
-        name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 11.0),
-        quick=RunEffort(cells=8, until=1.0),
+        name="two_states", run=_two_states, code=_CODE, grids=grids((32, 24, 16), 5.0, coarse=12, before=6.0),
+        quick=RunEffort(cells=12, until=1.0, coarse=8, before=1.0),
         setup="A cylinder that oscillates in water at rest, Re 200, KC 10; unbounded domain, of which 12 x 12 "
-        "diameters are computed; {cells} cells a diameter. Of eleven periods from rest the last four are read, of runs "
-        "with a small gust across the motion (a tenth of its speed) at two phases of the first and, by symmetry, with "
-        "gusts to the other side.",
+        "diameters are computed. Six periods from rest with {coarse} cells a diameter and five with {cells}, the last "
+        "four of which are read, of runs with a small gust across the motion (a tenth of its speed) at two phases of "
+        "the first and, by symmetry, with gusts to the other side.",
     ),
     Case(
-        name="flapping", run=_flapping, grids=grids((64, 48, 32), 16.0), quick=RunEffort(cells=32, until=4.0),
+        name="flapping", run=_flapping, grids=grids((48, 32, 24), 16.0), quick=RunEffort(cells=32, until=4.0),
         code=_CODE,
         setup="An ellipse 10:1 that flaps in water at rest with a stroke of 2.8 chords and a swing of 45 degrees, Re "
         "75; unbounded domain, of which 7 x 9 chords are computed, most of them below; {cells} cells a chord; four "
