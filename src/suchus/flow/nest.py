@@ -247,16 +247,16 @@ class Rim:
     def read(self, coarse: np.ndarray) -> list[np.ndarray]:
         """Return what the velocity around the patch is, component by component, by that on the coarse faces."""
         found = []
-        for part, (places, *by) in zip(coarse, self._around, strict=True):
-            out: np.ndarray = np.empty(places.size, self._dtype)
-            _read(part if part.ndim == 3 else part[None], *by, out)
+        for part, by in zip(coarse, self._around, strict=True):
+            out: np.ndarray = np.empty(by.places.size, self._dtype)
+            _read(part if part.ndim == 3 else part[None], by.runs, by.first, by.weights, by.taps, out)
             found.append(out)
         return found
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
         """Write what was read to the padded velocity of the patch."""
-        for part, (places, *_), found in zip(velocity, self._around, values, strict=True):
-            part.reshape(-1)[places] = found
+        for part, by, found in zip(velocity, self._around, values, strict=True):
+            part.reshape(-1)[by.places] = found
 
 
 class Nested(Fluid):
