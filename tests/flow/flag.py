@@ -4,7 +4,8 @@ Turek and Hron 2006 (Lect. Notes Comput. Sci. Eng. 53, 371-385): a cylinder and 
 has the beam's bending stiffness in plane strain, at joints in the middles of equal lengths, and its mass; it cannot be
 stretched or sheared, as their St. Venant-Kirchhoff beam can, though hardly is.
 
-As a script it runs one case and keeps its series: ``python tests/flow/flag.py FSI3 28 128 out/flag 6.0``.
+As a script it runs one case and keeps its series: ``python tests/flow/flag.py FSI3 28 128 out/flag 6.0``, and with
+``inf 2`` behind these only cells around cylinder and beam are so fine, and half as fine the channel's.
 """
 
 import json
@@ -190,12 +191,28 @@ on them then does more work than the water loses, and they grow. Waves of n link
 mode, in which the beam flaps, 0.03 % of critical damping with 28 links, 1.6 % with 14, and with 7 it would be 88 %."""
 
 
+PATCH = (0.1, 0.7), (0.09, 0.32)
+"""Where finer cells are, if they are not everywhere, along and across the channel: around cylinder and beam, as far as
+these swing, and a cylinder's width behind them [m]."""
+
+
+def channel(profile):
+    """Return the sides of the channel, into which water comes by a profile."""
+    return flow.Sides(left=ParabolicInflow(profile=profile), right=flow.Outflow(), bottom=flow.Wall(), top=flow.Wall())
+
+
+def grids(cell, ratio, sides):
+    """Return the cells of a set-up: one grid, or a patch of it ``ratio`` times as fine as the rest."""
+    whole = flow.Grid.covering(*((0.0, size) for size in CHANNEL), cell=ratio * cell, sides=sides)
+    return {"grid": whole} if ratio == 1 else {"grid": whole.patch(*PATCH, ratio=ratio), "around": whole}
+
+
 class Flag:
     """The chain in the channel, step by step; as ``coupling.Swim`` does it with a robot."""
 
-    def __init__(self, name, count, cells):
+    def __init__(self, name, count, cells, ratio=1):
         self.case, self.name = CASES[name], name
-        self.setup_of = name, count, cells
+        self.setup_of = name, count, cells, ratio
         case, cell = self.case, CHANNEL[1] / cells
         self.beam = Beam(case.density, case.modulus, count)
         stations = 2 * round((2 * RADIUS + BEAM) / cell) + 1
@@ -204,16 +221,15 @@ class Flag:
         place[:2] = CENTRE[0] - RADIUS, CENTRE[1]
         self.posture = ChainState(place, np.zeros(3 + count))
         self.path = Way(0.0, self.posture)
-        inflow = ParabolicInflow(profile=lambda y: 6 * case.speed * y * (CHANNEL[1] - y) / CHANNEL[1] ** 2)
         body = flow.Body(
             shape=self.chain.body(self.path, 2, 0.0, np.ones(stations)),
             motion=self.chain.motion(self.path, 2, 0.0), name="flag",
         )  # fmt: skip
+        sides = channel(lambda y: 6 * case.speed * y * (CHANNEL[1] - y) / CHANNEL[1] ** 2)
         self.sim = flow.Simulation(
             flow.Setup(
-                grid=flow.Grid.covering((0.0, CHANNEL[0]), (0.0, CHANNEL[1]), cell=cell), viscosity=VISCOSITY,
-                density=WATER, bodies=(body,), coarse=True, tolerance=1e-4,
-                sides=flow.Sides(left=inflow, right=flow.Outflow(), bottom=flow.Wall(), top=flow.Wall()),
+                viscosity=VISCOSITY, density=WATER, bodies=(body,), coarse=True, tolerance=1e-4, sides=sides,
+                **grids(cell, ratio, sides),
             ),
             thread_count=1,
         )  # fmt: skip
@@ -317,15 +333,20 @@ COLUMNS = "time", "tip_x", "tip_y", "drag", "lift", "left", "corrections"
 over the greatest so far [-], and corrections that it took [-]."""
 
 
-def run(name, count, cells, folder, until, *, limit=np.inf, every=20.0):
+def stem(name, count, cells, ratio=1):
+    """Return the name of a run's files."""
+    return f"{name}_{count}_{cells}" + (f"_{ratio}" if ratio > 1 else "")
+
+
+def run(name, count, cells, folder, until, *, limit=np.inf, ratio=1, every=20.0):
     """Run one case as far as ``until`` [s], or for ``limit`` seconds of the clock; return its series, a row a step.
 
-    A checkpoint and the series lie in ``folder``, as ``<name>_<count>_<cells>``; a case that was left there goes on.
+    A checkpoint and the series lie in ``folder`` by the name of ``stem``; a case that was left there goes on.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    stem, began = folder / f"{name}_{count}_{cells}", clock.monotonic()
-    flag = Flag(name, count, cells)
-    saved = stem.with_suffix(".checkpoint")
+    place, began = folder / stem(name, count, cells, ratio), clock.monotonic()
+    flag = Flag(name, count, cells, ratio)
+    saved = place.with_suffix(".checkpoint")
     if saved.exists():
         store.load(flag, saved)
     told = began
@@ -333,9 +354,9 @@ def run(name, count, cells, folder, until, *, limit=np.inf, every=20.0):
         flag.step(until - flag.time)
         if clock.monotonic() - told > every:
             told = clock.monotonic()
-            _keep(flag, stem)
-            print(f"{stem.name}: {flag.time:.3f} s after {told - began:.0f} s, {len(flag.rows)} steps", flush=True)
-    _keep(flag, stem)
+            _keep(flag, place)
+            print(f"{place.name}: {flag.time:.3f} s after {told - began:.0f} s, {len(flag.rows)} steps", flush=True)
+    _keep(flag, place)
     return np.array(flag.rows)
 
 
@@ -366,7 +387,8 @@ def cycle(time, across, *others):
 
 if __name__ == "__main__":
     case, links, cells, place, until, *rest = sys.argv[1:]
-    rows = run(case, int(links), int(cells), Path(place), float(until), limit=float(rest[0]) if rest else np.inf)
+    limit, ratio = (*map(float, rest), *(np.inf, 1)[len(rest) :])
+    rows = run(case, int(links), int(cells), Path(place), float(until), limit=limit, ratio=int(ratio))
     time, x, y, drag, lift, left, corrections = rows.T
     found = cycle(time, y, x, drag, lift)
     print(case, links, cells, found, "corrections", corrections.mean(), "left over", left[20:].max())

@@ -4,7 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from flag import BEAM, CASES, COLUMNS, POISSON, THICKNESS, Beam, cycle, run
+from flag import BEAM, CASES, CHANNEL, COLUMNS, POISSON, THICKNESS, Beam, channel, cycle, grids, run
+
+from suchus.errors import InvalidDesign
 
 
 @pytest.mark.parametrize(
@@ -29,6 +31,18 @@ def test_the_first_mode_of_a_chain_is_that_of_a_clamped_beam(count, off):
     bending = case.modulus * THICKNESS**3 / (12 * (1 - POISSON**2))
     exact = (1.87510407 / BEAM) ** 2 * np.sqrt(bending / (case.density * THICKNESS))  # Rao 2011, section 8.5
     assert first == pytest.approx(exact, rel=off)
+
+
+@pytest.mark.parametrize(("cells", "ratio"), [(32, 1), (80, 1), (128, 1), (256, 4)])
+def test_the_channel_is_as_wide_as_it_is_published(cells, ratio):
+    made = grids(CHANNEL[1] / cells, ratio, channel(lambda y: y))
+    whole = made.get("around", made["grid"])
+    assert whole.origin == pytest.approx((0.0, 0.0))
+    assert whole.size[1] == pytest.approx(CHANNEL[1])
+    assert whole.size[0] >= CHANNEL[0] - 1e-9
+    assert made["grid"].cell == pytest.approx(CHANNEL[1] / cells)
+    with pytest.raises(InvalidDesign, match="both sides are held"):
+        grids(CHANNEL[1] / 72, 1, channel(lambda y: y))
 
 
 def test_a_period_is_measured_from_the_last_waves():

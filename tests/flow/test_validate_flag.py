@@ -4,27 +4,29 @@ import json
 
 import numpy as np
 import pytest
-from flag import CASES, COLUMNS, SHAKES, cycle, run
+from flag import CASES, COLUMNS, SHAKES, cycle, run, stem
 from validation_rows import OUT, note
 
 from suchus.record import code_digest
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
-CELLS = {7: 72, 14: 128, 28: 128}
+CELLS = {7: 80, 14: 128, 28: 128}
 """Cells across the channel by links: 128 are 31 across the cylinder and 6 across the beam."""
+ASKED = 0.05, 0.02
+"""Shares by which 28 links may miss the tip's range and the frequency [-]."""
 UNTIL = {"FSI2": 6.4, "FSI3": 3.4}
 """End of a run [s]."""
 PERIODS = 7
 """Periods that a series has at least after the springs were let go."""
 
 
-def series(name, count):
+def series(name, count, cells, ratio=1):
     """Return the columns of a case, from ``out/validation/flag`` if a run of this code has left them there."""
     folder = OUT / "flag" / code_digest("flow", "coupling")[:12]
-    path = folder / f"{name}_{count}_{CELLS[count]}.json"
+    path = folder / (stem(name, count, cells, ratio) + ".json")
     if not path.exists():
-        run(name, count, CELLS[count], folder, UNTIL[name])
+        run(name, count, cells, folder, UNTIL[name], ratio=ratio)
     kept = json.loads(path.read_text())
     return [np.array(kept[column]) for column in COLUMNS]
 
@@ -33,7 +35,7 @@ def series(name, count):
 @pytest.mark.parametrize("count", [7, 14, 28])
 def test_flag_behind_a_cylinder(name, count):
     case = CASES[name]
-    time, along, across, drag, lift, left, _ = series(name, count)
+    time, along, across, drag, lift, left, _ = series(name, count, CELLS[count])
     free = time > SHAKES / case.frequency
     assert np.ptp(time[free]) * case.frequency >= PERIODS
     frequency, (way, back, pull, side) = cycle(time[free], across[free], along[free], drag[free], lift[free])
@@ -59,7 +61,21 @@ def test_flag_behind_a_cylinder(name, count):
     assert rest < 0.05
     assert abs(way[1] / earlier[1] - 1) < 0.05
     if count == 28:
-        note(label, "tip's range, off by", off, "at most 0.05", *shared)
-        note(label, "frequency, off by", missed, "at most 0.02", *shared)
-        assert off < 0.1
-        assert missed < 0.02
+        note(label, "frequency, off by", missed, f"at most {ASKED[1]}", *shared)
+        note(label, "tip's range, off by", off, f"at most {ASKED[0]}", *shared)
+        assert missed <= ASKED[1]
+
+
+def tip(name, cells, ratio=1):
+    """Return half of the range of the tip of 28 links over the last period after the springs were let go [m]."""
+    time, _, across, *_ = series(name, 28, cells, ratio)
+    free = time > SHAKES / CASES[name].frequency
+    return cycle(time[free], across[free])[1][0][1]
+
+
+@pytest.mark.parametrize(
+    "name", ["FSI2", pytest.param("FSI3", marks=pytest.mark.xfail(strict=True, reason="8.4 % low in November 2026"))]
+)
+def test_the_tip_of_28_links_swings_as_far(name):
+    """What is missed is expected to be: a change that keeps it is seen here, as the table's row is."""
+    assert tip(name, CELLS[28]) == pytest.approx(CASES[name].tip_y[1], rel=ASKED[0])
