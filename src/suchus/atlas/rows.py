@@ -12,6 +12,16 @@ _ANGLE = "angle from the front, over the upper side [deg]"
 _MISPRINT = (
     " The value at 0.9063 breaks the line of its neighbours and is taken for a misprint by many; it counts here."
 )
+_FIRST_DRAG = (
+    "Most of the difference lies in the first points: the source's drag falls from 3.7 to 2.0 between times 0.1 and "
+    "0.14, where the theory for short times (Bar-Lev and Yang 1975, the row at Re 40, by the root of the Reynolds "
+    "number) has 1.7 to 1.4."
+)
+_WILLIAMSON = (
+    "In a domain of 24 x 16 diameters instead of 16 x 10 the Strouhal number is the same to 0.1 %. Williamson's fit to "
+    "measurements (1988, Phys. Fluids 31, 2742: -3.3265 / Re + 0.1816 + 0.00016 Re, up to Re 178) has 0.193 when it is "
+    "carried on to here."
+)
 _TIME = "time x speed / diameter [-]"
 _FIRST = (0.1, 1e9)  # before, the drag of a body that starts at once has no bound and the first steps no meaning
 _COMPUTED_40 = (("koumoutsakos1995_drag_re40", "t_star", "cd", 0.5), ("taira2007_drag_re40", "t", "cd", 1.0))
@@ -86,7 +96,7 @@ def _started_1000() -> tuple[AtlasRow, ...]:
         AtlasRow(
             name="chen_drag", title="Cylinder that starts to move and to turn, Re 200: drag, Chen et al. 1993",
             case="turning_re200", data="chen1993_drag_re200", x="t_star", y="cd", scale=(0.5, 1.0), window=_FIRST,
-            ours="drag", labels=(_TIME, "drag coefficient [-]"),
+            ours="drag", labels=(_TIME, "drag coefficient [-]"), note=_FIRST_DRAG,
         )
     )  # fmt: skip
     return tuple(rows)
@@ -119,7 +129,7 @@ def _oscillated() -> tuple[AtlasRow, ...]:
             pressure = rows[-1]
     rows.append(
         AtlasRow(name="re185_numbers", title="Cylinder at rest, Re 185: Strouhal number", case="held_re185",
-            data="re185_numbers", kind="numbers")
+            data="re185_numbers", kind="numbers", note=_WILLIAMSON)
     )  # fmt: skip
     rows.append(
         AtlasRow(
