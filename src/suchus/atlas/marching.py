@@ -88,16 +88,19 @@ def even(domain: tuple[Span, Span], *, cells: int) -> Grids:
     return Grids(grid=flow.Grid.covering(*domain, cell=1 / cells), around=None)
 
 
-def nested(domain: tuple[Span, Span], near: tuple[Span, Span], *, cells: int, ratio: int) -> Grids:
+def nested(
+    domain: tuple[Span, ...], near: tuple[Span, ...], *, cells: int, ratio: int, sides: flow.Sides | None = None
+) -> Grids:
     """Return the grids of a set-up with fine cells near a body and coarser ones in all of a domain.
 
     Args:
-        domain: its ends along x and y.
+        domain: its ends along x and y (and z).
         near: those of the patch of fine cells.
         cells: fine cells along a length of 1 m.
         ratio: fine cells along a coarse one.
+        sides: of the domain, where there are mirrors among them.
     """
-    whole = flow.Grid.covering(*domain, cell=ratio / cells)
+    whole = flow.Grid.covering(*domain, cell=ratio / cells, sides=sides)
     return Grids(grid=whole.patch(*near, ratio=ratio), around=whole)
 
 

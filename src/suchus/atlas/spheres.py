@@ -4,7 +4,7 @@ import numpy as np
 
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
-from suchus.atlas.marching import march, middles
+from suchus.atlas.marching import march, middles, nested
 from suchus.progress import Progress
 
 _CODE = ("spheres.py", "marching.py")
@@ -33,10 +33,13 @@ def _steady(effort: RunEffort, progress: Progress) -> Curves:
 
 
 def _oscillating(effort: RunEffort, progress: Progress) -> Curves:
-    grid = flow.Grid.covering((-3.0, 3.0), (0.0, 3.0), (0.0, 3.0), cell=1 / effort.cells, sides=_SIDES)
+    grids = nested(
+        ((-3.0, 3.0), (0.0, 3.0), (0.0, 3.0)), ((-1.5, 1.5), (0.0, 1.25), (0.0, 1.25)), cells=effort.cells, ratio=2,
+        sides=_SIDES,
+    )  # fmt: skip
     sim = flow.Simulation(
         flow.Setup(
-            grid=grid, viscosity=1 / 40, sides=_SIDES, coarse=True, stream=(0.0, 0.0, 0.0),
+            **grids, viscosity=1 / 40, sides=_SIDES, coarse=True, stream=(0.0, 0.0, 0.0),
             bodies=(flow.Body(shape=flow.Sphere(diameter=1.0), motion=swung),),
         )
     )  # fmt: skip
@@ -56,11 +59,11 @@ CASES = (
         "twenty diameters of travel, after which the drag is steady to 0.3 %.",
     ),
     Case(
-        name="oscillating_sphere", run=_oscillating, code=_CODE, grids=grids((24, 16, 12), 2.0),
-        quick=RunEffort(cells=8, until=1.0),
+        name="oscillating_sphere", run=_oscillating, code=_CODE, grids=grids((32, 24, 16), 2.0),
+        quick=RunEffort(cells=16, until=1.0),
         setup="A sphere that oscillates in water at rest, Re 40; unbounded domain, of which 6 x 6 x 6 diameters are "
-        "computed, a quarter of them beside two planes of symmetry; {cells} cells a diameter; the second period, as "
-        "in the source.",
+        "computed, a quarter of them beside two planes of symmetry; {cells} cells a diameter in a patch of 3 x 2.5 x "
+        "2.5 diameters around its path, half of them elsewhere; the second period, as in the source.",
     ),
 )  # fmt: skip
 """The flows of this module."""
