@@ -18,8 +18,8 @@ _FINER, _NEAR = 2, ((0.1, 0.6), (0.08, 0.33))
 """Times as many cells in a patch around the cylinder as in the rest of the channel where it sheds vortices [-], and
 where the patch is [m].
 
-The steady flow has the same cells everywhere: its lift, a five-hundredth of the drag, comes from how the whole channel
-leads the water past the cylinder. With 47 cells a diameter near the cylinder and 12 elsewhere it was half as large.
+The steady flow has the same cells everywhere: its lift, a five-hundredth of the drag, scatters with where the nodes lie
+(docs/flow_limits.md), and with 47 cells a diameter near the cylinder and 12 elsewhere it was half as large.
 """
 _SINKING = 2.1  # [m/s]; of the frame that a settling cylinder is seen from
 _VISCOSITY = 0.008088  # [m^2/s]; of the water that it settles in
