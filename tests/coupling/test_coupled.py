@@ -87,17 +87,56 @@ def test_momentum_that_comes_from_no_force_is_told():
 
 
 def test_the_added_mass_learns_what_the_water_answers():
-    swim = Swim(swim_run(), 0.1)
+    """It is symmetric before and after, and what a push does not move, by inertia, answers as before."""
     rng = np.random.default_rng(2)
-    push, answered = rng.normal(size=(2, swim.chain.size))
-    before = swim._added
-    other = rng.normal(size=push.size)
-    weights = np.diag(swim.stepper.mass() + before)
-    other -= push * (other @ (weights * push)) / (push @ (weights * push))
+    added, mass = (square @ square.T for square in rng.normal(size=(2, 5, 5)))
+    push = rng.normal(size=5)
+    answered = added @ push + 0.2 * mass @ push
+    after = coupled.learned(added, mass, push, answered)
+    assert after @ push == pytest.approx(answered)
+    assert after == pytest.approx(after.T, abs=1e-12)
+    assert np.linalg.eigvalsh(mass + after).min() > 0.0
+    other = rng.normal(size=5)
+    other -= push * (other @ (mass + added) @ push) / (push @ (mass + added) @ push)
+    seen = mass @ push + answered
+    lost = (after - added) @ other
+    assert lost == pytest.approx(seen * (seen @ other) / (seen @ push))
+    assert coupled.learned(added, mass, push, added @ push) == pytest.approx(added)
+    assert coupled.learned(added, mass, 0.0 * push, 0.0 * push) is added
+
+
+@pytest.mark.parametrize(("share", "believed"), [(0.2, True), (0.05, False), (-1.0, False)])
+def test_what_an_answer_would_take_from_the_mass_is_not_believed(share, believed):
+    """Water that pushes on would leave the robot less than its own mass."""
+    rng = np.random.default_rng(3)
+    added, mass = (square @ square.T for square in rng.normal(size=(2, 5, 5)))
+    push = rng.normal(size=5)
+    answered = share * (mass + added) @ push - mass @ push
+    after = coupled.learned(added, mass, push, answered)
+    assert (after is not added) is believed
+    assert np.linalg.eigvalsh(mass + after).min() > 0.0
+    swim = Swim(swim_run(), 0.1)
+    push, start = np.ones(swim.chain.size), swim._added
+    answered = share * (swim.stepper.mass() + start) @ push - swim.stepper.mass() @ push
     gained = swim._learn(push, answered)
-    assert swim._added @ push == pytest.approx(answered)
-    assert swim._added @ other == pytest.approx(before @ other)
-    assert before + gained == pytest.approx(swim._added)
+    assert swim._added == pytest.approx(start + gained)
+    assert np.any(gained) == believed
+
+
+def test_steps_before_an_end_are_about_equally_long():
+    stepper = Stepper(replace(disturbed(), noise=0.0, faults=(), pushes=()), (), 0.002, 50)
+    assert stepper.until(0.1, 7) == 7
+    assert stepper.until(0.1, 7, landing=7) == 7
+    assert stepper.until(0.1, 7, landing=8) == 7  # 50 physics steps in eight
+    assert stepper.until(0.03, 7, landing=8) == 5  # 15 in three
+    assert stepper.until(0.03, 7) == 7
+
+
+@pytest.mark.parametrize(("most", "period", "found"), [(16, 5, 13), (15, 5, 13), (13, 5, 13), (4, 5, 4), (1, 5, 1),
+                                                       (12, 6, 11), (8, 4, 7), (10, 10, 9)])  # fmt: skip
+def test_steps_of_the_flow_end_at_other_phases_of_the_servos_each_time(most, period, found):
+    assert coupled.out_of_step(most, period) == found
+    assert len({k * found % period for k in range(period)}) == period
 
 
 @pytest.mark.slow("robot and flow take a dozen steps together")

@@ -3,8 +3,11 @@
 Bounds are those that are asked for where the code reaches them; see ``test_validate_flow``.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from joint_limits import FreeLinks, Links, Push, beside, sprung
 from panels import by_panels
 from validation_rows import note
 
@@ -12,6 +15,7 @@ import suchus
 from suchus import flow
 from suchus.control import Swimming
 from suchus.coupling import Swim
+from suchus.coupling.chain import ChainState, Way
 from suchus.design.scale import scaled
 from suchus.flow.added import generalised_added_mass
 from suchus.flow.twist import Twists, joined, none
@@ -218,3 +222,170 @@ def test_a_swim_on_two_threads():
         "moving with it", "the same run",
     )  # fmt: skip
     assert other == 0
+
+
+# --- the limits: links that nothing holds, joints that are held, a step that is taken again -------------------------
+
+
+def course_of(times, states):
+    """The joints' course through postures at times, as a function that gives angles and rates: cubics."""
+    ways = []
+    for t0, t1, one, other in zip(times[:-1], times[1:], states[:-1], states[1:], strict=True):
+        ways.append(Way(t0, one))
+        ways[-1].go(t0, one, t1, other)
+
+    def course(time):
+        k = min(max(int(np.searchsorted(times, time, side="left")) - 1, 0), len(ways) - 1)
+        place, rate = ways[k].at(time)
+        return place[3:], rate[3:]
+
+    return course
+
+
+def followed(swim, duration):
+    """Swim, and return times and postures after each step, those at the start first."""
+    times, states = [0.0], [swim.path.at(0.0)]
+
+    def watch(one):
+        times.append(one.time)
+        states.append(one.path.at(one.time))
+
+    swim.go(duration, progress=silent, watch=watch)
+    return np.array(times), states
+
+
+def roots_apart(swim, times, states, force=None):
+    """By how much the root's ways of a swim and of a body with its joints' course differ, over the largest [-]."""
+    name, found = swim.run.robot.name, []
+    sim = beside(swim, course_of(times, states), force)
+    for dt in np.diff(times):
+        sim.advance(float(dt))
+        pose = sim.pose(name)
+        found.append([*pose.position[:2], pose.angle])
+    ours = np.array([one.place[:3] for one in states[1:]])
+    start = states[0].place[:3]
+    moved = np.abs(ours - start).max(axis=0)
+    return np.abs(ours - np.array(found)).max(axis=0) / np.array([moved[:2].max(), moved[:2].max(), moved[2]]), moved
+
+
+PUSHED = Push(link="head", force=(0.0, 2.0), duration=0.2)
+"""In the world it is the other way round, as the flow sees the world turned by half a turn."""
+
+
+def pushed_run(robot):
+    head = robot.axis[0].name
+    push = suchus.land.Push(
+        force=(-PUSHED.force[0], -PUSHED.force[1], 0.0), at=0.0, duration=PUSHED.duration, body=head
+    )
+    still = swim_of(robot, frequency=1.0).straightened("neck", "trunk", "tail")
+    return Run(robot=robot, gait=still, water=Slice(cells=48, reynolds=600.0), pushes=(push,))
+
+
+def test_joints_that_are_held_straight_make_one_free_body():
+    """Bounds of this and the next two tests were set before they were run, by the order of what is left out.
+
+    The coupling leaves over 0.5 % of the greatest force; a free body of the flow solver repays half of what it owes
+    each step, which was 0.5 % of the way in the design's trials: 1 % of the way and of the turn.
+    """
+    robot = sprung(suchus.ROBOTS["swimmer"], 200.0, 4.0)
+    swim = Swim(pushed_run(robot), 0.5, thread_count=1)
+    times, states = followed(swim, 0.5)
+    bent = max(float(np.abs(one.place[3:]).max()) for one in states)
+    links, straight = Links(swim), np.zeros(swim.chain.size)
+    centre = links.places(straight)[0]
+    away = centre[:, links.number(robot.axis[0].name)] - centre @ links.mass / links.mass.sum()
+
+    def force(time, pose):
+        if time > PUSHED.duration:
+            return 0.0, 0.0, 0.0
+        c, s = np.cos(pose.angle), np.sin(pose.angle)
+        x, y = c * away[0] - s * away[1], s * away[0] + c * away[1]
+        fx, fy = (part / swim.depth for part in PUSHED.force)
+        return fx, fy, x * fy - y * fx
+
+    (along, aside, turn), moved = roots_apart(swim, times, states, force)
+    case, shared = "robot whose joints are held straight, pushed aside", (
+        "48 cells/L", "moving with it", "one free body of the flow solver, of the robot's mass and inertia",
+    )  # fmt: skip
+    assert moved[1] > 0.005
+    assert bent < 2e-3 * moved[2]
+    note(case, "way of its root, difference over the largest", max(along, aside), "at most 0.01", *shared)
+    note(case, "turn of its root, difference over the largest", turn, "at most 0.01", *shared)
+    assert max(along, aside) < 0.01
+    assert turn < 0.01
+
+
+def test_joints_that_servos_hold_on_their_course_swim_as_the_midline_that_is_given():
+    robot = suchus.ROBOTS["swimmer"]
+    run = Run(
+        robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=64, reynolds=1500.0),
+        control=Swimming(ramp=0.5),
+    )  # fmt: skip
+    swim = Swim(run, 1.0, thread_count=1)
+    times, states = followed(swim, 1.0)
+    (along, aside, turn), _ = roots_apart(swim, times, states)
+    case, shared = "robot on its servos, and the midline of its joints given", (
+        "64 cells/L", "moving with it", "free body of the flow solver with the joints' course, the robot's mass",
+    )  # fmt: skip
+    note(case, "way of its root, difference over the largest", max(along, aside), "at most 0.01", *shared)
+    note(case, "turn of its root, difference over the largest", turn, "at most 0.01", *shared)
+    assert max(along, aside) < 0.01
+    assert turn < 0.01
+
+
+def test_joints_without_stiffness_are_hinges_of_free_links():
+    robot = sprung(suchus.ROBOTS["swimmer"], 0.0, 0.0)
+    swim = Swim(pushed_run(robot), 0.3, thread_count=1)
+    times, states = followed(swim, 0.3)
+    other = FreeLinks(Swim(pushed_run(robot), 0.3, thread_count=1), replace(PUSHED, link=robot.axis[0].name))
+    found = [other.step(float(dt)) for dt in np.diff(times)]
+    ours, theirs = (np.array([one.place for one in rows]) for rows in (states[1:], found))
+    ours, theirs = ours - states[0].place, theirs - states[0].place
+    apart, most = np.abs(ours - theirs).max(axis=0), np.abs(theirs).max(axis=0)
+    case, shared = "robot without stiffness in its joints, pushed at its head", (
+        "48 cells/L", "moving with it", "rigid links at free hinges, each step again until Newton's law holds to 1e-6",
+    )  # fmt: skip
+    note(
+        case, "way of its root, difference over the largest", apart[:2].max() / most[:2].max(), "at most 0.01", *shared
+    )
+    note(case, "angles, difference over the largest", apart[2:].max() / most[2:].max(), "at most 0.01", *shared)
+    assert other.left < 1e-6
+    assert most[3:].max() > 0.05
+    assert apart[:2].max() < 0.01 * most[:2].max()
+    assert apart[2:].max() < 0.01 * most[2:].max()
+
+
+def test_a_step_that_is_taken_again():
+    """Thrown away, taken otherwise, corrected, thrown away, and taken as the first time."""
+    robot = suchus.ROBOTS["swimmer"]
+    run = Run(robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=64, reynolds=1500.0),
+              control=Swimming(ramp=0.5))  # fmt: skip
+    swim = Swim(run, 0.2, thread_count=1)
+    swim.go(0.1, progress=silent)
+    sim, name, h = swim.sim, robot.name, 0.006
+    (q, v), start, kept = swim.path.at(swim.time), sim.time, sim.snapshot()
+    rng = np.random.default_rng(4)
+    pushes = rng.normal(size=(2, q.size))
+
+    def taken(push, *, corrected):
+        end = ChainState(q + h * v + 0.5 * h * h * push, v + h * push)
+        swim.path.go(start, ChainState(q, v), start + h, end)
+        sim.advance(h)
+        if corrected:
+            more = swim.chain.twists(end.place, 0.1 * h * push, np.array(sim.frame[0]), 2)
+            sim.accelerate({name: more})
+        loads = sim.last(name)
+        return [sim.velocity.copy(), sim.water.p.copy(), loads.parts.force.copy(), np.array(float(loads.whole.power))]
+
+    first = taken(pushes[0], corrected=True)
+    sim.restore(kept)
+    other = taken(pushes[1], corrected=True)
+    sim.restore(kept)
+    again = taken(pushes[0], corrected=True)
+    unlike = sum(int((a != b).sum()) for a, b in zip(first, again, strict=True))
+    note(
+        "step of a robot, taken again from a snapshot after another one", "numbers that differ", unlike, 0,
+        "64 cells/L", "moving with it", "the same step",
+    )  # fmt: skip
+    assert unlike == 0
+    assert sum(int((a != b).sum()) for a, b in zip(first, other, strict=True)) > 0

@@ -71,9 +71,10 @@ class Stretch:
     """Kinetic energy at its end, the water's not counted [J]."""
     effort: float
     """Work of the servos, braking counted as much as driving [J]."""
-    momentum: Float[np.ndarray, "2"]
-    """Momentum of the whole robot at its end, along and to the left, the water's not counted [kg m/s]."""
-    strayed: Float[np.ndarray, "2"]
+    momentum: Float[np.ndarray, " axis"]
+    """Momentum of the whole robot at its end, along and to the left, in space upwards too, the water's not counted
+    [kg m/s]."""
+    strayed: Float[np.ndarray, " axis"]
     """Momentum that the robot gained without a force: MuJoCo's step holds the mass matrix of its start [kg m/s]."""
 
 
@@ -296,10 +297,15 @@ class Stepper:
         whole[rows, columns] = whole[columns, rows] = given
         return whole
 
-    def _momentum(self) -> Float[np.ndarray, "2"]:
-        """Return the momentum of the whole robot along and to the left [kg m/s]."""
+    @property
+    def axes(self) -> int:
+        """Axes in which the root moves [-]."""
+        return 2 if self.in_plane else 3
+
+    def _momentum(self) -> Float[np.ndarray, " axis"]:
+        """Return the momentum of the whole robot along the axes in which the root moves [kg m/s]."""
         self._look()
-        return np.asarray(self._whole[:2] @ self._batch.qvel[0])
+        return np.asarray(self._whole[: self.axes] @ self._batch.qvel[0])
 
     # --- going on ----------------------------------------------------------------------------------------------
 
@@ -312,10 +318,18 @@ class Stepper:
             state, self.steps, self._last, passive, bias, self._whole + carried, carried, momentum
         )  # fmt: skip
 
-    def until(self, time: float, most: int) -> int:
-        """Return how many physics steps the next stretch may have, so that none goes beyond a time [s] or a trouble."""
+    def until(self, time: float, most: int, landing: int = 0) -> int:
+        """Return how many physics steps the next stretch has, so that none goes beyond a time [s] or a trouble.
+
+        Args:
+            time: at which a stretch ends [s].
+            most: physics steps in a stretch, at most [-].
+            landing: stretches before such an end that are about equally long, so that the last is no jolt [-].
+        """
         ahead = self._troubles[self._troubles > self.steps]
-        return max(min([most, round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
+        left = max(min([round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
+        stretches = -(-left // most)
+        return -(-left // stretches) if stretches <= max(landing, 1) else most
 
     def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> CoordinateState:
         """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
@@ -375,7 +389,7 @@ class Stepper:
         damped = -gained @ self._damping
         last, momentum = rate[-1], self._momentum()
         pushed = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.held)).sum(axis=0)
-        given = (pushed - saved.carried @ (last - rate[0]))[:2]
+        given = (pushed - saved.carried @ (last - rate[0]))[: self.axes]
         return Stretch(
             way=way.sum(axis=0)[self.dofs],
             worked=float(((np.array(tape.served) + later - damped) * way).sum()),
