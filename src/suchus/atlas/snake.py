@@ -7,12 +7,15 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids, published
 from suchus.atlas.marching import Grids, even, formed, march, middles, nested, refined
+from suchus.flow.signals import last_periods
 from suchus.progress import Progress, staged
 
 # At a Reynolds number of 2000 the wake has two states, in one of which the lift is a quarter larger. At 35 degrees it
 # goes over into that one after some 48 chords on 64 cells, and later on 32; see docs/flow_limits.md.
 _CODE = ("snake.py", "marching.py", "case.py")
 _SETTLED = 8.0  # [s] on the finer grid until the wake is its own
+PERIODS = 5
+"""Periods, the last ones, of which the source has the Strouhal number [-]."""
 _DOMAIN, _NEAR = ((-3.5, 8.5), (-4.0, 4.0)), ((-0.95, 2.25), (-0.9, 0.75))  # [m]
 _FINER = 4
 """Times as many cells around the body as in the domain: the source's too are finest there and wider far away [-]."""
@@ -30,8 +33,14 @@ def _snake(effort: RunEffort, progress: Progress, *, reynolds: float, degrees: i
     record = march(sim, effort.until, staged(progress, "fine grid", 0.2, 1.0))
     late = record.after(_SETTLED)
     drag, lift = 2 * np.average(late.force(), axis=0, weights=late.step)
-    strouhal = flow.strouhal(middles(late), late.force()[:, 1], length=1.0, speed=1.0)
+    strouhal = last_strouhal(middles(late), late.force()[:, 1])
     return {"mean drag": np.array(drag), "mean lift": np.array(lift), "Strouhal": np.array(strouhal)}
+
+
+def last_strouhal(time: np.ndarray, lift: np.ndarray) -> float:
+    """Return the Strouhal number of the last ``PERIODS`` whole periods of a lift, as the source does [-]."""
+    last = time[last_periods(time, lift, PERIODS)]
+    return float(PERIODS / (last[-1] - last[0]))
 
 
 def _setup(grids: Grids, reynolds: float, degrees: int) -> flow.Setup:
@@ -48,12 +57,13 @@ CASES = tuple(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
         grids=grids((64, 48, 32), 40.0, coarse=32, before=24.0),
-        quick=RunEffort(cells=24, until=18.0, coarse=16, before=6.0),
+        quick=RunEffort(cells=24, until=26.0, coarse=16, before=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 12 x 8 chords are "
         f"computed; 24 chords of travel from rest with {{coarse}} cells a chord and 40 with {{cells}} in a patch of "
         f"{_NEAR[0][1] - _NEAR[0][0]:.1f} x {_NEAR[1][1] - _NEAR[1][0]:.2g} chords around it, a quarter of them "
-        "elsewhere; means over the last 32, the 32nd to the 64th, as in the source.",
+        "elsewhere; means over the last 32, the 32nd to the 64th, and the Strouhal number of the last five "
+        "periods, as in the source.",
     )
     for reynolds in (1000, 2000)
     for degrees in (30, 35)
