@@ -84,13 +84,18 @@ GROUPS = (
         about="Bodies whose motion is solved together with the water: a hinge on a spring, the added mass of links "
         "near each other, flags behind a cylinder as chains of links, three links that swim as viscosity falls, and "
         "what robot and water owe each other, of a robot nearly as heavy as the water that it displaces and of "
-        "lighter ones.",
+        "lighter ones. Joints that are held straight, that follow their course or that nothing holds stand beside free "
+        "bodies of the flow solver and free links.",
         cases=(
             "ellipse on a torsion spring",
             "three bent ellipses",
             "flag behind a cylinder",
             "three-link swimmer",
             "coupled swimmer",
+            "robot whose joints",
+            "robot on its servos",
+            "robot without stiffness",
+            "step of a robot",
         ),
         figures=(
             (

@@ -95,18 +95,20 @@ class Links:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Push:
-    """A force on one link through its centre, from the start on for a while."""
+    """A force on one link through its centre, for a while."""
 
     link: str
     """Name of the link."""
     force: tuple[float, float]
     """Along the axes of the flow [N]."""
+    at: float
+    """When it begins [s]: a free body of the flow solver knows no added mass in its very first step."""
     duration: float
-    """How long [s]."""
+    """How long it lasts [s]."""
 
     def share(self, start, end):
         """Share of a time in which it lasts."""
-        return max(min(end, self.duration) - start, 0.0) / (end - start)
+        return max(min(end, self.at + self.duration) - max(start, self.at), 0.0) / (end - start)
 
 
 class FreeLinks:
@@ -120,7 +122,7 @@ class FreeLinks:
         self.retries, self.force, self.left = 0, np.zeros(swim.chain.size), 0.0
 
     def step(self, h):
-        """Take a step, again and again from where it began, until Newton's law holds to 1e-6 of its largest force."""
+        """Take a step, again and again from where it began, until Newton's law holds to 1e-5 of its largest force."""
         swim, sim, start = self.swim, self.swim.sim, self.swim.sim.time
         name, (q, v) = swim.run.robot.name, self.state
         kept, origin = sim.snapshot(), np.array(sim.frame[0])
@@ -129,7 +131,7 @@ class FreeLinks:
         inside = swim.chain.unpressed(q, found.pressed, origin)
         added = self.depth * (found.matrix - 0.5 * (inside + inside.T))
         a = self.more
-        for _ in range(25):
+        for _ in range(60):
             end = ChainState(q + h * v + 0.5 * h * h * a, v + h * a)
             swim.path.go(start, ChainState(q, v), start + h, end)
             sim.advance(h)
@@ -140,13 +142,15 @@ class FreeLinks:
             pushed = self.links.motions(place)[0][:, self.links.number(self.push.link)].T @ self.push.force
             outer = self.push.share(start, start + h) * pushed - self.links.bias(place, rate)
             left = inertia @ a - force - outer
-            self.left = float(np.abs(left).max() / max(np.abs(inertia @ a).max(), np.abs(outer).max()))
+            self.left = float(np.abs(left).max() / max(np.abs(inertia @ a).max(), np.abs(outer).max(), 1e-9))
             self.force = force
-            if self.left < 1e-6:
+            if self.left < 1e-5:
                 break
             a = a - np.linalg.solve(inertia + added, left)
             sim.restore(kept)
             self.retries += 1
+        else:
+            raise AssertionError(f"a force of {self.left:.3g} of the largest is left over")
         self.state, self.more = end, a
         return end
 
@@ -197,10 +201,10 @@ def given_joints(swim, course):
     return GivenJoints(spine=spine, weighed=mass)
 
 
-def beside(swim, course, force=None):
-    """The same water as that of a swim, with a body whose joints go on a course and that the water moves."""
+def beside(swim, start, course, force=None):
+    """The same water as that of a swim, with a body that the water moves from a place while its joints go a course."""
     setup = swim.sim.setup
-    shape, start = given_joints(swim, course), swim.path.at(0.0).place
+    shape = given_joints(swim, course)
     centre = shape.mass(0.0).centre
     body = flow.FreeBody(
         shape=shape, name=setup.bodies[0].name, start=(start[0] + centre[0], start[1] + centre[1]), angle=start[2],
