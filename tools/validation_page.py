@@ -76,8 +76,8 @@ GROUPS = (
     Group(
         title="Fine cells around a body alone",
         about="The same flow on a patch of fine cells nested in coarser ones, and on fine cells everywhere, which the "
-        "column of exact numbers holds.",
-        cases=("patch",),
+        "column of exact numbers holds; and the section of a flying snake on a patch as fine as its source's grid.",
+        cases=("patch", "flying snake"),
     ),
     Group(
         title="Robot and flow together",
