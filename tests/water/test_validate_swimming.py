@@ -1,15 +1,16 @@
-"""The swim on three grids: `make validate`. Prints the table that stands in docs/water.md.
+"""The swim on three grids: `make validate`. Its table stands in docs/water.md.
 
-Asked are speeds within 2 % and a force noise below 1 %; the free speed of a thin body at Re 7000 misses the first, a
-tail that tapers to nothing the second. Bounds marked so were set after the fact, a little wider than what was measured,
-so that nothing gets worse unseen.
+Asked are speeds within 2 %, a swim that is steady to 1 % and a force noise below 1 %: what is missed is expected to be,
+and the numbers are those that the page states.
 """
 
+import os
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from pages.stated import keep, kept
 from suchus.robots import ROBOTS
 from suchus.water import Swum, fit, printed_wave
 from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim
@@ -37,12 +38,20 @@ def grids():
             "power": float(free.power[-1]),
             "strouhal": swum.strouhal,
             "thrust": float(held.cycle_thrust[1:].mean()),
-            "power held": float(held.cycle_power[1:].mean()),
+            "held": float(held.cycle_power[1:].mean()),
             "noise": float(held.noise),
             "thin": float(held["thin"]),
         }
         print(cells, " | ".join(f"{name} {value:.3g}" for name, value in rows[cells].items()), flush=True)
     return rows
+
+
+def test_the_page_states_what_the_grids_give(grids):
+    """Renew with SUCHUS_GOLDEN=write and ``python tools/pages/stated.py``."""
+    every = {f"{name}_{cells}": value for cells, row in grids.items() for name, value in row.items()}
+    if os.environ.get("SUCHUS_GOLDEN") == "write":
+        keep("swim_grids", every)
+    assert every == pytest.approx(kept("swim_grids"), rel=0.02, abs=0.001)
 
 
 def _changes(rows, name):
@@ -56,11 +65,16 @@ def test_the_speed_grows_with_the_grid_by_little(grids):
     for order in (1, 2):
         end = speed[1:] + np.diff(speed) / ((cell[:-1] / cell[1:]) ** order - 1)
         print(f"speed on an endlessly fine grid if the error has order {order}, from each pair: {end.round(3)}")
-    assert _changes(grids, "speed")[1] < 0.06  # after the fact; 2 % asked
 
 
-def test_the_swim_is_nearly_steady_in_its_last_cycle(grids):
-    assert all(-0.01 < row["gain"] < 0.08 for row in grids.values())  # after the fact; 1 % asked
+@pytest.mark.xfail(strict=True, reason="9 % from 128 to 192 cells in November 2026")
+def test_the_speed_is_known_to_two_percent(grids):
+    assert _changes(grids, "speed")[1] < 0.02
+
+
+@pytest.mark.xfail(strict=True, reason="4 to 6 % in the eighth cycle in November 2026")
+def test_the_swim_is_steady_in_its_last_cycle(grids):
+    assert all(abs(row["gain"]) < 0.01 for row in grids.values())
 
 
 def test_the_power_and_the_thrust_settle(grids):
@@ -73,7 +87,11 @@ def test_less_of_the_body_is_thin_on_a_finer_grid(grids):
     assert grids[CELLS[-1]]["thin"] < 0.01
 
 
-def test_forces_are_smooth(grids):
+def test_forces_are_smoother_on_a_finer_grid(grids):
     noise = [grids[cells]["noise"] for cells in CELLS]
     assert np.all(np.diff(noise) < 0)
-    assert max(noise) < 0.06  # after the fact; 1 % asked
+
+
+@pytest.mark.xfail(strict=True, reason="2.6 to 4.4 % in November 2026: the tail tapers to nothing")
+def test_the_noise_of_the_force_is_below_a_hundredth(grids):
+    assert max(grids[cells]["noise"] for cells in CELLS) < 0.01
