@@ -27,9 +27,9 @@ class Series:
     """Force left over, before and after the corrections, over the greatest so far [-]."""
     corrections: list[int] = field(default_factory=list)
     """Corrections made [-]."""
-    worked: list[tuple[float, float, float, float, float]] = field(default_factory=list)
+    worked: list[tuple[float, float, float, float]] = field(default_factory=list)
     """Work of the servos, of springs, dampers and limits, of the water by force and way, and of it by the flow's own
-    account; and what the water's kinetic energy gained with motions that the flow is not told of [J]."""
+    account [J]."""
     energy: list[float] = field(default_factory=list)
     """Kinetic energy of the robot [J]."""
     radius: list[tuple[float, float]] = field(default_factory=list)
@@ -118,7 +118,7 @@ def _sampled(chain: MidlineChain | LinkChain, series: Series, record: xr.Dataset
     sums = worked.cumsum(axis=0)
     spent = np.maximum(np.maximum.accumulate(sums[:, 0]), 1e-300)
     missing = (sums[:, 0] + sums[:, 1] + sums[:, 2] - energy) / spent
-    apart = (sums[:, 2] + sums[:, 4] - sums[:, 3]) / np.maximum(np.maximum.accumulate(np.abs(sums[:, 2])), 1e-300)
+    apart = (sums[:, 2] - sums[:, 3]) / np.maximum(np.maximum.accumulate(np.abs(sums[:, 2])), 1e-300)
     hinges = [str(name) for name in record.joint.values]
     moments = np.full((len(time), len(hinges)), np.nan)
     roots = len(chain.coordinates) - len(chain.joints)

@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
-from math import isfinite, prod
+from math import gcd, isfinite, prod
 from pathlib import Path
 
 import numpy as np
@@ -71,7 +71,6 @@ and the change of the acceleration, over its size, at which they have [-]."""
 _CHANGING = (
     "force",
     "push",
-    "told",
     "owed",
     "strayed",
     "added",
@@ -178,6 +177,21 @@ def learned(
     return np.asarray(added + np.outer(seen, seen) / after - np.outer(whole, whole) / before)
 
 
+def out_of_step(most: int, period: int) -> int:
+    """Return how many physics steps a step of the flow has, at most so many, so that it ends at other phases each time.
+
+    Servos are commanded anew at the beginning of each control period, and light limbs follow so fast that their speed
+    changes by a tenth within it. Steps of the flow that end at one phase would all see the speed at that one.
+
+    Args:
+        most: physics steps [-].
+        period: physics steps in a control period [-].
+    """
+    fair = [n for n in range(max(most - 3, 1), most + 1) if gcd(n, period) == 1]
+    fast = [n for n in fair if most > period and 1 < n % period < period - 1]
+    return max(fast or fair or [most])
+
+
 class Swim:
     """One run whose water is a flow, from rest.
 
@@ -230,7 +244,6 @@ class Swim:
         self._effort = 0.0
         self._force = np.zeros(self.chain.size)
         self._push = np.zeros(self.chain.size)
-        self._told = self.path.at(0.0).rate  # rates that the flow was told last
         self._owed = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
         self._strayed = np.zeros(self.stepper.axes)  # see ``Stretch.strayed``; of the last step
         self._added = np.zeros((self.chain.size, self.chain.size))
@@ -348,24 +361,10 @@ class Swim:
     def _origin(self) -> np.ndarray:
         return np.array(self.sim.frame[0, : self.chain.axes])
 
-    def _shown(self, state: CoordinateState) -> ChainState:
-        """Return a state of the robot as the flow is told of it: light limbs without what they shake by."""
-        return self.chain.seen(state.place, self.stepper.steady_rate() if self._linked else state.rate)
-
-    def _found(self, began: ChainState, posture: ChainState, push: np.ndarray, h: float) -> np.ndarray:
-        """Return the generalised force of the water in the last step, along the robot's own coordinates.
-
-        Args:
-            began: posture at the step's start, as the flow was told.
-            posture: that at its end.
-            push: acceleration of the robot, which differs from what the flow was told by what it shakes by.
-            h: length of the step [s].
-        """
+    def _found(self, began: ChainState, posture: ChainState) -> np.ndarray:
+        """Return the generalised force of the water in the last step, along the robot's own coordinates."""
         loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
-        force = self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
-        if not self._linked:
-            return force
-        return np.asarray(force + self._added @ ((posture.rate - began.rate) / h - push))
+        return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
     # --- going on ----------------------------------------------------------------------------------------------
 
@@ -470,8 +469,11 @@ class Swim:
         allowed = min(allowed, LONGEST * period / self.water.cells)
         if self._linked:
             allowed = min(allowed, period / STEPS)
-        count = stepper.until(until, max(int(allowed / self.timestep), 1), LANDING)
-        h, start, began = count * self.timestep, self.time, self._shown(stepper.now)
+        most = max(int(allowed / self.timestep), 1)
+        if self._linked:
+            most = out_of_step(most, round(stepper.period / self.timestep))
+        count = stepper.until(until, most, LANDING)
+        h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
         stepper.begin()
         newton = self._newton()
         foreseen = self._strayed
@@ -483,11 +485,11 @@ class Swim:
                 f"under the water's force; take a shorter timestep than {self.timestep:.3g} s, or more cells.",
                 time=start,
             )
-        posture = self._shown(end)
+        posture = self._seen(end)
         self.path.go(start, began, start + h, posture)
         sim.advance(h)
         self._placed = posture
-        found = self._found(began, posture, push, h)
+        found = self._found(began, posture)
         self._greatest = max(self._greatest, self._size(found))
         left = first = self._size(found - told) / max(self._greatest, 1e-300)
         stretch, made, mass = stepper.account(), 0, stepper.mass()
@@ -498,19 +500,18 @@ class Swim:
             likely = push + np.linalg.solve(mass + self._added, found - told)
             end, push = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
             told = asked - self._added @ (push - at)
-            other = self._shown(end)
+            other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
             posture = other
             self.path.go(start, began, start + h, posture)
             sim.accelerate({name: more})
-            found = self._found(began, posture, push, h)
+            found = self._found(began, posture)
             newton += np.linalg.solve(mass + self._kept, self._learn(push - at, asked - found))
             left, made = self._size(found - told) / self._greatest, made + 1
             stretch = stepper.account()
             missed = _lessened(h * (found - told), stretch.strayed - foreseen)
         self._effort += stretch.effort
         self._note(stretch, found, self._stirred(stretch, push, h), posture, (first, left), made)
-        self._told = posture.rate
         self._greatest_momentum = max(self._greatest_momentum, float(np.linalg.norm(stretch.momentum)))
         self._force, self._push, self._owed, self._strayed = found, push, missed, stretch.strayed
         self._watch(left)
@@ -523,14 +524,6 @@ class Swim:
         """
         mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
         return float((self._kept @ push) @ (stretch.way - mean))
-
-    def _unseen(self, posture: ChainState) -> float:
-        """Return by how much the water's kinetic energy grew in a step with what the flow is not told of [J]."""
-        if not self._linked:
-            return 0.0
-        stepper, kept = self.stepper, self._kept
-        ends = (stepper.now.rate, 1.0), (posture.rate, -1.0), (stepper.at_begin.rate, -1.0), (self._told, 1.0)
-        return float(sum(0.5 * way * rate @ kept @ rate for rate, way in ends))
 
     def _note(
         self, stretch: Stretch, found: np.ndarray, stirred: float, posture: ChainState,
@@ -545,9 +538,7 @@ class Swim:
         series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
         series.residual.append(residual)
         series.corrections.append(made)
-        series.worked.append(
-            (stretch.worked, stretch.yielded, float(found @ stretch.way) + stirred, -power * h, self._unseen(posture))
-        )
+        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way) + stirred, -power * h))
         series.energy.append(stretch.energy)
 
     def _drift(self) -> np.ndarray:

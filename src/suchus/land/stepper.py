@@ -197,7 +197,6 @@ class Stepper:
         self._is_looked_at = False
         self._look()
         self._damping = damping_of(self.model, self._data)
-        self._past = self._batch.qvel[0].copy()[None]  # velocities before the stretch, the last where it began
         self._tape = _Tape([], [], [])
 
     # --- where it is -------------------------------------------------------------------------------------------
@@ -308,23 +307,6 @@ class Stepper:
         self._look()
         return np.asarray(self._whole[: self.axes] @ self._batch.qvel[0])
 
-    def _gone_through(self) -> Float[np.ndarray, "step dof"]:
-        """Return the velocities in the last two control periods, those before the beginning as they were there."""
-        count = 2 * self._per_tick + 1
-        rows = [*self._past, *self._tape.velocity[1:]][-count:]
-        return np.array([rows[0]] * (count - len(rows)) + rows)
-
-    def steady_rate(self) -> Float[np.ndarray, " coordinate"]:
-        """Return the rates now without what they shake by within a control period.
-
-        Servos are commanded anew at the beginning of each, and light limbs follow at once. It is the mean over the last
-        period, carried on to now by its change from that over the one before.
-        """
-        rows = self._gone_through()
-        mean = 0.5 * (rows[1:] + rows[:-1])
-        before, last = mean[: self._per_tick].mean(axis=0), mean[self._per_tick :].mean(axis=0)
-        return np.asarray((last + 0.5 * (last - before))[self.dofs])
-
     # --- going on ----------------------------------------------------------------------------------------------
 
     def begin(self) -> None:
@@ -332,7 +314,6 @@ class Stepper:
         self.at_begin = self.now
         state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
         carried, momentum = self._carried(), self._momentum()
-        self._past, self._tape = self._gone_through(), _Tape([], [], [])
         self._saved = _Saved(
             state, self.steps, self._last, passive, bias, self._whole + carried, carried, momentum
         )  # fmt: skip
@@ -461,7 +442,7 @@ class Stepper:
         self._read()  # where a control period ends the next decision is by this, else by what is read later
         felt = [one.felt for one in self._decided]
         return {
-            "steps": np.array(self.steps), "physics": self._physics.state[0].copy(), "past": self._gone_through(),
+            "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
             "targets": np.array([one.command.targets[0] for one in self._decided]),
             **{f"felt.{name}": np.array([one[name] for one in felt]) for name in (felt[0] if felt else ())},
             **{f"now.{name}": values for name, values in self._batch.felt(0).items()},
@@ -488,7 +469,6 @@ class Stepper:
         self._recorder.resume(parts["samples"])
         self._batch.feel(0, parts["now"])
         self._physics.state[0] = state["physics"]
-        self._past, self._tape = state["past"], _Tape([], [], [])
         self._physics.forward(None, int(mujoco.mjtStage.mjSTAGE_VEL))
         self._is_looked_at = False
         self._is_read = self.steps % self._per_tick == 0
