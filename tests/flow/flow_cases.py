@@ -292,3 +292,22 @@ def in_patch(setup, whole, x, y, *, until, ratio=4, z=None):
     grids = {"grid": fine}, {"grid": patch, "around": whole}
     sims = [flow.Simulation(replace(setup, **those)) for those in grids]
     return [sim.run(until, progress=False) for sim in sims]
+
+
+def off_potential_flow(sim, cells=(1.0, 4.0), front=False):
+    """Rms difference of the velocity from ideal water around the cylinder of diameter 1, over the stream.
+
+    That is a stream of speed 1 along x; what is compared lies so many cells off the cylinder, all around it or ahead of
+    its middle.
+    """
+    grid, off = sim.setup.grid, []
+    (x0, y0), radius, (near, far) = sim.pose("body").position, 0.5, cells
+    for c, component in enumerate(sim.water.velocity):
+        x = (grid.faces if c == 0 else grid.centres)(0, component.shape[1], 0) - x0
+        y = (grid.faces if c == 1 else grid.centres)(0, component.shape[0], 1) - y0
+        x, y = np.meshgrid(x, y)
+        r = np.maximum(np.hypot(x, y), 0.1)
+        exact = 1 - 0.25 * (x**2 - y**2) / r**4 if c == 0 else -0.5 * x * y / r**4
+        counts = (r > radius + near * grid.cell) & (r < radius + far * grid.cell) & ~(front & (x >= 0))
+        off.append((component - exact)[counts])
+    return float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
