@@ -8,10 +8,11 @@ import xarray as xr
 
 from suchus.blueprint import read_correction, write
 from suchus.control import Swimming
+from suchus.coupling import Swim
 from suchus.design import LinkFactors, SectionCorrection
 from suchus.errors import Doubtful, InvalidDesign, UnreadableFile
 from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free.in_flow import flow_speed, nearer, residual_text, speeds_beside, water_of
+from suchus.experiments.swim_free.in_flow import fin_runs, flow_speed, nearer, residual_text, speeds_beside, water_of
 from suchus.land import Run
 from suchus.land.waters import Slice, Space
 from suchus.robots import ROBOTS
@@ -33,6 +34,23 @@ def test_the_rung_has_the_settings_that_were_asked_for():
     assert water_of("slice", 64, 1e3, 0.1) == Slice(cells=64, reynolds=1e3)
     assert water_of("space", 64, 1e3, 0.1) == Space(cells=64, reynolds=1e3, tail_height=0.1)
     assert water_of("space", 64, 1e3, 0.0, linked=True) == Space(cells=64, reynolds=1e3, linked=True)
+
+
+@pytest.mark.slow("a few steps of a robot from a file in a slice, three times")
+def test_a_robot_and_a_gait_from_files_swim_with_other_passive_tails(tmp_path):
+    caiman = ROBOTS["floating_caiman"]
+    robot = write(replace(caiman, name="mine"), tmp_path / "mine.toml")
+    gait = write(swim_of(caiman, frequency=1.0), tmp_path / "wave.toml")
+    run = Run(robot=str(robot), gait=str(gait), water=Slice(cells=40, reynolds=600.0), control=Swimming(ramp=0.5))
+    found = []
+    for one in (run, *fin_runs(run, (0.5, 0.002))):
+        swim = Swim(one, 0.2)
+        for _ in range(4):
+            swim.step(0.2)
+        found.append(swim.stepper.now.place[-1])
+        assert swim.series.residual[-1][1] < 0.01
+    assert len(set(found)) == 3  # the end of the tail goes another way with each
+    assert swim.run.robot.name == "mine"
 
 
 def test_impossible_settings_are_refused():
