@@ -169,7 +169,7 @@ def test_limbs_that_are_held_still_swim_as_folded_ones_do():
         found.append(record)
         added.append(record.added_mass)
         assert np.all(adrift < 0.01)
-        assert float(abs(record.power_error[-1])) < 2e-3
+        assert float(abs(record.power_error[-1])) < (2e-3 if water.linked else 5e-3)
     linked, folded = found
     names = [name for name in folded.coordinate.values if not name.startswith("root")]
     rates = np.gradient(folded.joint_angle.sel(joint=names).values, axis=0)
