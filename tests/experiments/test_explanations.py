@@ -18,9 +18,8 @@ STATED = Path(__file__).parents[1] / "docs" / "stated"
 """Measures of full forms, by experiment: those of a question's options that no quick form takes among them."""
 ASKED_FOR = {
     "swim_3d": {"misfit_tail_only_as_taken", "misfit_trunk_and_tail_as_taken", "speed_trunk_and_tail_as_taken"},
-    "swim_free": {"coupling_residual", "energy_error", "link_r2", "joint_r2"},
 }
-"""What is measured only when somebody asks for it, in minutes; test_swim_3d.py and test_swim_in_flow.py look at it."""
+"""What is measured only when somebody asks for it, in minutes; test_swim_3d.py looks at it."""
 FOLDERS = sorted(Path(suchus.experiments.__file__).parent.glob(f"*/{EXPLANATION}"))
 DEFINED = {
     "feedback": {"90"},  # the quantile in per cent that cycles_to_converge is
