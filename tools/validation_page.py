@@ -100,7 +100,7 @@ GROUPS = (
         figures=(
             (
                 "flag",
-                "Way of a flag's tip across the channel with 7, 14 and 28 links, and the published middle and range",
+                "Way of a flag's tip across the channel by the number of its links, and the published range",
             ),
         ),
     ),
