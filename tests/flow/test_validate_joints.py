@@ -3,6 +3,8 @@
 Bounds are those that are asked for where the code reaches them; see ``test_validate_flow``.
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 from joint_limits import FreeLinks, Links, Push, beside, sprung
@@ -182,10 +184,20 @@ def swum(mass_factor=1.0, duration=0.6, **changes):
     return swim, np.array(momenta)
 
 
-@pytest.mark.parametrize(("factor", "told"), [(1.0, "0.95"), (0.2, "0.19"), (0.02, "0.019")])
-def test_a_light_robot_and_its_water(factor, told):
+LIGHT = (1.0, "0.95"), (0.2, "0.19"), (0.02, "0.019")
+"""Factors on the mass of the swimmer, and its density then over the water's."""
+
+
+@cache
+def light(factor):
+    """A swim so many times as heavy, the momenta after its steps, and its record."""
     swim, momenta = swum(factor)
-    record = swim.record().isel(run=0)
+    return swim, momenta, swim.record().isel(run=0)
+
+
+@pytest.mark.parametrize(("factor", "told"), LIGHT)
+def test_a_light_robot_and_its_water(factor, told):
+    swim, momenta, record = light(factor)
     case, grid, box = f"coupled swimmer, {told} of the water's density", "64 cells/L", "moving with it"
     shared = grid, box, "the balance of the robot itself"
     left = float(record.coupling_residual[5:].max())
@@ -199,8 +211,16 @@ def test_a_light_robot_and_its_water(factor, told):
     note(case, "momentum less the impulse of the water, over its maximum", apart, "at most 0.01", *shared)
     assert left < 0.01
     assert energy < 1e-3
-    assert power < 2e-3
     assert apart < 0.01
+
+
+@pytest.mark.parametrize(
+    "factor",
+    [*(one for one, _ in LIGHT[:-1]),
+     pytest.param(LIGHT[-1][0], marks=pytest.mark.xfail(strict=True, reason="0.28 % at the end in November 2026"))],
+)  # fmt: skip
+def test_the_power_of_a_light_robot_is_that_of_the_flow(factor):
+    assert abs(float(light(factor)[2].power_error[-1])) < 2e-3
 
 
 def test_a_swim_on_two_threads():
@@ -327,8 +347,11 @@ def test_joints_that_servos_hold_on_their_course_swim_as_the_midline_that_is_giv
     assert turn < 0.01
 
 
+@pytest.mark.xfail(
+    strict=True, raises=AssertionError, reason="2.5 % of the way and 1.8 % of the angles in November 2026"
+)
 def test_joints_without_stiffness_are_hinges_of_free_links():
-    """The bound of 1 % is missed: the ways differ by 2.6 %, and by 1.3 % with a quarter of the physics' step.
+    """What differs in the way is half as much with a quarter of the physics' step.
 
     The rest does not fall with what the coupling leaves over; the links are taken to accelerate evenly through steps of
     23 ms here, and not in the physics.
@@ -351,8 +374,8 @@ def test_joints_without_stiffness_are_hinges_of_free_links():
     note(case, "angles, difference over the largest", apart[2:].max() / most[2:].max(), "at most 0.01", *shared)
     assert other.retries > len(found)
     assert most[3:].max() > 0.05
-    assert apart[:2].max() < 0.03 * most[:2].max()
-    assert apart[2:].max() < 0.03 * most[2:].max()
+    assert apart[:2].max() < 0.01 * most[:2].max()
+    assert apart[2:].max() < 0.01 * most[2:].max()
 
 
 def test_a_step_that_is_taken_again():

@@ -64,7 +64,8 @@ product misses the power by a share of the second order; with 42 it is up to 0.5
 FINER = 5
 """Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
 LEAST = 0.1
-"""Share of the inertia of robot and water along a correction, at least, that what the water answers to it may leave."""
+"""Share of the inertia of robot and water along a correction, at least, that the water's answer to it may leave [-].
+Chosen: with less, the next guess of the acceleration would be more than ten times as large."""
 _ROUNDS, _SETTLED = 10, 1e-4
 """Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
 and the change of the acceleration, over its size, at which they have [-]."""
