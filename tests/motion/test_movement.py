@@ -431,6 +431,15 @@ def test_a_batch_of_different_gaits_and_bodies_says_what_each_says_alone(robot, 
         assert batch.bend_of("trunk", axis)[i] == pytest.approx(steady + (swing * z[0]).real, abs=1e-14)
 
 
+def test_a_bend_has_the_same_bits_whoever_is_in_the_batch(robot, crawl_gait):
+    knots = replace(crawl_gait, axis=(Bend(part="trunk", amplitude=(0.4, 0.7, 1.1)),))
+    gaits = [crawl_gait, knots, crawl_gait.strode(0.5)]  # one part's bend whole, hinge by hinge, and whole again
+    batch, z = Batch([robot] * 3, gaits), np.exp(2j * np.pi * np.array([0.13, 0.29, 0.71]))
+    assert len(batch.groups) == 1
+    alone = [movement(robot, gait).bend_of("trunk", z[i : i + 1])[0] for i, gait in enumerate(gaits)]
+    assert batch.bend_of("trunk", z).tolist() == alone
+
+
 def test_servo_names_of_a_given_bend(robot, crawl_gait):
     straight = crawl_gait.straightened()
     here = movement(robot, straight)

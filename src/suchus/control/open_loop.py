@@ -8,6 +8,7 @@ from jaxtyping import Float
 from suchus.control.controller import Command, Runs
 from suchus.control.sensed import Sensed
 from suchus.design.checks import Checks
+from suchus.design.skeleton import skeleton
 from suchus.motion import START, intended
 
 
@@ -37,12 +38,12 @@ class OpenLoop:
 
     @staticmethod
     def start(runs: Runs, period: float) -> "GaitTable":
-        """Tabulate every gait; runs with the same robot, gait and control share their rows.
+        """Tabulate every gait; runs whose robots have one skeleton, with the same gait and control, share their rows.
 
         Raises:
             OutsideLimits: a gait of measured curves is to grow over a ramp.
         """
-        keys = list(zip(runs.controls, runs.robots, runs.gaits, strict=True))
+        keys = list(zip(runs.controls, map(skeleton, runs.robots), runs.gaits, strict=True))
         unique = {key: i for i, key in enumerate(dict.fromkeys(keys))}
         for control, _, gait in unique:
             if control.ramp > 0.0:

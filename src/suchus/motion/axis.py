@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Bool, Complex, Float
 
 from suchus.design import Robot, layout
 from suchus.motion.gait import Gait
@@ -84,6 +84,7 @@ class Waves:
         self._real = not self.swing.imag.any()
         self._steady = bool(self.offset.any())
         self.moves = bool(self.swing.any()) or self._steady
+        self._alike: dict[tuple[int, ...], np.ndarray] = {}
 
     def bends(
         self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
@@ -99,11 +100,19 @@ class Waves:
         """Return the bend of some hinges together [rad]."""
         if not len(among):
             return np.zeros(bends.shape[:-1])
-        first = among[0]
-        alike = (self.swing[:, among] == self.swing[:, [first]]).all() and (self.share[:, among] == len(among)).all()
-        if alike and (self.offset[:, among] == self.offset[:, [first]]).all():  # n nths of a number are not the number
-            return np.asarray(bends[..., first])
-        return np.asarray((bends[..., among] / self.share[:, among]).sum(axis=-1))
+        alike, first = self._takes_the_same(tuple(among)), bends[..., among[0]]
+        if alike.all():  # n nths of a number are not the number
+            return np.asarray(first)
+        parts = (bends[..., among] / self.share[:, among]).sum(axis=-1)
+        return np.asarray(np.where(alike, first, parts))
+
+    def _takes_the_same(self, among: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
+        """Return of each run whether some hinges share the bend of one part evenly, and it is all of them."""
+        if among not in self._alike:
+            rows, first = list(among), [among[0]]
+            same = (self.swing[:, rows] == self.swing[:, first]) & (self.offset[:, rows] == self.offset[:, first])
+            self._alike[among] = (same & (self.share[:, rows] == len(among))).all(axis=1)
+        return self._alike[among]
 
     def together(self, among: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of some hinges together [rad]."""

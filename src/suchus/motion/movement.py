@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from suchus.design import Layout, Robot, layout, servo_ranges
+from suchus.design.skeleton import skeleton
 from suchus.kinematics import limb as limb_kinematics
 from suchus.kinematics import tail as tail_kinematics
 from suchus.motion.axis import Waves, pitch_hinges, yaw_hinges
@@ -202,7 +203,9 @@ def trunk_amplitude(robot: Robot, gait: Gait) -> float:
 
 
 class Batch:
-    """The gaits of the runs of a batch, gathered by robot and structure, so that each kind is worked out in one call.
+    """The gaits of the runs of a batch, gathered by skeleton and structure: each kind is worked out in one call.
+
+    Robots that are built of one design have one skeleton, so that a batch of them is one kind.
 
     Args:
         robots: the design of each run; all have the same layout.
@@ -212,7 +215,7 @@ class Batch:
     def __init__(self, robots: Sequence[Robot], gaits: Sequence[Gait]) -> None:
         members: dict[Any, list[int]] = {}
         for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
-            members.setdefault((robot, structure(gait)), []).append(run)
+            members.setdefault((skeleton(robot), structure(gait)), []).append(run)
         self.groups = [
             (Movement(robots[runs[0]], [gaits[run] for run in runs]), np.array(runs)) for runs in members.values()
         ]
