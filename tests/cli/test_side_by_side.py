@@ -93,6 +93,8 @@ def test_who_breaks_or_dies_is_told_and_the_others_are_as_ever(capsys, tmp_path)
     assert sorted(path.name for path in (tmp_path / "out").glob("[!.]*")) == ["report.html", "wave"]
     assert main(["run", "wave", "--out", str(tmp_path / "alone")]) == 0
     assert files(tmp_path / "out/wave") == files(tmp_path / "alone/wave")
+    outcome = json.loads((tmp_path / "out/wave/outcome.json").read_text())
+    assert outcome["provenance"]["machine"]["described"]["threads"] == "1"
 
 
 PATIENCE = 300.0

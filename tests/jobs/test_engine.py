@@ -133,6 +133,7 @@ def test_a_place_is_this_machine_some_processes_of_it_or_a_cluster():
     assert place_for("a sum") == ThisProcess(1)
     assert place_for("a sum", here=ThisProcess(2)) == ThisProcess(2)
     assert place_for("a sum", jobs=3) == Processes(3)
+    assert place_for("a sum", jobs=3, each=1) == Processes(3, each=1)
     assert place_for("a sum", client=client) == Cluster(client)
     with pytest.raises(OutsideLimits, match="a sum in 0 processes cannot be; at least 1 is needed"):
         place_for("a sum", jobs=0)

@@ -58,6 +58,8 @@ def test_processes_share_the_threads(monkeypatch):
     monkeypatch.setenv("SUCHUS_THREADS", "5")
     heard = side_by_side(threads_of, [0, 1], 2)
     assert [said.value for _, said in heard if isinstance(said, Done)] == ["2", "2"]
+    heard = side_by_side(threads_of, [0], 2, each=1)
+    assert [said.value for _, said in heard if isinstance(said, Done)] == ["1"]
 
 
 def test_our_own_errors_come_back_and_end_it():

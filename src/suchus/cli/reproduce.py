@@ -122,6 +122,9 @@ REPORT = "report.html"
 """Name of the page of all experiments."""
 _MOST = 4
 """Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
+_EACH = 1
+"""Threads of each of several experiments [-]: two would end the flow's small loops little sooner, for twice the
+processor time."""
 _LONG = (
     "swimming",
     "feedback",
@@ -206,11 +209,12 @@ def _reproduced(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: b
         tries=1,  # an experiment that takes too much memory takes it again
         died=_died,
     )
+    side_by_side = min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)
     try:
         finish(
             job,
             results,
-            place=place_for("reproduce", jobs=min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)),
+            place=place_for("reproduce", jobs=side_by_side, each=_EACH),
             each=lambda number: bars.task(order[number].name),
             finished=lambda _, done: bars.say(done.summary),
         )

@@ -62,7 +62,7 @@ class ThisProcess:
 
 @dataclass(frozen=True, slots=True)
 class Processes:
-    """Pieces in processes of this machine, which share the threads and take one piece after the other.
+    """Pieces in processes of this machine, which take one piece after the other.
 
     Each imports the module that was started, as all of Python's own processes do: a script that asks for them needs
     its ``if __name__ == "__main__":``.
@@ -70,11 +70,13 @@ class Processes:
 
     at_once: int
     """Number of processes [-]."""
+    each: int | None = None
+    """Threads that each of them takes [-]; an equal share of all if None."""
 
     def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
         """Yield the results; a process that dies takes its piece with it and nothing else, see ``Place``."""
         told: dict[int, Progress] = {}
-        with closing(processes.side_by_side(job.work, items, self.at_once, tries=job.tries)) as heard:
+        with closing(processes.side_by_side(job.work, items, self.at_once, tries=job.tries, each=self.each)) as heard:
             for number, said in heard:
                 if isinstance(said, processes.Begun):
                     told[number] = begun(number)
@@ -107,13 +109,14 @@ HERE = ThisProcess()
 """One piece after the other, in this process."""
 
 
-def place_for(what: str, *, client: Any = None, jobs: int = 1, here: Place = HERE) -> Place:
+def place_for(what: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE) -> Place:
     """Return where a job is done.
 
     Args:
         what: what the job is called in messages, as ``a study``.
         client: a ``distributed.Client``, whose workers then do it; None for this machine.
         jobs: number of processes of this machine; with 1 this process does it [-].
+        each: threads that each of several processes takes [-]; an equal share of all if None.
         here: how this process does it.
 
     Raises:
@@ -125,7 +128,7 @@ def place_for(what: str, *, client: Any = None, jobs: int = 1, here: Place = HER
         raise OutsideLimits(f"{what} takes a cluster or {jobs} processes of this machine, not both; choose one.")
     if client is not None:
         return Cluster(client)
-    return Processes(jobs) if jobs > 1 else here
+    return Processes(jobs, each) if jobs > 1 else here
 
 
 def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:

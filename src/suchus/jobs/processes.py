@@ -71,7 +71,7 @@ class Worker:
 
 
 def side_by_side(
-    work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1
+    work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1, each: int | None = None
 ) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
     """Do one piece of work for each item in a few processes, and yield what is heard of the pieces as it is heard.
 
@@ -82,8 +82,9 @@ def side_by_side(
     Args:
         work: makes the result of an item, and tells how far it is; it, items and results travel as pickles.
         items: what differs between the pieces.
-        jobs: number of processes, which share the threads.
+        jobs: number of processes.
         tries: how often a piece is begun at most, whose process dies [-].
+        each: threads that each process takes [-]; an equal share of all if None.
 
     Yields:
         The number of a piece, and what is heard of it: each ends with ``Done`` or ``Died``.
@@ -93,8 +94,8 @@ def side_by_side(
     """
     left, begun = list(range(len(items))), Counter[int]()
     jobs = min(jobs, len(left))
-    each = max(threads.count() // max(jobs, 1), 1)
-    workers = [hire(work, each) for _ in range(jobs)]
+    mine = max(threads.count() // max(jobs, 1), 1) if each is None else each
+    workers = [hire(work, mine) for _ in range(jobs)]
 
     def give(worker: Worker) -> int:
         worker.piece = left.pop(0)
@@ -125,7 +126,7 @@ def side_by_side(
                 worker.piece = None
                 if left and isinstance(said, Died):
                     workers.remove(worker)
-                    workers.append(worker := hire(work, each))
+                    workers.append(worker := hire(work, mine))
                 if left:
                     yield give(worker), Begun()
     finally:
