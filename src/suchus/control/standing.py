@@ -13,6 +13,7 @@ from suchus.control.sensed import Sensed
 from suchus.design import Layout, Robot, layout
 from suchus.design.checks import Checks
 from suchus.design.measures import LegMeasures
+from suchus.design.skeleton import skeleton
 from suchus.motion import Gait, intended
 from suchus.motion.posture import Keyed, hind_leg, plan, upright
 from suchus.motion.rising import stand_up
@@ -145,7 +146,8 @@ class Standing:
         time = np.arange(runs.ticks) * period
         courses = [control._course(robot, gait, time) for control, robot, gait in unique]
         course = Course(*(np.array(part) for part in zip(*courses, strict=True)))
-        legs, balances = [upright(robot).leg for robot in robots], [control.balance for control in runs.controls]
+        legs = [upright(skeleton(robot)).leg for robot in robots]
+        balances = [control.balance for control in runs.controls]
         rows = np.array([unique[key] for key in keys])
         return Stander(balances, course, rows, legs, layout(robots[0]), period)
 
@@ -220,6 +222,8 @@ class Stander:
         feet = now.feet + back[:, None] * np.array([0.0, 1.0, 0.0])
         for leg, who in self._legs:
             balancing = who & upright
+            if not balancing.any():
+                continue
             angles = hind_leg(leg, feet[balancing], now.pitch[balancing], clip=True)
             for servos in self._hind:
                 targets[balancing, servos] = angles
