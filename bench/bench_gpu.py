@@ -149,6 +149,16 @@ def relax_on_card(out, x, b, weight, nx, ny, nz):
         out[k] = weight * SHARE * (around(x, i, j, n, nx, ny, nz) + b[k]) + (np.float32(1) - weight) * x[k]
 
 
+@cuda.jit
+def reach_on_card(y, x, b, weight, far, nx, ny, nz):
+    """Go on from ``y`` towards what a Jacobi step from ``x`` comes to, and beyond it."""
+    k = cuda.grid(1)
+    if k < nx * ny * nz:
+        i, j, n = k % nx, k // nx % ny, k // (nx * ny)
+        step = weight * SHARE * (around(x, i, j, n, nx, ny, nz) + b[k]) + (np.float32(1) - weight) * x[k]
+        y[k] += far * (step - y[k])
+
+
 class Cycle:
     """One V-cycle on a card, with a launch for each sweep."""
 
@@ -173,14 +183,14 @@ class Cycle:
             relax_on_card[blocks, THREADS](self.x[k], self.y[k], self.b[k], TWO, *size)
 
     def solve_coarsest(self, k):
-        """Smooth the last level from nothing, in pairs, as often as the processor does."""
+        """Solve the last level from nothing, with the steps of the processor."""
         size, blocks = self.sizes[k], -(-prod(self.sizes[k]) // THREADS)
         x, y = self.x[k], self.y[k]
-        first_on_card[blocks, THREADS](x, self.b[k], *size)
-        sweeps = multigrid._sweeps.py_func(max(size[2], size[0]) + PAD)
-        self.launches += sweeps - 1
-        for m in range(2, sweeps):
-            relax_on_card[blocks, THREADS](y, x, self.b[k], TWO if m % 2 == 0 else ONE, *size)
+        reaches, weight = multigrid._reaches.py_func(max(size), 3)
+        x[:] = y[:] = np.float32(0)
+        self.launches += 1 + reaches.size
+        for far in reaches.astype(np.float32):
+            reach_on_card[blocks, THREADS](y, x, self.b[k], np.float32(weight), far, *size)
             x, y = y, x
         self.x[k], self.y[k] = x, y
 

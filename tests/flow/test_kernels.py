@@ -94,7 +94,7 @@ def test_the_pressure_solver_solves(thin, real, limit):
     x, d, q = (np.zeros(b.shape, real) for _ in range(3))
     sums = np.zeros((ny + 2 * PAD, 4))
     cycles, _, _, a, c = poisson.solve(
-        x, d, q, store, layout, room, patches, inner, repeats, sums, limit, 10 * limit, 60
+        x, d, q, store, layout, room, patches, inner, repeats, sums, limit, 10 * limit, 1, 60
     )
     x = a * d + c * multigrid.level(store, layout, inner, multigrid.X, 0)
     assert cycles < (12 if thin is None else 30) * np.log(limit) / np.log(1e-9)
@@ -102,6 +102,31 @@ def test_the_pressure_solver_solves(thin, real, limit):
     for j in range(ny):  # the answer is checked with the operator, not with the solver's own residual
         apply_slabs(out, 0, x, j + PAD - 1, j + PAD, j + PAD + 1, faces, layout[0], j + PAD, inner)
         assert np.abs(out[0, PAD:-PAD] - wanted[j]).max() < 100 * limit
+
+
+@pytest.mark.parametrize(
+    ("cells", "most"),
+    [((17, 11), multigrid.LEFT), ((9, 27, 11), multigrid.LEFT), ((128, 4), multigrid.LEFT), ((288, 192), 0.1)],
+)
+@pytest.mark.parametrize("waves", [1, 2, 3])
+def test_a_cycle_leaves_little_of_smooth_errors(cells, most, waves):
+    """Of each alone, along each axis: all but the last grid are a coarsest level by themselves."""
+    axes, inner, repeats = len(cells), inner_strides(cells), (False,) * len(cells)
+    layout = poisson.levels(cells)
+    store = poisson.make_store(layout, np.float64)
+    patches = patch.rects(layout, repeats)
+    room = patch.room_for(np.zeros((patch.FACES + axes, 0)), patches)
+    b = multigrid.level(store, layout, inner, multigrid.B, 0)
+    shape = tuple(n + 2 * PAD for n in reversed(cells))
+    for axis, n in enumerate(cells):
+        along = np.cos(np.pi * waves * (np.arange(n) + 0.5) / n)
+        b[:] = 0
+        b.reshape(shape)[(slice(PAD, -PAD),) * axes] = along.reshape((-1,) + (1,) * axis)
+        x, d, q = (np.zeros(b.shape) for _ in range(3))
+        *_, share, _ = poisson.solve(
+            x, d, q, store, layout, room, patches, inner, repeats, np.zeros((b.shape[0], 4)), 0.0, 0.0, 1, 1
+        )
+        assert abs(1 - 1 / share) <= most
 
 
 @given(st.lists(st.floats(0.1, 0.95), min_size=3, max_size=12), st.floats(0, 6))

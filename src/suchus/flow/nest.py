@@ -14,6 +14,7 @@ one cycle a stage of McCormick's fast adaptive composite grids (1989).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import ceil, log, pi
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -43,6 +44,9 @@ TIGHTER = 0.25
 """Share of the divergence that fine cells may keep which the coarse ones may [-]. What they keep reaches the patch as a
 flux through its sides, other in every step: with all of it the force on a cylinder that oscillates, of 32 cells a
 diameter in cells of twice the size, shakes by 0.35 % of its rms, with a quarter by 0.1 %."""
+
+LEFT = 0.05
+"""Largest share of what the two pressures differ by along the patch's sides that a multigrid cycle leaves [-]."""
 
 _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wall_offset``
 
@@ -103,6 +107,20 @@ def sides_of(grid: Grid, around: Grid, sides: Sides) -> Sides:
                 )
             found[name] = side if shared else Beyond()
     return replace(sides, **found)
+
+
+def least_cycles(longest: int) -> int:
+    """Return how many cycles the coarse pressure takes at least, lest errors at a patch's sides grow from step to step.
+
+    After a stage the coarse pressure inside the patch is that of the fine cells, which differs a little from the one
+    outside. That jump is there along a single coarse cell, and the next stage has to take its gradient back. Of what is
+    left of it the fine pressure, which takes the flux through the sides as given, makes a smooth one that is up to
+    ``longest / pi`` times as large, which differs again.
+
+    Args:
+        longest: coarse cells along the longest side of the patch [-].
+    """
+    return max(1, ceil(log(2 * longest / pi) / log(1 / LEFT)))
 
 
 def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -274,6 +292,7 @@ class Nested(Fluid):
         super().__init__(grid, own, viscosity, dtype, scheme, integrator)
         self.coarse = Fluid(around, sides, viscosity, dtype, scheme, integrator)
         self.ratio, corner = place_of(grid, around)
+        self.coarse.least = least_cycles(max(grid.cells) // self.ratio)
         self._rim = Rim(grid, around, own, dtype)
         self._values: list[np.ndarray] = []  # around the patch, as they were last read
         self._before: list[np.ndarray] = []  # a round of the first step earlier
@@ -402,7 +421,7 @@ class Nested(Fluid):
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
-        self._before = []
+        self._before, self.coarse.solves = [], []
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
         return super()._begin(dt, stream, push, time)
 

@@ -160,10 +160,11 @@ def _most(sums, column):
 
 
 @compiled
-def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit, max_limit, most):
+def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit, max_limit, least, most):
     """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
 
-    One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it.
+    One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it. It takes at
+    least ``least`` of them and at most ``most``.
 
     Returns:
         iterations, mean residual, largest residual, and the numbers ``a`` and ``b`` with which the solution is
@@ -201,7 +202,7 @@ def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit,
         k += 1
         before_last = mean, largest
         mean, largest = _total(sums, 0) / cells, _most(sums, 1)
-        if mean <= mean_limit and largest <= max_limit:
+        if k >= least and mean <= mean_limit and largest <= max_limit:
             break
         worst = max(mean / mean_limit, largest / max_limit)
         if k > 2 and worst > WORSE * best and best <= NEARLY:

@@ -95,6 +95,7 @@ class Fluid:
         pressed: what the pressure did inside bodies that are divided in the last step, per row; see ``pressures``.
         solves: how the pressure solves of the last step went, one a stage.
         overlap: the two bodies that lie deepest in each other.
+        least: fewest iterations of a pressure solve.
     """
 
     def __init__(
@@ -134,6 +135,7 @@ class Fluid:
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
+        self.least = 1
         self.overlap = Overlap(0.0, (0, 0))
         self.rows: list[range] = []
         self.given = np.zeros((0, sums_of(self.axes)))
@@ -646,7 +648,7 @@ class Fluid:
         """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
         *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
-            self.repeats, self._sums, *limits, MOST_CYCLES,
+            self.repeats, self._sums, *limits, self.least, MOST_CYCLES,
         )  # fmt: skip
         went = poisson.Solve(*result)
         if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
