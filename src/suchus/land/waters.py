@@ -32,9 +32,10 @@ class _Resolved:
     reynolds: float = 7000.0
     """Frequency of the gait times length squared over viscosity [-], chosen for what the cells carry: in real water it
     is some 1e6 for a robot of 1 m at 1 Hz, where no such grid resolves the layer along the body."""
-    corrections: int = 5
+    corrections: int = 8
     """Times that a step's motion is corrected by the forces that it met, and the water with it, at most [-]; one or two
-    do where the added mass fits, since each leaves over a twentieth to a quarter."""
+    do where the added mass fits, since each leaves over a twentieth to a quarter, and six where a step on coarse cells
+    begins with twice the force that it finds."""
     tolerance: float = 5e-3
     """Force that a step may leave over, over the greatest so far, each coordinate's by the root of its inertia; and
     impulse on the whole robot, over its greatest momentum so far, which is what counts where it is light [-]."""
