@@ -113,16 +113,16 @@ def test_a_cycle_leaves_little_of_smooth_errors(cells, most, waves):
     """Of each alone, along each axis: all but the last grid are a coarsest level by themselves."""
     axes, inner, repeats = len(cells), inner_strides(cells), (False,) * len(cells)
     layout = poisson.levels(cells)
-    store = poisson.make_store(layout, np.float64)
+    store = poisson.make_store(layout, np.float32)
     patches = patch.rects(layout, repeats)
-    room = patch.room_for(np.zeros((patch.FACES + axes, 0)), patches)
+    room = patch.room_for(np.zeros((patch.FACES + axes, 0), np.float32), patches)
     b = multigrid.level(store, layout, inner, multigrid.B, 0)
     shape = tuple(n + 2 * PAD for n in reversed(cells))
     for axis, n in enumerate(cells):
         along = np.cos(np.pi * waves * (np.arange(n) + 0.5) / n)
         b[:] = 0
         b.reshape(shape)[(slice(PAD, -PAD),) * axes] = along.reshape((-1,) + (1,) * axis)
-        x, d, q = (np.zeros(b.shape) for _ in range(3))
+        x, d, q = (np.zeros_like(b) for _ in range(3))
         *_, share, _ = poisson.solve(
             x, d, q, store, layout, room, patches, inner, repeats, np.zeros((b.shape[0], 4)), 0.0, 0.0, 1, 1
         )
