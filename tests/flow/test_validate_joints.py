@@ -214,11 +214,7 @@ def test_a_light_robot_and_its_water(factor, told):
     assert apart < 0.01
 
 
-@pytest.mark.parametrize(
-    "factor",
-    [*(one for one, _ in LIGHT[:-1]),
-     pytest.param(LIGHT[-1][0], marks=pytest.mark.xfail(strict=True, reason="0.28 % at the end in November 2026"))],
-)  # fmt: skip
+@pytest.mark.parametrize("factor", [one for one, _ in LIGHT])
 def test_the_power_of_a_light_robot_is_that_of_the_flow(factor):
     assert abs(float(light(factor)[2].power_error[-1])) < 2e-3
 
