@@ -128,12 +128,13 @@ processor time."""
 _LONG = (
     "swimming",
     "feedback",
+    "joint_faults",
+    "gallop_limits",
     "terrain",
     "bipedal_reach",
-    "joint_faults",
-    "turning",
-    "speed_range",
     "displacement",
+    "swim_free",
+    "crawl_stability",
 )
 """What takes longest is begun first, so that no process idles in the end."""
 

@@ -81,7 +81,8 @@ class GallopLimits(Experiment):
     seconds: float = 3.0
     """Duration for which each run is measured, after a second more [s]."""
     timestep: float = 0.002
-    """Time step of the physics [s]."""
+    """Time step of the physics [s]; with 5 ms a bound was ahead of trot and walk with a tenth of the servos of the map,
+    with 2 ms with three tenths."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
