@@ -173,7 +173,7 @@ def test_side_by_side_an_error_ends_the_processes(tmp_path, monkeypatch):
     """What ``processes`` promises of its closed generator is tested there; here, that it is closed at once."""
     ended = []
 
-    def working(work, cases, jobs, *, tries):
+    def working(work, cases, jobs, *, tries, each):
         try:
             yield 0, processes.Begun()
             yield 0, processes.Far("computing", 0.5)
