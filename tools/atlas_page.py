@@ -31,7 +31,7 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
             "rms": found.rms, "over_range": found.over_range, "own": found.own, "bound": found.bound,
             "scatter": found.scatter, "cells": entry.outcome.cells, "grids": 1 + len(entry.coarser),
             "agrees": found.agrees, "index": entry.convergence.uncertainty, "order": entry.convergence.order,
-            "refused": entry.convergence.refused,
+            "refused": entry.convergence.refused, "turning": entry.convergence.turning,
             "cycles": [min(found.cycles), max(found.cycles)] if found.cycles else [],
             "ours": dict(zip(_names(entry), found.ours.tolist(), strict=True)) if entry.row.kind == "numbers" else {},
         }
@@ -49,6 +49,7 @@ def stated(listed: Sequence[Entry]) -> Mapping[str, Any]:
         "within": sorted(name for name, row in known.items() if row["rms"] <= row["index"]),
         "short": sorted(name for name, row in rows.items() if row["grids"] < GRIDS),
         "refused": sorted(set(rows) - set(known)),
+        "turning": sorted(name for name, row in known.items() if row["turning"] > 0.5),
     }
 
 

@@ -98,9 +98,11 @@ def test_three_grids_tell_an_uncertainty_or_why_there_is_none():
     assert "which finer cells would not remove." in page(told(*on_grids(ROW, 1.1, 1.101, 1.1025)))
     assert "| agrees | 48, 32, 24 | 183 s |" in good
     assert "Three grids converge for 1 of them" in good
-    back = page(told(*on_grids(ROW, 1.0, 1.05, 1.0)))
-    assert "No uncertainty of its own from 3 grids: it does not go one way from grid to grid." in back
-    assert "Three grids converge" not in back
+    assert "turning back" not in good
+    assert ", the change turning back at 100.0 % of the points: " in page(told(*on_grids(ROW, 1.0, 1.05, 0.9)))
+    grows = page(told(*on_grids(ROW, 1.0, 1.05, 1.06)))
+    assert "No uncertainty of its own from 3 grids: its change does not become smaller with the cells." in grows
+    assert "Three grids converge" not in grows
     two = page(told(*on_grids(ROW, 1.0, 1.02, 1.05)[:2]))
     assert "2 of 3 grids are there" in two
     failed = on_grids(ROW, 1.0, 1.02, 1.05)

@@ -44,7 +44,8 @@ def test_the_example_of_the_guideline():
     ("values", "refused"),
     [
         ((1.0, 1.1, 1.3), ""),
-        ((1.0, 1.1, 1.05), "one way"),  # there and back
+        ((1.0, 1.1, 1.001), "does not become smaller"),  # back by less than there
+        ((1.0, 1.1, 0.999), ""),  # by more: it closes in from both sides
         ((1.0, 1.1, 1.15), "does not become smaller"),  # it grows with finer cells
         ((1.0, 1.1, 1.1 + 0.1 * np.log(32 / 24) / np.log(48 / 32) * 0.999), "does not become smaller"),
         ((1.0, 1.1, 1.1 + 0.1 * np.log(32 / 24) / np.log(48 / 32) * 1.001), ""),  # just: of order nought
@@ -58,13 +59,24 @@ def test_what_does_not_converge_is_refused(values, refused):
     assert (found.uncertainty is None) == bool(refused)
 
 
-def test_a_curve_goes_one_way_if_most_of_its_change_does():
-    """Two changes at an angle: the cosine decides, a half between them."""
-    first = np.array([1.0, 0.0])
-    for degrees, refused in ((59.0, False), (61.0, True)):
-        second = 3 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
-        found = grid_convergence([np.zeros(2), first, first + second], CELLS, 1.0)
-        assert bool(found.refused) == refused
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.3, 4), st.floats(0.5, 50))
+def test_the_order_of_an_error_that_changes_its_sign_from_grid_to_grid(order, error):
+    """Celik et al. 2008, equation 3 with s = -1, put in: changes of opposite sign in the ratio that an order has."""
+    r21, r32 = 48 / 32, 32 / 24
+    ratio = r21**order * (r32**order + 1) / (r21**order + 1)
+    found = grid_convergence([np.array([v]) for v in (0.0, error, error - ratio * error)], CELLS, 1.0)
+    assert found.order == pytest.approx(order, rel=1e-3)
+    assert found.turning == 1.0
+    assert found.uncertainty == pytest.approx(SAFETY * error / (r21 ** min(order, FORMAL) - 1), rel=1e-2)
+
+
+def test_the_points_at_which_a_curve_turns_back_are_counted():
+    first = np.array([1.0, 1.0, 1.0, 1.0])
+    for second, turning in ((2 * first, 0.0), (np.array([2.0, 2.0, 2.0, -1.0]), 0.25), (-2 * first, 1.0)):
+        found = grid_convergence([np.zeros(4), first, first + second], CELLS, 1.0)
+        assert found.turning == turning
+        assert not found.refused
 
 
 def test_values_that_no_grid_changes_are_certain():
@@ -86,8 +98,8 @@ def test_numbers_are_judged_one_by_one_and_the_row_has_their_mean_square():
     found = row_convergence(NUMBERS, numbers(*good))
     assert found.order == pytest.approx(2.0, abs=0.01)
     assert found.uncertainty == pytest.approx(SAFETY * np.sqrt((25 + 400 + 1600) / 3) / 48**2, rel=0.01)
-    bad = row_convergence(NUMBERS, numbers(good[0], np.array([1.0, 1.1, 1.0]), good[2]))
-    assert bad.refused == "lift: it does not go one way from grid to grid"
+    bad = row_convergence(NUMBERS, numbers(good[0], np.array([1.0, 1.1, 1.01]), good[2]))
+    assert bad.refused == "lift: its change does not become smaller with the cells"
     short = numbers(*good)
     assert "2 of 3 grids" in row_convergence(NUMBERS, {k: v for k, v in short.items() if k < 3}).refused
     short[2][1].pop("lift")

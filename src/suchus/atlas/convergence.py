@@ -2,14 +2,17 @@
 
 Of values f1, f2, f3 on cells h1 < h2 < h3 whose error falls with the power p of the cell,
 
-    (f3 - f2) / (f2 - f1) = (h2 / h1)^p ((h3 / h2)^p - 1) / ((h2 / h1)^p - 1)
+    |f3 - f2| / |f2 - f1| = (h2 / h1)^p ((h3 / h2)^p - s) / ((h2 / h1)^p - s)
 
-gives p, and ``SAFETY |f2 - f1| / ((h2 / h1)^p - 1)`` is the index: the band around f1 in which the limit of small cells
-should lie. Of a curve the differences are their root mean squares over its points. It says nothing of the domain, of
-the time step (which goes with the cell) and of what a flow does that has two states.
+gives p, where s is 1 if both changes go the same way and -1 if the second turns back, and
+``SAFETY |f2 - f1| / ((h2 / h1)^p - 1)`` is the index: the band around f1 in which the limit of small cells should lie.
+Of a curve the changes are their root mean squares over its points, and s is the sign of what they have in common; at
+which share of the points they turn back is told beside. It says nothing of the domain, of the time step (which goes
+with the cell) and of what a flow does that has two states.
 
 Source: Roache 1994, J. Fluids Eng. 116, 405-413; Celik, Ghia, Roache and Freitas 2008, J. Fluids Eng. 130, 078001,
-whose equations 3 and 7 these are.
+whose equations 3 and 7 these are, and who ask for that share. They take the mean of the orders at the points of a
+curve; where changes are near nought those have no meaning, and the root mean square leaves such points no weight.
 """
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +34,6 @@ SAFETY = 1.25
 FORMAL = 2.0
 """Order of the solver's scheme away from walls; a higher observed one is not counted on [-]."""
 
-_ALIKE = 0.5  # least cosine between the two changes of a curve: with less, most of the second change is another one [-]
 _HIGHEST = 40.0  # order up to which the equation is solved; from FORMAL on its value does not matter [-]
 
 
@@ -44,6 +46,8 @@ class GridConvergence:
     [-]."""
     order: float | None = None
     """Observed order of convergence; of several numbers their median; None where there is none [-]."""
+    turning: float = 0.0
+    """Share of the points, or of the numbers, at which the second change turns back: oscillatory convergence [-]."""
     refused: str = ""
     """Why there is no index; empty where there is one."""
 
@@ -63,20 +67,20 @@ def grid_convergence(values: Sequence[np.ndarray], cells: Sequence[float], peak:
     near, far = (float(np.sqrt(np.mean(change**2))) for change in (first, second))
     if near == 0.0:
         return GridConvergence(uncertainty=0.0)
-    if float(np.mean(first * second)) < _ALIKE * near * far:
-        return GridConvergence(refused="it does not go one way from grid to grid")
     r21, r32 = (fine / coarse for fine, coarse in pairwise(cells))
-    order = _order(far / near, r21, r32)
+    turning = float(np.mean(first * second < 0))
+    order = _order(far / near, r21, r32, -1 if float(np.mean(first * second)) < 0 else 1)
     if order is None:
-        return GridConvergence(refused="its change does not become smaller with the cells")
-    return GridConvergence(uncertainty=SAFETY * near / (r21 ** min(order, FORMAL) - 1) / abs(peak), order=order)
+        return GridConvergence(turning=turning, refused="its change does not become smaller with the cells")
+    band = SAFETY * near / (r21 ** min(order, FORMAL) - 1) / abs(peak)
+    return GridConvergence(uncertainty=band, order=order, turning=turning)
 
 
-def _order(ratio: float, r21: float, r32: float) -> float | None:
-    """Return the order at which two changes have a ratio; None where they do not fall."""
+def _order(ratio: float, r21: float, r32: float, sign: int) -> float | None:
+    """Return the order at which two changes, of the same sign or not, have a ratio; None where they do not fall."""
 
     def excess(p: float) -> float:
-        return float(r21**p * (r32**p - 1) / (r21**p - 1)) - ratio
+        return float(r21**p * (r32**p - sign) / (r21**p - sign)) - ratio
 
     least = 1e-6
     if excess(least) >= 0:
@@ -129,5 +133,6 @@ def _of_numbers(row: AtlasRow, curves: Sequence[Curves], cells: Sequence[float])
     sizes = [one.uncertainty for one in each.values() if one.uncertainty is not None]
     orders = [one.order for one in each.values() if one.order is not None]
     return GridConvergence(
-        uncertainty=float(np.sqrt(np.mean(np.square(sizes)))), order=float(np.median(orders)) if orders else None
-    )
+        uncertainty=float(np.sqrt(np.mean(np.square(sizes)))), order=float(np.median(orders)) if orders else None,
+        turning=float(np.mean([one.turning for one in each.values()])),
+    )  # fmt: skip

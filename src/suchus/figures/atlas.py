@@ -170,11 +170,12 @@ def page(listed: Sequence[Entry]) -> str:
         "bound was fixed before anything was computed: twice the scatter, at least 2 "
         "and at most 8 %, or the scatter itself if that is larger; 8 % where there is only one source. Rows above "
         "their bound are kept and marked.", "",
-        f"Each flow is computed on {GRIDS} grids. Where a row goes one way from grid to grid by changes that become "
-        f"smaller, the grid convergence index ({SAFETY:g} times the error that the observed order estimates, or the "
-        f"order {FORMAL:g} where the observed one is higher; Roache 1994, Celik et al. 2008) is the uncertainty of the "
-        "finest, over the same peak. It holds for the cells alone, neither for the domain nor for the source. Where "
-        "the grids do not converge in this way there is no index, and the row's section says why.", "",
+        f"Each flow is computed on {GRIDS} grids. Where a row's changes from grid to grid become smaller, the grid "
+        f"convergence index ({SAFETY:g} times the error that the observed order estimates, or the order {FORMAL:g} "
+        "where the observed one is higher; Roache 1994, Celik et al. 2008) is the uncertainty of the finest, over the "
+        "same peak. As Celik et al. have it, changes may turn back; the row's section says at which share of its "
+        "points they do, and where the order is low the index is large. It holds for the cells alone, neither for the "
+        "domain nor for the source. Where the changes grow there is no index.", "",
         f"![All points, computed over published values, and the difference of each row with its bound]"
         f"({picture('parity')})",
         "", f"| {' | '.join(_HEAD)} |", "|" + "---|" * len(_HEAD),
@@ -288,6 +289,9 @@ def _grid_words(entry: Entry) -> str:
         return f"No uncertainty of its own from {GRIDS} grids: {entry.convergence.refused}."
     cells = ", ".join(str(one.cells) for one in _every(entry))
     at = "" if order is None else f", observed order {order:.1f}"
+    turning = entry.convergence.turning
+    if turning:
+        at += f", the change turning back at {_percent(turning)} of the points"
     found = entry.comparison
     beyond = found is not None and found.rms > index
     beside = "less than the difference, which finer cells would not remove" if beyond else "as much as the difference"
