@@ -22,6 +22,10 @@ _WILLIAMSON = (
     "measurements (1988, Phys. Fluids 31, 2742: -3.3265 / Re + 0.1816 + 0.00016 Re, up to Re 178) has 0.193 when it is "
     "carried on to here."
 )
+_SWITCHES = (
+    "Between 1.0 and 1.1 times the natural frequency the wake goes over from one state to another; after a start on "
+    "few cells, whose own frequency is lower, it comes back slowly ([limits](flow_limits.md#published-flows))."
+)
 _TIME = "time x speed / diameter [-]"
 _FIRST = (0.1, 1e9)  # before, the drag of a body that starts at once has no bound and the first steps no meaning
 _COMPUTED_40 = (("koumoutsakos1995_drag_re40", "t_star", "cd", 0.5), ("taira2007_drag_re40", "t", "cd", 1.0))
@@ -124,6 +128,7 @@ def _oscillated() -> tuple[AtlasRow, ...]:
                     y="cp" if quantity == "pressure" else quantity,
                     ours=f"uppermost {quantity}",
                     labels=(_ANGLE, label),
+                    note=_SWITCHES if ratio == 1 else "",
                 )
             )
             pressure = rows[-1]
