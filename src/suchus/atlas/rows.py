@@ -18,7 +18,7 @@ _FIRST_DRAG = (
     "number) has 1.7 to 1.4."
 )
 _WILLIAMSON = (
-    "In a domain of 24 x 16 diameters instead of 16 x 10 the Strouhal number is the same to 0.1 %. Williamson's fit to "
+    "In a domain of 16 x 10 diameters the Strouhal number was the same to 0.4 %. Williamson's fit to "
     "measurements (1988, Phys. Fluids 31, 2742: -3.3265 / Re + 0.1816 + 0.00016 Re, up to Re 178) has 0.193 when it is "
     "carried on to here."
 )
