@@ -41,14 +41,17 @@ _NEAR = ((-1.25, 2.25), (-1.5, 1.5))  # [m]; of the fine cells
 _FINER = 4
 """Times as many cells around the cylinder, where the skin is read, as in the rest of the domain [-]."""
 
+_FINER_FIRST = 2
+"""The same in the run in which the wake forms [-]."""
+
 _CODE = ("oscillated.py", "marching.py", "skin.py", "case.py")
 _COARSE = 24
 """Cells a diameter of the run in which the wake forms [-]. Chosen after a first result: on 16 cells the wake at a ratio
 of 1.0 switches its state too early, and does not switch back on the finer grid; see docs/flow_limits.md. With a quarter
 of 24 outside the patch, in place of half of them, it is farther from the published state too."""
 _COARSE_SHARE = 0.2  # of the time that a run takes [-]
-_BEATS = 1.05
-"""Ratio above which the wake is not locked to the motion, and more periods are computed [-].
+_BEATS = 0.95
+"""Ratio above which more periods are computed: the wake is not locked, or near its switch settles late [-].
 
 Chosen after a first result, of three periods: at 1.1 and 1.2 they differed by up to a fifth of the largest pressure,
 and longer runs came back to the same state after five to eight periods, on both grids.
@@ -64,7 +67,7 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     whole, first = round(effort.until), round(effort.before)
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(_setup(_near(effort.coarse), rate))
+        wake = flow.Simulation(_setup(_near(effort.coarse, _FINER_FIRST), rate))
         march(wake, first * period, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
         return wake
 
@@ -94,8 +97,8 @@ def _oscillated(effort: RunEffort, progress: Progress, *, ratio: float) -> Curve
     }  # fmt: skip
 
 
-def _near(cells: int) -> Grids:
-    return nested(_DOMAIN, _NEAR, cells=cells, ratio=_FINER)
+def _near(cells: int, ratio: int = _FINER) -> Grids:
+    return nested(_DOMAIN, _NEAR, cells=cells, ratio=ratio)
 
 
 def _setup(grids: Grids, rate: float) -> flow.Setup:
@@ -112,7 +115,7 @@ def _at_rest(effort: RunEffort, progress: Progress) -> Curves:
     """Compute the cylinder at rest, first on the coarse grid with a gust."""
 
     def form() -> flow.Simulation:
-        wake = flow.Simulation(replace(_setup(_near(effort.coarse), 0.0), stream=nudged))
+        wake = flow.Simulation(replace(_setup(_near(effort.coarse, _FINER_FIRST), 0.0), stream=nudged))
         march(wake, effort.before, staged(progress, "coarse grid", 0.0, _COARSE_SHARE))
         return wake
 

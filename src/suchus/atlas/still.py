@@ -6,11 +6,11 @@ from functools import partial
 import numpy as np
 
 from suchus import flow
-from suchus.atlas.case import Case, Curves, RunEffort, grids
+from suchus.atlas.case import LONG_STEP, Case, Curves, RunEffort, grids
 from suchus.atlas.marching import formed, march, middles, refined
 from suchus.progress import Progress, staged
 
-_CODE = ("still.py", "marching.py")
+_CODE = ("still.py", "marching.py", "case.py")
 _KEULEGAN = 5.0  # [-]; largest speed over frequency and diameter
 _STROKE = 2.8  # [m]; of the flapping ellipse, from end to end, in chords
 _FREQUENCY = 0.25  # [Hz]
@@ -25,6 +25,7 @@ def _in_line(effort: RunEffort, progress: Progress) -> Curves:
         flow.Setup(
             grid=flow.Grid.covering((-5.0, 5.0), (-4.0, 4.0), cell=1 / effort.cells), viscosity=speed / 100.0,
             bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),), coarse=True,
+            courant=LONG_STEP,
         )
     )  # fmt: skip
     late = march(sim, effort.until, progress).after(effort.until - 1.0)
@@ -80,7 +81,7 @@ def _swinging(cells: int) -> flow.Setup:
     motion = flow.Oscillation(frequency=1 / _SWINGS, heave=(-_SWINGS / (2 * np.pi), 0.0))
     return flow.Setup(
         grid=flow.Grid.covering((-6.0, 6.0), (-6.0, 6.0), cell=1 / cells), viscosity=1 / 200, coarse=True,
-        bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),),
+        courant=LONG_STEP, bodies=(flow.Body(shape=flow.Cylinder(diameter=1.0), motion=motion),),
     )  # fmt: skip
 
 
@@ -114,6 +115,7 @@ def _flapping(effort: RunEffort, progress: Progress) -> Curves:
         flow.Setup(
             grid=flow.Grid.covering((-3.5, 3.5), (-6.5, 2.5), cell=1 / effort.cells), viscosity=speed / 75.0,
             bodies=(flow.Body(shape=flow.Ellipse(length=1.0, width=0.1), motion=flapping),), coarse=True,
+            courant=LONG_STEP,
         )
     )  # fmt: skip
     record = march(sim, effort.until, progress)
