@@ -51,7 +51,7 @@ def series(degrees):
 
 
 @pytest.mark.parametrize(
-    "degrees", [30, pytest.param(35, marks=pytest.mark.xfail(strict=True, reason="18 % of lift in November 2026"))]
+    "degrees", [30, pytest.param(35, marks=pytest.mark.xfail(strict=True, reason="15 % of Strouhal, November 2026"))]
 )
 def test_a_snake_on_cells_as_small_as_its_source(degrees):
     time, step, force = series(degrees)
