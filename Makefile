@@ -7,7 +7,7 @@ EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
-.PHONY: reproduce test test-all check single double space lint types contract tests costs mutate validate atlas bench docs
+.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas stale renew bench docs
 .PHONY: release reliability version tag pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
@@ -40,9 +40,6 @@ single double space: .venv/.dev # the flow's kernels, compiled once; else every 
 tests: .venv/.dev # asserts are plain, which is quicker; what fails runs again with the values in its message
 	$(PY) -m pytest -n auto --dist worksteal --assert=plain -m "not validate and not slow" || \
 	{ $(PY) -m pytest -n0 --last-failed --last-failed-no-failures none -m "not validate and not slow"; exit 1; }
-
-costs: .venv/.dev # measures every test; what costs too much for make test is listed in tests/costly.json
-	SUCHUS_COSTS=write $(PY) -m pytest -n auto --dist worksteal -m "not validate and not slow"
 
 mutate: .venv/.dev # every rule of a verdict and every measure broken in every way; also a part of the tests
 	$(PY) -m pytest tests/shelves/test_every_rule.py tests/shelves/test_every_measure.py -k break -m "slow or not slow" -v -n0
@@ -78,6 +75,12 @@ atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on
 	$(PY) tools/needs.py dev docs > .venv/needs.txt
 	$(PIP) $(NEEDED)
 	touch $@
+
+stale: .venv/.dev # which results are old, and what it costs to compute them again; in under three minutes
+	@SUCHUS_THREADS=1 $(PY) -m evidence.stale $(NAME)
+
+renew: .venv/.dev # make renew NAME="turning rehearsal": computes results again, and writes the pages that state them
+	@$(PY) -m evidence.renew $(NAME)
 
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done

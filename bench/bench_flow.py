@@ -300,7 +300,7 @@ def main():
         from pages import stated  # noqa: PLC0415
 
         stated.keep("bench_flow", found)
-        stated.main([])
+        stated.main()
 
 
 def tell_swim(cells, far):

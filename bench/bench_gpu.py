@@ -300,7 +300,7 @@ def main():
         from pages import stated  # noqa: PLC0415
 
         stated.keep("bench_gpu", json.loads(chosen.keep.read_text(encoding="utf-8")))
-        stated.main([])
+        stated.main()
         return
     found = {"card": "simulated", "copied": 0.0}
     if not numba.config.ENABLE_CUDASIM:

@@ -16,7 +16,6 @@ from _pytest.pathlib import import_path
 from hypothesis import settings
 from jaxtyping import install_import_hook
 
-import costly
 import first_calls
 from batteries import counted  # noqa: F401  a fixture
 from left_out import COLLECTED
@@ -61,14 +60,8 @@ def pytest_collection(session: pytest.Session) -> None:
                 import_path(file, root=session.config.rootpath, consider_namespace_packages=False)
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    if costly.METER is not None:
-        config.pluginmanager.register(costly.METER)
-
-
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    costly.mark(items)
     config.stash[COLLECTED] = tuple(items)  # before any are deselected
 
 
@@ -119,13 +112,7 @@ def quick_outcome(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], O
 
     def outcome(name: str) -> Outcome:
         if name not in kept:
-            before = costly.Meter.spent()
             kept[name] = _made_once(folder / f"{name}.pickle", lambda: EXPERIMENTS[name].quick().run())
-            took = costly.Meter.spent() - before
-        else:
-            took = 0.0
-        if costly.METER is not None:
-            costly.METER.asked(name, took)
         return kept[name]
 
     return outcome

@@ -4,8 +4,6 @@ from collections.abc import Iterable, Sequence
 
 import pytest
 
-import costly
-
 COMMANDS = {"slow": "make test-all", "validate": "make validate"}
 """What runs the tests with a mark."""
 WHY = "compared with published numbers, or a result that docs state made again"
@@ -26,18 +24,15 @@ def reason(item: pytest.Item) -> str:
 
 
 def rows(items: Iterable[pytest.Item]) -> list[str]:
-    """Return a row of the table for each function of which cases are slow, and each file with published numbers.
-
-    What costs too much has a list of its own, ``costly.json``.
-    """
+    """Return a row of the table for each function of which cases are slow, and each file with published numbers."""
     functions: dict[str, list[pytest.Item]] = {}
     for item in items:
         functions.setdefault(item.nodeid.partition("[")[0].removeprefix("tests/"), []).append(item)
     told = set()
     for name, cases in functions.items():
         for case in cases:
-            if (runs := command(case)) and reason(case) != costly.WHY:
-                whole = all(command(other) == runs and reason(other) != costly.WHY for other in cases)
+            if runs := command(case):
+                whole = all(command(other) == runs for other in cases)
                 some = "" if whole else " (some cases)"
                 what = f"{name}`{some}" if runs == COMMANDS["slow"] else f"{name.partition('::')[0]}`"
                 told.add(f"| `{what} | {reason(case)} | `{runs}` |")

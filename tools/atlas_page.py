@@ -76,7 +76,7 @@ def main(out: Path, docs: Path = DOCS) -> Path:
         shutil.copytree(made, docs, dirs_exist_ok=True, ignore=shutil.ignore_patterns(MANIFEST))
     if docs == DOCS:
         keep("atlas", stated(entries(tuple(ROWS.values()), found)))
-        write_pages([])
+        write_pages()
     return docs / page.name
 
 

@@ -3,8 +3,8 @@
 Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--anew] [--table]
 
 Each pair is tried at the command line in a short form: it answers, or it refuses in a sentence with the exit code 2;
-anything else is written down as it came. The result of each pair goes into docs/bodies.json as soon as it is known, so
-that a run that was stopped goes on; the tables are made from that file alone. ``--only`` names rows and ``--bodies``
+anything else is written down as it came. The result of each pair goes into results/bodies.json as soon as it is known,
+so that a run that was stopped goes on; the tables are made from that file alone. ``--only`` names rows and ``--bodies``
 bodies, of which what is not yet known is tried, with ``--anew`` all of it: ``--bodies caiman --anew`` renews a column,
 ``--only swimming --bodies six.toml --anew`` a cell. ``--table`` tries nothing and writes the tables.
 """
@@ -12,7 +12,6 @@ bodies, of which what is not yet known is tried, with ``--anew`` all of it: ``--
 import argparse
 import contextlib
 import io
-import json
 import shlex
 import sys
 import tempfile
@@ -23,6 +22,7 @@ from time import process_time
 from unittest import mock
 
 import gymnasium
+from evidence import store
 
 from body_files import FILES, write_files
 from suchus import blueprint
@@ -37,7 +37,7 @@ from suchus.gaits import own_gait
 from suchus.robots import ROBOTS
 
 ROOT = Path(__file__).parents[1]
-FOUND, PAGE = ROOT / "docs" / "bodies.json", ROOT / "docs" / "robots_from_files.md"
+NAME, PAGE = "bodies", ROOT / "docs" / "robots_from_files.md"
 MARKS = "<!-- bodies: made by tools/body_table.py -->\n", "<!-- /bodies -->\n"
 LEAST = {
     "crawl_stability": "--cycles 1 --repeats 1",
@@ -110,13 +110,13 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--anew", action="store_true")
     parser.add_argument("--table", action="store_true")
     given = parser.parse_args(words)
-    found = json.loads(FOUND.read_text()) if FOUND.exists() else {}
+    found = store.load(NAME).values if NAME in store.names() else {}
     for row in () if given.table else (row for row in rows if row in given.only):
         for body in sorted(given.bodies, key=lambda body: robot_of(body).tables is not None):  # they take long
             if given.anew or body not in found.get(row, {}):
                 began = process_time()
                 found.setdefault(row, {})[body] = answer = tried(row, body)
-                FOUND.write_text(json.dumps(found, indent=1, sort_keys=True) + "\n")
+                store.save_part(NAME, {name: dict(sorted(cells.items())) for name, cells in sorted(found.items())})
                 print(f"{row} {body} ({process_time() - began:.0f} s): {answer or 'answers'}", flush=True)
     write(found)
     every = [(row, body, answer) for row, cells in found.items() for body, answer in cells.items()]

@@ -291,7 +291,7 @@ def main(folder: Path) -> None:
     asked += finest
     found = {(one.kind, one.name, one.cells): flow for one, flow in zip(asked, flows, strict=True)}
     keep("calibration", judged(stated(found)))
-    write_pages([])
+    write_pages()
     figure = draw(found)
     figure.savefig(PICTURE, dpi=110)
     lighten(PICTURE)

@@ -3,7 +3,6 @@
 Usage: python tools/example_pictures.py [NAME ...]
 """
 
-import json
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -12,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from evidence import store
 from matplotlib.figure import Figure
 
 import suchus
@@ -27,7 +27,6 @@ from suchus.optimise import READY
 from suchus.optimise.pictures import draw_gaits
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-FOUND = Path(__file__).parents[1] / "tests" / "docs" / "stated" / "optimise_crawl.json"
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 
 
@@ -97,7 +96,7 @@ def crawling() -> Figure:
 
 def optimised_crawl() -> Figure:
     """Draw the article's crawl and the best that the search ``crawl`` found, from what it kept."""
-    kept = json.loads(FOUND.read_text(encoding="utf-8"))
+    kept = store.load("optimise_crawl").values
     spec = READY["crawl"]()
     runs = [replace(spec.run, label="start")]
     for arm in spec.arms:

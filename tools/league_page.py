@@ -1,18 +1,26 @@
 """Put what ``suchus league`` predicted, and what became of it, into the documentation.
 
 Usage: python tools/league_page.py OUT: reads the sealed predictions in OUT, as ``suchus league --out OUT`` left them,
-keeps the outcomes in docs/league.json, and makes of these docs/league.md and its figure.
+keeps the outcomes in results/league.json, and makes of these docs/league.md and its figure.
 """
 
+import json
 import sys
 from pathlib import Path
 
+from evidence import renew, store
+
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.league import every, find
-from suchus.league.page import FIGURE, OUTCOMES, PAGE, LeagueEntry, all_standings, draw, page, standing_text
+from suchus.league.page import FIGURE, PAGE, LeagueEntry, all_standings, draw, page, standing_of, standing_text
 
 DOCS = Path(__file__).parents[1] / "docs"
-KEPT, PICTURE = DOCS / OUTCOMES, Path("pictures") / FIGURE
+PICTURE = Path("pictures") / FIGURE
+
+
+def kept() -> list[LeagueEntry]:
+    """Return the outcomes that are kept."""
+    return [standing_of(entry) for entry in store.load("league").values]
 
 
 def text(standings: list[LeagueEntry]) -> str:
@@ -25,7 +33,7 @@ def main(out: Path) -> None:
     names = every(CONTESTANTS)
     contestants = [find(CONTESTANTS, name) for name in names]
     standings = all_standings(out, contestants, {name: measured_file(name) for name in names})
-    KEPT.write_text(standing_text(standings), encoding="utf-8")
+    renew.store("league", json.loads(standing_text(standings)))
     (DOCS / PAGE).write_text(text(standings), encoding="utf-8")
     draw(standings, DOCS / PICTURE)
 

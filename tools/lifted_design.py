@@ -50,4 +50,4 @@ def judged() -> dict[str, float]:
 
 if __name__ == "__main__":
     stated.keep(NAME, judged())
-    stated.main([])
+    stated.main()

@@ -42,7 +42,7 @@ def main(folder: Path, jobs: int) -> None:
     outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, finished=tell)
     print(write_table(outcomes))
     keep("sections", stated())
-    write_pages([])
+    write_pages()
 
 
 if __name__ == "__main__":

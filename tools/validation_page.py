@@ -10,10 +10,11 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
+from evidence import renew, store
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.errors import IncompatibleRecord
+from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures.style import COLOURS, styled
 from suchus.record import new_file
 
@@ -359,31 +360,40 @@ DRAWN: Final[Mapping[str, Callable[[list[dict[str, Any]]], Figure]]] = MappingPr
 """The plots of the page by name: each is drawn from all rows."""
 
 
-KEPT = "validation.json"
-"""File beside the page with every row that stands on it, so that a part of the validation renews its rows alone."""
+NAME = "validation"
+"""Result with every row that stands on the page, so that a part of the validation renews its rows alone."""
 
 
-def kept_rows(docs: Path) -> list[Row]:
-    """Return the rows of the page as it stands in ``docs``; none where there is no page.
+def kept_rows(results: Path | None = None) -> list[Row]:
+    """Return the rows of the page as it stands; none where there is no page.
+
+    Args:
+        results: folder of the results; that of the checkout if None.
 
     Raises:
         IncompatibleRecord: the file of the rows is damaged.
     """
-    path = docs / KEPT
+    path = (results or store.RESULTS) / f"{NAME}.json"
     if not path.exists():
         return []
     try:
-        rows = json.loads(path.read_text(encoding="utf-8"))
+        rows = store.load(NAME, results).values
         merged(rows, ())
-    except (ValueError, KeyError, TypeError) as error:
+    except (UnreadableFile, KeyError, TypeError) as error:
         raise IncompatibleRecord(f"{path} holds no rows of the validation; take it from the last commit.") from error
     return list(rows)
 
 
 def write_table(
-    folder: Path, docs: Path, sources: Sequence[str] = (), *, whole: bool = False, tests: Collection[str] = ()
+    folder: Path,
+    docs: Path,
+    sources: Sequence[str] = (),
+    *,
+    whole: bool = False,
+    tests: Collection[str] = (),
+    results: Path | None = None,
 ) -> None:
-    """Write ``validation.md``, and its rows beside it, to ``docs``.
+    """Write ``validation.md`` to ``docs``, and keep its rows.
 
     Args:
         folder: where the validation kept its rows.
@@ -391,21 +401,24 @@ def write_table(
         sources: sentences on where the published numbers come from.
         whole: whether these are all rows there are; else those of the page that are not computed anew stay on it.
         tests: names of the tests there are; rows of others do not stay.
+        results: folder of the results; that of the checkout if None.
 
     Raises:
         IncompatibleRecord: there are no rows, or those of the page are damaged.
     """
-    rows = merged([] if whole else kept_rows(docs), load_rows(folder), tests)
+    rows = merged([] if whole else kept_rows(results), load_rows(folder), tests)
     bare = [
         {name: value for name, value in row.items() if name != "curves"} for row in rows if row["theirs"] != UNKNOWN
     ]
-    with new_file(docs / KEPT) as draft:
-        draft.write_text("[\n" + ",\n".join(map(json.dumps, bare)) + "\n]\n", encoding="utf-8")
+    if whole and results is None:
+        renew.store(NAME, bare)
+    else:
+        store.save_part(NAME, bare, results)
     with new_file(docs / "validation.md") as draft:
         draft.write_text(page(rows, sources), encoding="utf-8")
 
 
-def write_validation(folder: Path, docs: Path, sources: Sequence[str] = ()) -> None:
+def write_validation(folder: Path, docs: Path, sources: Sequence[str] = (), *, results: Path | None = None) -> None:
     """Write ``validation.md``, see ``write_table``, and its plots, which are drawn from the rows in ``folder`` alone.
 
     Raises:
@@ -417,4 +430,4 @@ def write_validation(folder: Path, docs: Path, sources: Sequence[str] = ()) -> N
     for name, draw in DRAWN.items():
         with styled():
             draw(rows).savefig(pictures / f"flow_{name}.png")
-    write_table(folder, docs, sources)
+    write_table(folder, docs, sources, results=results)

@@ -1,8 +1,8 @@
 """Put what a full ``suchus reproduce`` found, and the shelf's questions, into the documentation.
 
-Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, writes docs/verdicts.json,
-and the summary into the README. With ``--part`` OUT may hold some experiments only: of the others what the
-documentation keeps is judged by the rules of today, and the other rows stay.
+Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, keeps the result
+``verdicts``, and writes the summary into the README. With ``--part`` OUT may hold some experiments only: of the others
+what the documentation keeps is judged by the rules of today, and the other rows stay.
 """
 
 import json
@@ -10,13 +10,15 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pages.stated import KEPT, elsewhere, kept, templates, wrapped
+from evidence import renew, store
+
+from pages.stated import elsewhere, kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
 from suchus.verdict import RULES, SHARES, TOO_FEW, counted, judge, ladder
 from suchus.verdict.judging import fragile
 
 ROOT = Path(__file__).parents[1]
-TABLE = ROOT / "docs" / "verdicts.json"
+NAME = "verdicts"
 README = ROOT / "README.md"
 _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models")
 
@@ -31,7 +33,7 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
     Raises:
         IncompatibleRecord: a claim has no verdict.
     """
-    before = json.loads(TABLE.read_text(encoding="utf-8")) if TABLE.is_file() else {}
+    before: dict[str, dict[str, Any]] = kept(NAME) if NAME in store.names() else {}
     found: dict[str, dict[str, Any]] = before | judged_again() if part else {}
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
@@ -50,7 +52,7 @@ def judged_again() -> dict[str, dict[str, Any]]:
     """Return what the rules of today say of the measures that the documentation keeps."""
     found = {}
     for rule in RULES.values():
-        if (KEPT / f"{rule.experiment}.json").is_file():
+        if rule.experiment in store.names():
             verdict = judge(rule, kept(rule.experiment))
             row = {"verdict": verdict.verdict, "measured": verdict.measured, "low": verdict.low, "high": verdict.high}
             models = ladder.rows(verdict.voices, rule.form)
@@ -81,7 +83,7 @@ def _between(text: str, start: str, end: str, middle: str) -> str:
 def main(out: Path, *, part: bool) -> None:
     """Write table and README."""
     table = collected(out, part=part)
-    TABLE.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+    (store.save_part if part else renew.store)(NAME, table)
     README.write_text(written(README.read_text(encoding="utf-8"), table), encoding="utf-8")
 
 

@@ -53,4 +53,4 @@ def stated() -> Mapping[str, Any]:
 
 if __name__ == "__main__":
     pages.keep(NAME, stated())
-    pages.main([])
+    pages.main()

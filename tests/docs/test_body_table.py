@@ -1,6 +1,5 @@
 """The table of experiments and bodies says what the command line says: an answer, or a sentence and exit code 2."""
 
-import json
 import re
 from dataclasses import replace
 
@@ -13,7 +12,7 @@ from suchus.experiments import EXPERIMENTS
 from suchus.robots import ROBOTS
 
 REFUSED = [(row, name) for row in EXPERIMENTS for name in ROBOTS if lacking(ROBOTS[name], EXPERIMENTS[row].needs)]
-FOUND = json.loads(tool.FOUND.read_text())
+FOUND = tool.store.load(tool.NAME).values
 
 
 def test_the_page_holds_the_table_of_what_was_found():
@@ -51,12 +50,12 @@ def test_a_cell_tells_answers_refusals_and_failures_apart():
 
 
 def test_cells_rows_and_columns_are_renewed_by_themselves(tmp_path, monkeypatch, capsys):
-    page, found = tmp_path / "page.md", tmp_path / "bodies.json"
+    page = tmp_path / "page.md"
     page.write_text("before\n" + "old\n".join(tool.MARKS) + "after\n")
-    found.write_text(json.dumps({"turning": {"caiman": "exit 1: it fell", "swimmer": ""}, "view": {"caiman": "x"}}))
+    monkeypatch.setattr(tool.store, "RESULTS", tmp_path / "results")
+    tool.store.save_part("bodies", {"turning": {"caiman": "exit 1: it fell", "swimmer": ""}, "view": {"caiman": "x"}})
     asked = []
     monkeypatch.setattr(tool, "PAGE", page)
-    monkeypatch.setattr(tool, "FOUND", found)
     monkeypatch.setattr(tool, "tried", lambda row, body: asked.append((row, body)) or "")
 
     def tried_by(words):
@@ -70,7 +69,7 @@ def test_cells_rows_and_columns_are_renewed_by_themselves(tmp_path, monkeypatch,
     _, column = tried_by("--bodies caiman --anew")
     assert {body for _, body in column} == {"caiman"}
     assert len(column) == len(EXPERIMENTS) + len(tool.TOOLS)
-    assert json.loads(found.read_text())["turning"] == {"caiman": "", "swimmer": "", "eight.toml": ""}
+    assert tool.store.load("bodies").values["turning"] == {"caiman": "", "swimmer": "", "eight.toml": ""}
     assert page.read_text().startswith("before\n<!-- bodies")
     assert "old" not in page.read_text()
     with pytest.raises(SystemExit):

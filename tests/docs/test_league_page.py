@@ -7,10 +7,10 @@ import pytest
 import league_page
 from suchus.contestants import CONTESTANTS
 from suchus.league import every, find
-from suchus.league.page import PAGE, standings_of
+from suchus.league.page import PAGE
 from suchus.league.sealing import prediction_text
 
-KEPT = standings_of(league_page.KEPT)
+KEPT = league_page.kept()
 
 
 def test_the_page_is_made_of_the_outcomes_that_are_kept():

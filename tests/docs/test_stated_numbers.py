@@ -2,27 +2,20 @@
 
 import copy
 import math
-import os
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import islice
 from typing import Any
 
-import numpy as np
 import pytest
+from evidence.renew import measures_of
 
-import lifted_design
 from pages.passages import names
-from pages.stated import FORMS, filled, keep, kept, made, measured, pages, sources, text_of, wrapped
+from pages.stated import filled, kept, made, pages, sources, text_of, wrapped
+from suchus.errors import IncompatibleRecord
 from suchus.experiment import write
-from suchus.experiments import EXPERIMENTS
-from suchus.optimise import READY
-from suchus.optimise.evaluate import evaluate
 
 STATED = {source: [name for name in made() if source in sources(name)] for name in made() for source in sources(name)}
 """Passages by what was measured."""
-OF_EXPERIMENTS = [source for source in STATED if source in FORMS]
-OF_SEARCHES = [source for source in STATED if source.startswith("optimise_")]
 
 
 @pytest.fixture(scope="module")
@@ -90,52 +83,17 @@ def test_other_numbers_make_other_passages(source):
     assert len(list(islice((other for other in changed if other != texts), 2))) == 2
 
 
-@pytest.mark.validate
-@pytest.mark.parametrize("name", OF_EXPERIMENTS)
-def test_a_new_run_measures_what_is_kept(name):
-    """Renew with SUCHUS_GOLDEN=write."""
-    found = {
-        key: measure.value
-        for key, measure in sorted(replace(EXPERIMENTS[FORMS[name][0]], **FORMS[name][1]).run().measures.items())
-    }
-    if os.environ.get("SUCHUS_GOLDEN") == "write":
-        keep(name, found)
-    assert found == pytest.approx(kept(name), rel=0.02, abs=0.01, nan_ok=True)
-
-
 def test_a_measure_that_is_no_number_is_kept_as_none():
     measures = {"speed_free": {"value": 0.1}, "slip": {"value": None}}
     outcome = {"experiment": "swimming", "differs": [], "measures": measures}
-    name, found = measured(outcome)
+    name, found = measures_of(outcome)
     assert (name, found["speed_free"]) == ("swimming", 0.1)
     assert math.isnan(found["slip"])
 
 
 def test_what_ran_in_another_form_is_kept_by_the_name_of_the_form_or_refused():
     for name, differs in (("swim_free", []), ("swim_free_space", [{"name": "water", "value": "space"}])):
-        assert measured({"experiment": "swim_free", "differs": differs, "measures": {}}) == (name, {})
+        assert measures_of({"experiment": "swim_free", "differs": differs, "measures": {}}) == (name, {})
     other = {"experiment": "swim_free", "differs": [{"name": "cells", "value": 32}], "measures": {}}
-    with pytest.raises(KeyError, match="swim_free cells"):
-        measured(other)
-
-
-@pytest.mark.validate
-def test_the_design_whose_control_walks_measures_what_is_kept():
-    """Renew with ``python tools/lifted_design.py``."""
-    assert lifted_design.judged() == pytest.approx(kept(lifted_design.NAME), rel=0.02, abs=0.01)
-
-
-@pytest.mark.validate
-@pytest.mark.parametrize("source", OF_SEARCHES)
-def test_the_best_that_a_search_found_is_as_good_again(source):
-    """The search itself takes minutes; its best are simulated once more, which is what the page states of them."""
-    outcome = kept(source)
-    spec = READY[outcome["optimisation"]]()
-    for arm in spec.arms:
-        one = spec.of(arm)
-        best = list(outcome["arms"][arm.name]["best"].values())
-        shares = [[(b["fields"][v.field]["best"] - v.low) / (v.high - v.low) for v in one.vary] for b in best]
-        found = evaluate(one, np.array(shares))
-        assert list(found.status.values) == ["walked"] * len(best)
-        for aim in one.aims:
-            assert found[f"aim_{aim.name}"].values == pytest.approx([b["aims"][aim.name] for b in best], rel=0.02)
+    with pytest.raises(IncompatibleRecord, match="no result is kept of swim_free with other settings of cells"):
+        measures_of(other)

@@ -78,13 +78,13 @@ def test_plots_are_drawn_from_rows_that_lack_most_of_their_curves():
 
 def test_without_rows_nothing_is_written(tmp_path):
     with pytest.raises(IncompatibleRecord, match="make validate"):
-        write_table(tmp_path, tmp_path)
+        write_table(tmp_path, tmp_path, results=tmp_path / "results")
     assert not (tmp_path / "validation.md").exists()
 
 
 def test_page_and_plots_are_written(tmp_path):
     (tmp_path / "one.json").write_text(json.dumps(row("Taylor-Green", "order", size=[16, 32], error=[1e-3, 3e-4])))
-    write_validation(tmp_path, tmp_path, ("Someone 1990: a paper.",))
+    write_validation(tmp_path, tmp_path, ("Someone 1990: a paper.",), results=tmp_path / "results")
     assert "- Someone 1990: a paper." in (tmp_path / "validation.md").read_text()
     assert {path.stem for path in (tmp_path / "pictures").iterdir()} == {f"flow_{name}" for name in DRAWN}
 
@@ -101,10 +101,10 @@ def run(tmp_path):
             old.unlink()
         for i, one in enumerate(rows):
             (folder / f"{i}.json").write_text(json.dumps(one))
-        write_table(folder, docs, **how)
+        write_table(folder, docs, results=tmp_path / "results", **how)
         return (docs / "validation.md").read_text()
 
-    part.docs = docs
+    part.docs, part.results = docs, tmp_path / "results"
     return part
 
 
@@ -136,22 +136,22 @@ def test_the_whole_validation_leaves_no_row_of_before(run):
 
 def test_rows_that_only_plots_need_stay_off_the_file_beside_the_page(run):
     run(row("Taylor-Green", size=[16]), row("energy budget", "share", theirs="-", share=[0.9]))
-    assert [set(one) & {"case", "curves"} for one in kept_rows(run.docs)] == [{"case"}]
+    assert [set(one) & {"case", "curves"} for one in kept_rows(run.results)] == [{"case"}]
 
 
 @pytest.mark.parametrize("text", ["[{", '[{"case": "a"}]', "[1]", "3"])
 def test_damaged_rows_of_the_page_are_refused_and_nothing_is_written(run, text):
     page_before = run(row("Taylor-Green"))
-    (run.docs / "validation.json").write_text(text)
+    (run.results / "validation.json").write_text(text)
     with pytest.raises(IncompatibleRecord, match=r"validation\.json holds no rows"):
         run(row("a sphere"))
     assert (run.docs / "validation.md").read_text() == page_before
-    assert (run.docs / "validation.json").read_text() == text
+    assert (run.results / "validation.json").read_text() == text
 
 
 def test_the_page_is_what_its_rows_say():
     """By hand nothing is changed on it: a change would be lost when any part of the validation runs."""
-    assert page(kept_rows(ROOT / "docs"), SOURCES) == (ROOT / "docs" / "validation.md").read_text()
+    assert page(kept_rows(), SOURCES) == (ROOT / "docs" / "validation.md").read_text()
 
 
 @pytest.mark.parametrize(

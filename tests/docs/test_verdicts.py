@@ -1,19 +1,16 @@
 """What the documentation says of verdicts is what the experiments said."""
 
-import json
-
 import pytest
 
 import verdict_table
 from pages import article
+from pages.stated import kept
 from suchus.experiments import EXPERIMENTS
 from suchus.paper import CLAIMS, ERRATA
 from suchus.verdict import RULES
 from suchus.verdict.judging import WORDS
 
-if not verdict_table.TABLE.is_file():
-    pytest.skip("docs/verdicts.json is made after a full reproduction", allow_module_level=True)
-TABLE = json.loads(verdict_table.TABLE.read_text(encoding="utf-8"))
+TABLE = kept(verdict_table.NAME)
 QUICKLY = ("gait_diagram", "leg_kinematics", "spine_kinematics", "tail_bending")
 """Experiments whose whole form takes seconds."""
 

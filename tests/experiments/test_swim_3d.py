@@ -104,7 +104,7 @@ REFUSED = {
         "reynolds is 1e+06: real water",
         "where its layer does, and that is not built; at most 20000 is allowed",
     ),
-    "--cells 32 --compared-cells 32 --reynolds 400": ("m thick at most, 2", "at least 3.41 cells are needed"),
+    "--cells 32 --compared-cells 32 --reynolds 400": ("needs 3.41 cells across", "Take at least 54 cells, or a slice."),
     "--slice-cells 32 --reynolds 3000": ("the boundary layer of", "at least 39 cells per body length, or a viscosity"),
     "--cells 512": ("a grid of 768 x 384 x 128 cells takes some 3.", "GB of memory, and this machine has 1.5 GB"),
 }

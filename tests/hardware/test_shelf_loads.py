@@ -1,13 +1,12 @@
 """Every gait of the shelf on the default robot: servos below their limits for 98 % of the walk, or it is said."""
 
-import json
 import os
 import re
 import sys
 from pathlib import Path
 
 import pytest
-from shelf_loads import measured
+from evidence.servo_loads import measured
 
 from suchus import blueprint
 from suchus.design import Robot
@@ -18,9 +17,9 @@ from suchus.robots import ROBOTS
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 from pages.passages import put  # noqa: E402
+from pages.stated import kept as stated_numbers  # noqa: E402
 from pages.stated import text_of  # noqa: E402
 
-STATED = ROOT / "tests" / "docs" / "stated" / "servo_loads.json"
 PAGE = ROOT / "docs" / "servo_commands.md"
 OWN = ("belly_crawl", "low_crawl", "limbs_only", "limbs_tail_lifted", "spine_only", "tail_drag", "tail_still",
        "semi_erect", "high_walk")  # fmt: skip
@@ -62,7 +61,7 @@ def page(found):
 
 def test_the_page_states_what_the_servos_bear():
     """Renew with SUCHUS_GOLDEN=write, after the measures themselves."""
-    found = json.loads(STATED.read_text(encoding="utf-8"))
+    found = stated_numbers("servo_loads")
     if os.environ.get("SUCHUS_GOLDEN") == "write":
         PAGE.write_text(page(found), encoding="utf-8")
     assert page(found) == PAGE.read_text(encoding="utf-8")
@@ -79,17 +78,3 @@ def test_the_page_states_what_the_servos_bear():
         agrees(found)
     weak["then"] = 0.01
     agrees(found)
-
-
-@pytest.mark.validate
-def test_the_servos_bear_what_is_kept():
-    """Renew with SUCHUS_GOLDEN=write."""
-    found = measured(ROBOTS["caiman"], cycles=2)
-    if os.environ.get("SUCHUS_GOLDEN") == "write":
-        STATED.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    kept = json.loads(STATED.read_text(encoding="utf-8"))
-    assert {gait: list(told["servos"]) for gait, told in found.items()} == {
-        gait: list(told["servos"]) for gait, told in kept.items()
-    }
-    for gait, told in found.items():
-        assert told["most"] == pytest.approx(kept[gait]["most"], abs=0.01), gait

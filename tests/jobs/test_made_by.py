@@ -6,7 +6,7 @@ import pytest
 from suchus.jobs.made_by import FLOW, MADE_BY, deciding
 from suchus.optimise.conduct import ROOMS
 from suchus.record import code_digest
-from suchus.record.provenance import deciding_source
+from suchus.record.provenance import syntax_of
 
 HARMLESS = (
     "suchus.errors",
@@ -59,19 +59,48 @@ def test_the_numbers_of_the_motors_are_in_the_digest(tmp_path, monkeypatch):
     assert digests[0] != digests[1]
 
 
-def test_docstrings_are_in_no_digest_and_all_else_is():
-    source = (
-        '"""A room."""\nspeed = 1.0\n"""Of the body [m/s]."""\n'
-        'def twice(x):\n    """Return it\n    twice."""\n    return 2 * x\n'
-    )
-    other = source.replace("A room", "Another").replace("Return it\n    twice", "Double").replace("[m/s]", "in\nm/s")
-    assert deciding_source(source.encode()) == deciding_source(other.encode()) != source.encode()
-    for old, new in [("1.0", "2.0"), ("2 * x", "3 * x"), ("twice(x)", "twice(y)"), ("\nspeed", "\n# a word\nspeed")]:
-        assert deciding_source(source.replace(old, new, 1).encode()) != deciding_source(source.encode())
+SOURCE = """'''A wing.'''
+speed = 1.0
+'''Of the body [m/s].'''
+def twice(x):
+    '''Return it
+    twice.'''
+    return 2 * x
+"""
 
 
 @pytest.mark.parametrize(
-    "source", ['x = "told"\n', 'print("""a\nb""")\n', 'x = 1; "told"\n', '"told"; x = 1\n', 'f"told {x}"\n']
+    ("old", "new"),
+    [
+        ("A wing", "Another"),
+        ("Return it\n    twice", "Double"),
+        ("[m/s]", "in\nm/s"),
+        ("= 1.0", "= 1.0  # a comment"),
+        ("\nspeed", "\n# a comment\n\nspeed"),
+        ("2 * x", "(2 *\n            x)"),
+        ("'''Of the body [m/s].'''\n", ""),
+    ],
 )
-def test_texts_that_are_no_docstrings_stay_in_the_digest(source):
-    assert deciding_source(source.encode()) == source.encode()
+def test_comments_docstrings_and_line_breaks_are_in_no_digest(old, new):
+    assert old in SOURCE
+    assert syntax_of(SOURCE.replace(old, new, 1).encode()) == syntax_of(SOURCE.encode())
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("1.0", "2.0"),
+        ("2 * x", "3 * x"),
+        ("twice(x)", "twice(y)"),
+        ("return 2 * x", "return 2 * (x,)"),
+        ("return 2", "return '2'"),
+        ("\nspeed", "\nspin"),
+    ],
+)
+def test_what_a_module_does_is_in_its_digest(old, new):
+    assert old in SOURCE
+    assert syntax_of(SOURCE.replace(old, new, 1).encode()) != syntax_of(SOURCE.encode())
+
+
+def test_a_text_that_is_an_argument_stays_in_the_digest():
+    assert syntax_of(b'print("""a\nb""")\n') != syntax_of(b'print("""a\nc""")\n')

@@ -11,7 +11,7 @@ from suchus.gaits import GAITS
 from suchus.motion import Steer, intended, movement
 from suchus.robots import ROBOTS
 
-FROZEN = json.loads((Path(__file__).parent.parent / "golden" / "servo_targets.json").read_text())
+FROZEN = json.loads((Path(__file__).with_name("servo_targets.json")).read_text())
 """Times [s] and angles in open loop [rad]; phases, size, strokes, heights and bends that steer, and angles then."""
 
 

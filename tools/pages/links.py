@@ -1,13 +1,13 @@
 """Links of the pages: in the repository they lead to what stands there, in the built site to the pages made of it.
 
-A page links to ``verdicts.json#claim``, ``../examples/04_kinematics.py`` or ``../src/suchus/metrics``, all of which a
-reader of the unbuilt page can open; the site has a page made of each.
+A page links to ``../results/verdicts.json#claim``, ``../examples/04_kinematics.py`` or ``../src/suchus/metrics``, all of
+which a reader of the unbuilt page can open; the site has a page made of each.
 """
 
 import re
 
 MADE = {
-    "verdicts.json": "verdicts.md",
+    "../results/verdicts.json": "verdicts.md",
     "../src/suchus/experiments": "questions.md",
     "../src/suchus/paper": "paper_map.md",
     "../src/suchus/paper/claims.py": "paper_map.md#statements",

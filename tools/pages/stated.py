@@ -3,19 +3,17 @@
 A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->`` of a page; its words are the Jinja template
 ``docs/stated/NAME.md``, in which ``{{ swim_3d.speed:.3f }}`` is a measure of the experiment ``swim_3d``, written as in
 the explanations of the experiments themselves (``suchus.experiment.templates``). What was measured is kept: of an
-experiment the measures of its full form, of a search its outcome, both in ``tests/docs/stated``; ``claims`` are the
-shares that suchus ships. A test compares pages and measures; another, which ``make validate`` runs, compares the
-measures with new runs.
+experiment the measures of its full form, of a search its outcome, see ``results`` and ``evidence.registry``. A test
+compares pages and results. ``make stale`` tells which results are old, and ``make renew`` computes them again.
 
-Usage: python tools/pages/stated.py OUTCOME.json ...: keep what these outcomes measured, and write the pages anew.
+Usage: python tools/pages/stated.py: write the passages of all pages anew.
 """
 
-import json
 import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cache
-from math import floor, log10, nan
+from math import floor, log10
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -23,7 +21,9 @@ from typing import Any
 from jinja2 import Environment, meta
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(Path(__file__).parents[1]))
+    sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+
+from evidence import renew, store
 
 from pages import passages
 from suchus import experiment
@@ -35,16 +35,7 @@ from suchus.verdict.judging import ROBUST
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 WORDS = DOCS / "stated"
-KEPT = ROOT / "tests" / "docs" / "stated"
-CLAIM_SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
-VERDICTS = DOCS / "verdicts.json"
 WIDTH = 118
-FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = {
-    **{name: (name, {}) for name in EXPERIMENTS},
-    "swim_free_space": ("swim_free", {"water": "space"}),
-    "swim_free_space_slow": ("swim_free", {"water": "space", "frequency": 0.5, "reynolds": 3500.0}),
-}
-"""What is run for measures that are kept, by source: experiments as they are, and with settings that pages state."""
 
 
 def three_digits(value: float) -> str:
@@ -119,10 +110,9 @@ def pages() -> list[Path]:
 
 
 def kept(source: str) -> dict[str, Any]:
-    """Return what was measured by an experiment, a search, or the study of the claims."""
-    place = CLAIM_SHARES if source == "claims" else KEPT / f"{source}.json"
-    found: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
-    return found
+    """Return the numbers of a result of the store."""
+    values: dict[str, Any] = store.load(source).values
+    return values
 
 
 def text_of(passage: str, instead: Mapping[str, Mapping[str, Any]] | None = None) -> str:
@@ -161,7 +151,7 @@ def elsewhere() -> dict[str, Verdict]:
 
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the shelves hold, its words in ``docs/stated/pages``."""
-    verdicts = json.loads(VERDICTS.read_text(encoding="utf-8")) if VERDICTS.is_file() else {}
+    verdicts = kept("verdicts")
     known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": TOO_FEW,
              "verdicts": verdicts, "elsewhere": elsewhere(), "unruled": UNRULED,
              "rules": RULES, "servo_loads": kept("servo_loads"),
@@ -171,35 +161,15 @@ def page(name: str, **content: Any) -> str:
 
 
 def keep(source: str, measured: Mapping[str, Any]) -> None:
-    """Keep what was measured."""
-    text = json.dumps(dict(sorted(measured.items())), indent=1, ensure_ascii=False)
-    (KEPT / f"{source}.json").write_text(text + "\n", encoding="utf-8")
+    """Keep what was measured by the code of today."""
+    renew.store(source, dict(sorted(measured.items())))
 
 
-def measured(outcome: Mapping[str, Any]) -> tuple[str, Mapping[str, Any]]:
-    """Return the name and what is kept of an outcome of an experiment, in one of the ``FORMS``, or of a search."""
-    if "optimisation" in outcome:
-        return f"optimise_{outcome['optimisation']}", outcome
-    form = outcome["experiment"], {one["name"]: one["value"] for one in outcome["differs"]}
-    source = next((name for name, one in FORMS.items() if (one[0], _written(one[1])) == form), None)
-    if source is None:
-        raise KeyError(" ".join([form[0], *form[1]]))
-    values = {name: one["value"] for name, one in outcome["measures"].items()}
-    return source, {name: nan if value is None else value for name, value in values.items()}
-
-
-def _written(settings: Mapping[str, Any]) -> dict[str, str]:
-    """Return settings as an outcome says how they differ from the shelf's."""
-    return {name: f"{value:g}" if isinstance(value, float) else str(value) for name, value in settings.items()}
-
-
-def main(files: Sequence[str]) -> None:
-    """Keep what the outcomes measured, and write the pages anew."""
-    for file in files:
-        keep(*measured(json.loads(Path(file).read_text(encoding="utf-8"))))
+def main() -> None:
+    """Write the passages of all pages anew."""
     for page in pages():
         page.write_text(filled(page.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

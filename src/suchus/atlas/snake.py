@@ -68,7 +68,7 @@ CASES = tuple(
         name=f"snake_{degrees}_re{reynolds}",
         run=partial(_snake, reynolds=float(reynolds), degrees=degrees),
         grids=grids((48, 32, 24), 40.0, coarse=32, before=24.0),
-        quick=RunEffort(cells=24, until=26.0, coarse=16, before=6.0),
+        quick=RunEffort(cells=32, until=26.0, coarse=24, before=6.0),
         code=_CODE,
         setup="The cross-section of a flying snake in a stream, in an unbounded domain, of which 18 x 12 chords are "
         f"computed; 24 chords of travel from rest with {{coarse}} cells a chord and 40 with {{cells}} in a patch of "

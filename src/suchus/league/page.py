@@ -102,12 +102,14 @@ def standings_of(path: Path) -> list[LeagueEntry]:
         UnreadableFile: it is no such file.
     """
     try:
-        return [_standing(data) for data in read_json(path)]
+        return [standing_of(data) for data in read_json(path)]
     except (TypeError, KeyError, ValueError, AttributeError) as error:
         raise UnreadableFile(f"{path} keeps no standings of the league; make it with suchus league.") from error
 
 
-def _standing(data: Any) -> LeagueEntry:
+def standing_of(data: Any) -> LeagueEntry:
+    """Return a standing from the plain values that ``standing_text`` makes of it."""
+
     def value(number: Any) -> Value:
         return tuple(number) if isinstance(number, list) else float(number)
 

@@ -5,7 +5,7 @@ import hashlib
 import json
 import math
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -15,6 +15,8 @@ from typing import Any
 from suchus import machine
 
 _PACKAGE = Path(__file__).parent.parent
+_NO_SYNTAX = frozenset({"lineno", "col_offset", "end_lineno", "end_col_offset", "ctx", "kind", "type_ignores"})
+"""Attributes of nodes of syntax trees that are positions, or follow from the other nodes."""
 _PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
 
 
@@ -58,7 +60,9 @@ MEASURED = "measured"
 
 @cache
 def code_digest(*rooms: str) -> str:
-    """Return the SHA-256 of the source of some rooms or modules of suchus without their docstrings, and of their data.
+    """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
+
+    Comments, docstrings and line breaks change nothing.
 
     Args:
         rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
@@ -67,29 +71,52 @@ def code_digest(*rooms: str) -> str:
     for room in rooms:
         place = _PACKAGE / room
         for file in [place] if place.is_file() else sorted([*place.rglob("*.py"), *place.rglob("*.toml")]):
-            source = file.read_bytes() if file.suffix == ".toml" else deciding_source(file.read_bytes())
+            source = file.read_bytes() if file.suffix == ".toml" else syntax_of(file.read_bytes())
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")
     return text.hexdigest()
 
 
-def deciding_source(source: bytes) -> bytes:
-    """Return the source of a module without the docstrings on lines of their own, which change no result."""
-    lines = source.splitlines(keepends=True)
-    for text in _docstrings(ast.parse(source)):
-        first, end = text.lineno - 1, text.end_lineno or text.lineno
-        beside = lines[first][: text.col_offset] + lines[end - 1][text.end_col_offset :]
-        if not beside.strip():
-            lines[first:end] = [b""] * (end - first)
-    return b"".join(lines)
+def syntax_of(source: bytes) -> bytes:
+    """Return the syntax tree of a module as text, without docstrings: equal for sources that do the same.
+
+    The text is the same under every version of Python that has the same grammar: fields that are empty are left out,
+    since ``ast.dump`` writes them in some versions only.
+
+    Raises:
+        SyntaxError: the source is no Python.
+    """
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            node.body = [part for part in node.body if not _is_text(part)]
+    text: list[str] = []
+    _write(tree, text.append)
+    return "".join(text).encode()
 
 
-def _docstrings(place: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[ast.Constant]:
-    """Yield the texts that stand alone as a statement of a module, class or function."""
-    for part in place.body:
-        if isinstance(part, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
-            yield from _docstrings(part)
-        elif isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant) and isinstance(part.value.value, str):
-            yield part.value
+def _is_text(statement: ast.stmt) -> bool:
+    """Return whether a statement is a text alone: a docstring of a module, class, function or field."""
+    return (
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Constant)
+        and isinstance(statement.value.value, str)
+    )
+
+
+def _write(node: ast.AST, put: Callable[[str], None]) -> None:
+    """Write a syntax tree without positions."""
+    put(f"{type(node).__name__}(")
+    for name, value in node.__dict__.items():
+        if name in _NO_SYNTAX or value is None or value == []:
+            continue
+        put(f"{name}=")
+        for part in value if isinstance(value, list) else (value,):
+            if isinstance(part, ast.AST):
+                _write(part, put)
+            else:
+                put(repr(part))
+            put(",")
+    put(")")
 
 
 @cache

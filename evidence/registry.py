@@ -1,0 +1,132 @@
+"""The results that suchus keeps: for each the code that it reaches, a probe of its behaviour, and how it is renewed."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+from evidence import built, probes, servo_loads, tolerance
+from evidence.probes import Probe
+from evidence.tolerance import Bounded
+from suchus.experiments import EXPERIMENTS
+from suchus.robots import ROBOTS
+
+FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
+    {
+        **{name: (name, {}) for name in EXPERIMENTS},
+        "swim_free_space": ("swim_free", {"water": "space"}),
+        "swim_free_space_slow": ("swim_free", {"water": "space", "frequency": 0.5, "reynolds": 3500.0}),
+    }
+)
+"""Experiment and settings of each result that is an experiment in full."""
+SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
+"""Searches whose outcome is kept, as ``optimise_NAME``."""
+_SWIMS = ("suchus.experiments.swim_free", "suchus.coupling", "suchus.flow")
+_ATLAS = "suchus.atlas"
+_VALIDATE = "make validate"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kept:
+    """A result that is kept."""
+
+    name: str
+    """Name of the result, and of its file in ``results``."""
+    modules: tuple[str, ...]
+    """Modules or packages of suchus that make it; what they import is reached too."""
+    probe: Probe | None = None
+    """Gives the behaviour of the code in seconds; None where only the code itself can be compared."""
+    renew: str
+    """Command that computes it again."""
+    compute: Callable[[], Any] | None = None
+    """Returns its numbers; None where a program of its own computes and keeps it."""
+    relative: float = tolerance.RELATIVE
+    """Relative change of its probe's numbers that means the same [-]."""
+    small: float = tolerance.SMALL
+    """Absolute change of them that no reader looks at [SI unit]."""
+    of: tuple[str, ...] = ()
+    """Results that it is made of: it is old when one of them is."""
+
+    def bounded(self) -> dict[str, Bounded]:
+        """Return what its probe gives now, each number with its range; nothing where it has no probe."""
+        return tolerance.bounded(self.probe(), relative=self.relative, small=self.small) if self.probe else {}
+
+
+def run_experiment(name: str) -> dict[str, float]:
+    """Return the measures of a result that is an experiment in full.
+
+    Args:
+        name: of the result, a key of ``FORMS``.
+    """
+    experiment, settings = FORMS[name]
+    measures = replace(EXPERIMENTS[experiment], **settings).run().measures
+    return {key: float(measure.value) for key, measure in sorted(measures.items())}
+
+
+def _experiment(name: str, of: str) -> Kept:
+    return Kept(
+        name=name, modules=(f"suchus.experiments.{of}", "suchus.experiment"), probe=partial(probes.experiment, of),
+        renew=f"make renew NAME={name}", compute=partial(run_experiment, name),
+    )  # fmt: skip
+
+
+def _flows(name: str, renew: str, *modules: str, flows: Sequence[str] = probes.PLANE) -> Kept:
+    return Kept(
+        name=name, modules=("suchus.flow", *modules), probe=partial(probes.first_steps, tuple(flows)), renew=renew
+    )
+
+
+_OTHERS = (
+    *(
+        Kept(
+            name=f"optimise_{name}", modules=("suchus.optimise",), probe=partial(probes.search, name),
+            renew=f"suchus optimise {name} --out out/optimise && make renew NAME=optimise_{name}",
+        )
+        for name in SEARCHES
+    ),
+    Kept(
+        name="lifted_design",
+        modules=("suchus.experiments.crawl_stability", "suchus.experiments.displacement", "suchus.experiment"),
+        probe=partial(probes.experiment, "displacement"), renew="python tools/lifted_design.py",
+        of=("optimise_lifted",),
+    ),
+    Kept(
+        name="claims", modules=("suchus.study", "suchus.verdict"), probe=probes.claims,
+        renew="suchus study claims --out out/claims && make renew NAME=claims",
+    ),
+    Kept(
+        name="verdicts", modules=("suchus.verdict",), renew="make reproduce && python tools/verdict_table.py out",
+        of=("claims", *EXPERIMENTS),
+    ),
+    Kept(name="bodies", modules=("suchus.cli",), renew="python tools/body_table.py --anew"),
+    Kept(
+        name="league", modules=("suchus.contestants", "suchus.league"), probe=probes.predictions,
+        renew="suchus league --out out/league && python tools/league_page.py out/league",
+    ),
+    _flows("atlas", "make atlas", _ATLAS, flows=probes.ATLAS),
+    _flows("validation", _VALIDATE, "suchus.coupling", flows=(*probes.PLANE, *probes.SPACE)),
+    _flows("snakes", _VALIDATE, _ATLAS),
+    _flows("sphere_300", _VALIDATE, flows=probes.SPACE),
+    _flows("flag", _VALIDATE, "suchus.coupling"),
+    _flows("wall_stress", _VALIDATE, flows=(*probes.PLANE, *probes.SPACE)),
+    _flows("sections", "python tools/sections.py out/sections", "suchus.water.sections", _ATLAS),
+    _flows("calibration", "python tools/calibration.py out/calibration", "suchus.water", flows=probes.SPACE),
+    Kept(
+        name="swim_grids", modules=_SWIMS, probe=partial(probes.experiment, "swimming"), renew=_VALIDATE,
+    ),
+    Kept(name="wave_fits", modules=("suchus.water",), probe=probes.wave_fit, renew="python tools/wave_fits.py"),
+    Kept(
+        name="servo_loads", modules=("suchus.hardware",), probe=probes.servo_loads, renew="make renew NAME=servo_loads",
+        compute=partial(servo_loads.measured, ROBOTS["caiman"], cycles=2),
+    ),
+    Kept(name="built", modules=("suchus.hardware",), probe=probes.servo_loads, renew="make renew NAME=built",
+         compute=built.measured),
+    Kept(name="bench_flow", modules=(), renew="python bench/bench_flow.py --keep"),
+    Kept(name="bench_gpu", modules=(), renew="python bench/bench_gpu.py --keep"),
+)  # fmt: skip
+
+RESULTS: Mapping[str, Kept] = MappingProxyType(
+    {kept.name: kept for kept in (*(_experiment(name, of) for name, (of, _) in FORMS.items()), *_OTHERS)}
+)
+"""Every result that may be kept, by name. Those that are have a file in ``results``."""

@@ -1,0 +1,71 @@
+"""Which modules a result reaches by import, and the digest of what they do."""
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
+
+import grimp
+
+from suchus.record.provenance import syntax_of
+
+PACKAGE = Path(__file__).parents[1] / "src" / "suchus"
+CATALOGS = ("control", "faults", "gaits", "metrics", "motors", "robots")
+"""Packages whose modules are loaded by name: who imports the package may reach all of them."""
+_DATA = (".toml", ".csv", ".npz")
+
+
+@cache
+def _graph() -> grimp.ImportGraph:
+    return grimp.build_graph("suchus", cache_dir=None)
+
+
+@cache
+def reached(modules: tuple[str, ...]) -> frozenset[str]:
+    """Return all modules of suchus that some modules import, directly or not, and these themselves.
+
+    Args:
+        modules: full names, as ``suchus.land.stepper``; of a package all of its modules.
+
+    Raises:
+        KeyError: there is no such module.
+    """
+    graph, everything = _graph(), set[str]()
+    todo = [module for name in modules for module in (name, *graph.find_descendants(name))]
+    if missing := [name for name in modules if name not in graph.modules]:
+        raise KeyError(", ".join(missing))
+    while todo:
+        everything |= {*todo, *(above for module in todo for above in graph.find_upstream_modules(module))}
+        catalogs = [f"suchus.{name}" for name in CATALOGS if f"suchus.{name}" in everything]
+        todo = [m for catalog in catalogs for m in graph.find_descendants(catalog) if m not in everything]
+    return frozenset(everything)
+
+
+def digest(modules: Iterable[str], package: Path = PACKAGE) -> str:
+    """Return the first 16 digits of the SHA-256 of what some modules do, and of the data beside them.
+
+    Comments, docstrings and line breaks change nothing; the order of the modules neither.
+
+    Args:
+        modules: full names.
+        package: folder of the package whose sources are read.
+
+    Raises:
+        SyntaxError: a source is no Python.
+    """
+    text = hashlib.sha256()
+    for file in files(modules, package):
+        source = syntax_of(file.read_bytes()) if file.suffix == ".py" else file.read_bytes()
+        text.update(file.relative_to(package).as_posix().encode() + b"\0" + source + b"\0")
+    return text.hexdigest()[:16]
+
+
+def files(modules: Iterable[str], package: Path = PACKAGE) -> Sequence[Path]:
+    """Return the files of modules in alphabetical order, and the data files of their folders."""
+    found = set[Path]()
+    for module in modules:
+        names = module.split(".")[1:]
+        folder, file = package.joinpath(*names), package.joinpath(*names[:-1], f"{names[-1] if names else ''}.py")
+        file = file if file.is_file() else folder / "__init__.py"
+        found |= {file, *(data for data in file.parent.glob("*") if data.suffix in _DATA)}
+    return sorted(file for file in found if file.is_file())
