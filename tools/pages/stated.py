@@ -38,6 +38,7 @@ WORDS = DOCS / "stated"
 KEPT = ROOT / "tests" / "docs" / "stated"
 CLAIM_SHARES = ROOT / "src" / "suchus" / "verdict" / "claims.json"
 VERDICTS = DOCS / "verdicts.json"
+VALIDATION = DOCS / "validation.json"
 WIDTH = 118
 FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     **{name: (name, {}) for name in EXPERIMENTS},
@@ -119,10 +120,21 @@ def pages() -> list[Path]:
 
 
 def kept(source: str) -> dict[str, Any]:
-    """Return what was measured by an experiment, a search, or the study of the claims."""
+    """Return what was measured by an experiment, a search, the study of the claims, or the validation."""
+    if source == "validation":
+        return validation_rows()
     place = CLAIM_SHARES if source == "claims" else KEPT / f"{source}.json"
     found: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
     return found
+
+
+def validation_rows() -> dict[str, Any]:
+    """Return the rows of the flow solver's validation, by case and quantity: ``ours`` and ``theirs``."""
+    rows: dict[str, Any] = {}
+    for row in json.loads(VALIDATION.read_text(encoding="utf-8")):
+        values = {"ours": row["ours"], "theirs": row["theirs"], "grid": row["grid"]}
+        rows.setdefault(row["case"], {})[row["quantity"]] = values
+    return rows
 
 
 def text_of(passage: str, instead: Mapping[str, Mapping[str, Any]] | None = None) -> str:
