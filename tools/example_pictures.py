@@ -3,7 +3,6 @@
 Usage: python tools/example_pictures.py [NAME ...]
 """
 
-import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -80,13 +79,6 @@ def policies() -> Figure:
     return _bars({name: envs.play(task, player, episodes=8).forward.tolist() for name, player in players.items()})
 
 
-def learned() -> Figure:
-    """Draw what the twelfth example learned, as the page on environments shows it: training takes minutes."""
-    table = (PICTURES.parent / "environments.md").read_text(encoding="utf-8").partition("The learned policy then")[2]
-    rows = re.findall(r"^\| ([^|]+?) \|[^|]+\| ([+-]?[0-9.]+) m \|", table, re.M)[:6]
-    return _bars({name: [float(distance)] for name, distance in rows})
-
-
 def crawling() -> Figure:
     """Draw the two crawls of the article from above."""
     arms = ("coordinated", "limbs_only")
@@ -124,7 +116,6 @@ DRAWN: Mapping[str, Callable[[], Figure]] = {
     "example_07": heading,
     "example_08": gait,
     "example_11": policies,
-    "example_12": learned,
 }
 
 

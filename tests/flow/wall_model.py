@@ -4,7 +4,8 @@ Water moves along a wall, nodes a cell apart lie anywhere to it, and all depends
 the slip of the water over the wall from ``u`` to ``(keep + gain) @ u``, with everything in cells, and a ``spread`` of
 viscosity times the step over the cell squared. So the place where the water rests is the solution of a linear system,
 stability an eigenvalue, and friction on a wall that swings to and fro a short run. A wall is a function of the nodes'
-distances and of the spread; ``WALLS`` are those that were compared, and docs/flow_limits.md says what came out.
+distances and of the spread; ``WALLS`` are those that were compared, and the passage ``walls`` of docs/flow_limits.md
+has the results.
 """
 
 from collections.abc import Callable
@@ -192,25 +193,23 @@ def friction(wall: Wall, place: float, spread: float, layer: float, periods: flo
 PLACES = (np.arange(20) + 0.5) / 20
 """Places of the nodes over which walls are compared [cells]."""
 
-HEAD = (
-    "wall", "rests at, spread 0.01 [cells]", "rests at, spread 0.1 [cells]", "friction, layer of 2 cells [-]",
-    "largest error of it [-]", "growth, spread 0.2 [-]",
-)  # fmt: skip
-"""Columns of ``table``."""
 
+def compared() -> dict[str, dict[str, float]]:
+    """Return what each wall does, over the places of the nodes.
 
-def table() -> list[str]:
-    """Return the lines of the table of walls: mean (and range) over the places of the nodes."""
-
-    def spread_out(values: np.ndarray) -> str:
-        mean, low, high = (round(float(v), 3) + 0.0 for v in (values.mean(), values.min(), values.max()))
-        return f"{mean:.3f} ({low:.3f} to {high:.3f})"
-
-    lines = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
+    Returns:
+        by name of the wall: ``rest_0_01``, ``rest_0_1``, where a steady profile rests at these spreads [cells];
+        ``friction``, that of a layer of two cells over the exact one [-], each with the ends ``_low`` and ``_high``;
+        ``error``, the largest of the friction [-]; ``growth``, the largest factor of a step at a spread of 0.2 [-].
+    """
+    rows = {}
     for name, wall in WALLS.items():
-        rests = [spread_out(np.array([rest(wall, place, spread) for place in PLACES])) for spread in (0.01, 0.1)]
         rubbed = np.array([friction(wall, place, 0.1, 2.0) for place in PLACES[::2]])
-        most = max(growth(wall, place, 0.2) for place in PLACES[::4])
-        cells = [name, *rests, spread_out(np.abs(rubbed)), f"{np.abs(rubbed - 1).max():.3f}", f"{most:.3f}"]
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines
+        ranges = {f"rest_{spread:g}".replace(".", "_"): [rest(wall, place, spread) for place in PLACES]
+                  for spread in (0.01, 0.1)} | {"friction": np.abs(rubbed)}  # fmt: skip
+        row = {}
+        for quantity, values in ranges.items():
+            row |= {quantity: np.mean(values), f"{quantity}_low": np.min(values), f"{quantity}_high": np.max(values)}
+        row |= {"error": np.abs(rubbed - 1).max(), "growth": max(growth(wall, place, 0.2) for place in PLACES[::4])}
+        rows[name] = {quantity: round(float(value), 6) + 0.0 for quantity, value in row.items()}
+    return rows

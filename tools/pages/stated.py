@@ -11,7 +11,7 @@ Usage: python tools/pages/stated.py: write the passages of all pages anew.
 
 import re
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from math import floor, log10
 from pathlib import Path
@@ -110,9 +110,21 @@ def pages() -> list[Path]:
 
 
 def kept(source: str) -> dict[str, Any]:
-    """Return the numbers of a result of the store."""
-    values: dict[str, Any] = store.load(source).values
-    return values
+    """Return the numbers of a result of the store; of the validation its rows, by case and quantity."""
+    values: Any = store.load(source).values
+    return validation_rows(values) if source == "validation" else values
+
+
+def validation_rows(listed: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return the rows of the flow solver's validation, by case and quantity: ``ours``, ``theirs`` and ``grid``.
+
+    Args:
+        listed: the rows as they are kept.
+    """
+    rows: dict[str, Any] = {}
+    for row in listed:
+        rows.setdefault(row["case"], {})[row["quantity"]] = {name: row[name] for name in ("ours", "theirs", "grid")}
+    return rows
 
 
 def text_of(passage: str, instead: Mapping[str, Mapping[str, Any]] | None = None) -> str:
