@@ -50,6 +50,7 @@ def test_pages_and_passages_that_are_left_out_have_their_programs():
         ("It walks 0.74 m in 2 cycles.", ["0.74", "2"]),
         ("2 048 runs, 1e-12 m, 3.11.4, -75 %, 16-bit, 1.2e+4", ["2 048", "1e-12", "3.11.4", "75", "16", "1.2e+4"]),
         ("from 20 to 50 ms, (14), Fig. 15", ["20", "50", "14", "15"]),
+        ("1 234 567 and 1 2345", ["1 234 567", "1", "2345"]),
         ("an XM430-W350 with CRC-16 under Apache-2.0", []),
         ("`k = 3` and ``a ` 4`` and $`x = 5`$ and $y = 6$ but 7", ["7"]),
         ("costs 5 $ and 6", ["5", "6"]),
