@@ -4,10 +4,11 @@ A probe returns numbers by name. It takes the path that the result takes, in its
 experiment's quick form, the first steps of a flow on a coarse grid, the first generation of a search.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from functools import cache
+from typing import Any
 from unittest import mock
 
 import numpy as np
@@ -31,9 +32,7 @@ from suchus.water import fit, printed_wave
 
 Numbers = Mapping[str, float]
 """What a probe gives: numbers by name."""
-Probe = Callable[[], Numbers]
-"""A probe."""
-STEPS = 4
+STEPS = 8
 """Steps that a probe takes of a flow [-]."""
 PLANE = ("started_re550", "in_line", "settling", "flapping", "cavity_re400")
 """Flows of the atlas whose first steps stand for the flow solver in the plane."""
@@ -44,6 +43,20 @@ ATLAS = (
 """Flows whose first steps stand for the atlas: one of each kind."""
 SPACE = ("oscillating_sphere",)
 """Those that stand for it in space."""
+
+
+def flat(value: Any, path: str = "") -> dict[str, float]:
+    """Return all numbers of nested mappings and lists by their paths; texts are left out, and None is NaN.
+
+    Args:
+        value: a number, or mappings and lists of numbers.
+        path: of the value within the whole.
+    """
+    if isinstance(value, Mapping | list | tuple):
+        items = value.items() if isinstance(value, Mapping) else enumerate(value)
+        inner = (flat(part, f"{path}_{key}" if path else str(key)) for key, part in items)
+        return {name: number for numbers in inner for name, number in numbers.items()}
+    return {} if isinstance(value, str) else {path: float("nan") if value is None else float(value)}
 
 
 def experiment(name: str) -> Numbers:

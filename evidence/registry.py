@@ -6,8 +6,7 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from evidence import built, probes, servo_loads, tolerance
-from evidence.probes import Probe
+from evidence import built, filmed_crawl, page_measures, policies, probes, servo_loads, tolerance, wall_model
 from evidence.tolerance import Bounded
 from suchus.experiments import EXPERIMENTS
 from suchus.robots import ROBOTS
@@ -35,8 +34,9 @@ class Kept:
     """Name of the result, and of its file in ``results``."""
     modules: tuple[str, ...]
     """Modules or packages of suchus that make it; what they import is reached too."""
-    probe: Probe | None = None
-    """Gives the behaviour of the code in seconds; None where only the code itself can be compared."""
+    probe: Callable[[], Any] | None = None
+    """Gives the behaviour of the code in seconds, as numbers in mappings and lists; None where only the code itself can
+    be compared."""
     renew: str
     """Command that computes it again."""
     compute: Callable[[], Any] | None = None
@@ -50,7 +50,9 @@ class Kept:
 
     def bounded(self) -> dict[str, Bounded]:
         """Return what its probe gives now, each number with its range; nothing where it has no probe."""
-        return tolerance.bounded(self.probe(), relative=self.relative, small=self.small) if self.probe else {}
+        if self.probe is None:
+            return {}
+        return tolerance.bounded(probes.flat(self.probe()), relative=self.relative, small=self.small)
 
 
 def run_experiment(name: str) -> dict[str, float]:
@@ -122,6 +124,25 @@ _OTHERS = (
     ),
     Kept(name="built", modules=("suchus.hardware",), probe=probes.servo_loads, renew="make renew NAME=built",
          compute=built.measured),
+    *(
+        Kept(
+            name=name, modules=("suchus.water", "suchus.land", "suchus.control"), compute=compute,
+            probe=probes.wave_fit if name == "printed_direction" else compute, renew=f"make renew NAME={name}",
+        )
+        for name, compute in page_measures.SOURCES.items()
+    ),
+    Kept(
+        name="policies", modules=("suchus.envs",), compute=policies.measured, renew="make renew NAME=policies",
+        probe=partial(policies.body_results, "caiman"),
+    ),
+    Kept(
+        name="filmed_crawl", modules=("suchus.capture", "suchus.land"), compute=filmed_crawl.measured,
+        probe=partial(filmed_crawl.measured, 1), renew="make renew NAME=filmed_crawl",
+    ),
+    Kept(
+        name="walls", modules=("suchus.flow",), compute=wall_model.compared, probe=wall_model.compared,
+        renew="make renew NAME=walls",
+    ),
     Kept(name="bench_flow", modules=(), renew="python bench/bench_flow.py --keep"),
     Kept(name="bench_gpu", modules=(), renew="python bench/bench_gpu.py --keep"),
 )  # fmt: skip

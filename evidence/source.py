@@ -7,9 +7,10 @@ from pathlib import Path
 
 import grimp
 
+import suchus
 from suchus.record.provenance import syntax_of
 
-PACKAGE = Path(__file__).parents[1] / "src" / "suchus"
+PACKAGE = Path(suchus.__file__).parent
 CATALOGS = ("control", "faults", "gaits", "metrics", "motors", "robots")
 """Packages whose modules are loaded by name: who imports the package may reach all of them."""
 _DATA = (".toml", ".csv", ".npz")
@@ -55,9 +56,16 @@ def digest(modules: Iterable[str], package: Path = PACKAGE) -> str:
     """
     text = hashlib.sha256()
     for file in files(modules, package):
-        source = syntax_of(file.read_bytes()) if file.suffix == ".py" else file.read_bytes()
-        text.update(file.relative_to(package).as_posix().encode() + b"\0" + source + b"\0")
+        stamp = file.stat()
+        text.update(file.relative_to(package).as_posix().encode() + _content(file, stamp.st_mtime_ns, stamp.st_size))
     return text.hexdigest()[:16]
+
+
+@cache
+def _content(file: Path, changed: int, size: int) -> bytes:  # noqa: ARG001  a file that is written anew is read anew
+    """Return the SHA-256 of what a file does."""
+    content = file.read_bytes()
+    return hashlib.sha256(syntax_of(content) if file.suffix == ".py" else content).digest()
 
 
 def files(modules: Iterable[str], package: Path = PACKAGE) -> Sequence[Path]:

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Literal
 
-from evidence import source, tolerance
+from evidence import probes, source, tolerance
 from evidence.registry import RESULTS, Kept
 from evidence.store import ROOT, StoredResult, load, names
 from suchus.errors import SuchusError
@@ -69,7 +69,7 @@ def status(kept: Kept, *, package: Path = source.PACKAGE, by_probe: bool = True)
     if not by_probe:
         return _status(kept, stored, "possibly old", "its code has changed", code)
     try:
-        numbers = kept.probe()
+        numbers = probes.flat(kept.probe())
     except Exception as error:  # whatever a machine lacks: a probe that cannot run tells nothing of the result
         message = f"its probe cannot run on this machine: {type(error).__name__}: {error}"
         return _status(kept, stored, "not checked here", message, code)

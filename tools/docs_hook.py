@@ -1,6 +1,7 @@
 """What mkdocs does besides: pages made of the code, formulas as MathML, and a place in the menu for every page."""
 
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,9 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from pages import article, gallery, links, reference
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from pages import age, article, gallery, links, reference
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
 from pages.stated import page as stated_page
@@ -41,9 +44,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Keep the formulas of a page aside, and lead links to files of the repository to the pages made of them."""
+    """Mark what is old, keep the formulas of a page aside, and lead links to files to the pages made of them."""
     _formulas[page.file.src_uri] = Formulas()
-    return _formulas[page.file.src_uri].take(links.built(markdown))
+    return _formulas[page.file.src_uri].take(links.built(age.marked(markdown)))
 
 
 def on_page_content(html: str, page: Page, **_: Any) -> str:

@@ -1,13 +1,9 @@
 """Walls in one dimension: what the solver's wall does is what its offset was fitted to, and what others would do."""
 
-import os
-
 import numpy as np
 import pytest
-import wall_model as model
-from wall_model import PLACES, WALLS, friction, growth, rest
+from evidence.wall_model import PLACES, WALLS, friction, growth, rest
 
-from pages.stated import keep, kept
 from suchus.flow.immerse import wall_offset
 
 TODAY = WALLS["today's: immersion with an offset"]
@@ -51,13 +47,3 @@ def test_merged_cells_need_a_shorter_step_than_the_others():
     assert max(growth(WALLS["cut cells, merged"], place, 0.1) for place in PLACES[::4]) < 1
     for wall in (TODAY, CARRIED):
         assert max(growth(wall, place, 0.2) for place in PLACES[::4]) < 1
-
-
-def test_the_page_of_the_limits_states_these_walls():
-    """Renew with SUCHUS_GOLDEN=write, then ``python tools/pages/stated.py``."""
-    computed = model.compared()
-    if os.environ.get("SUCHUS_GOLDEN") == "write":
-        keep("walls", computed)
-    assert list(kept("walls")) == sorted(computed)
-    for name, row in kept("walls").items():
-        assert row == pytest.approx(computed[name], abs=1e-3), name

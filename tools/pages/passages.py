@@ -14,3 +14,8 @@ def names(page: str) -> list[str]:
 def put(page: str, texts: Mapping[str, str]) -> str:
     """Return a page with the texts in the passages of these names; the others stay as they are."""
     return _PASSAGE.sub(lambda found: found[1] + texts.get(found[2], found[3]) + found[4], page)
+
+
+def put_below(page: str, texts: Mapping[str, str]) -> str:
+    """Return a page with a text below the end of each passage of these names."""
+    return _PASSAGE.sub(lambda match: match[0] + texts.get(match[2], ""), page)

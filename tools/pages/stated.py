@@ -21,10 +21,9 @@ from typing import Any
 from jinja2 import Environment, meta
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2])]
+    sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from evidence import renew, store
-
 from pages import passages
 from suchus import experiment
 from suchus.experiments import EXPERIMENTS

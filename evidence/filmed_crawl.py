@@ -1,7 +1,4 @@
-"""Film the crawl of the robot, read the gait back from 60 films, and state on the page on capture how well that does.
-
-Usage: python tools/filmed_crawl.py: reads all films, keeps the results, and writes the pages that state them anew.
-"""
+"""Films of the robot's crawl, and the gait that is read back from them, for the page on capture."""
 
 from dataclasses import replace
 from typing import Any
@@ -9,7 +6,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pages import stated
 from suchus.capture import Camera, driven_share, film, observe, to_gait
 from suchus.design import LEGS
 from suchus.gaits import GAITS
@@ -102,8 +98,3 @@ def measured(films: int = FILMS) -> dict[str, Any]:
         "mean": {name: float(np.mean(values)) for name, values in columns.items()},
         "std": {name: float(np.std(values)) for name, values in columns.items()},
     }
-
-
-if __name__ == "__main__":
-    stated.keep(NAME, measured())
-    stated.main([])

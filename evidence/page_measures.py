@@ -1,18 +1,12 @@
-"""Measure what single pages of the documentation state and no experiment does, each source by a function of its own.
-
-Usage: python tools/page_measures.py [NAME ...]: measures these sources, or all, keeps them, and writes the pages that
-state them anew.
-"""
+"""Measure what single pages of the documentation state and no experiment does, each source by a function of its own."""
 
 import re
-import sys
 from collections.abc import Callable, Mapping
 from math import radians
 from typing import Any
 
 import numpy as np
 
-from pages import stated
 from suchus import swim
 from suchus.control.standing import BALANCE, Standing
 from suchus.errors import InvalidDesign
@@ -143,9 +137,3 @@ SOURCES: Mapping[str, Callable[[], Mapping[str, Any]]] = {
     "printed_direction": printed_direction,
 }
 """What measures each source."""
-
-
-if __name__ == "__main__":
-    for name in sys.argv[1:] or SOURCES:
-        stated.keep(name, SOURCES[name]())
-    stated.main([])

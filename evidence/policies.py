@@ -1,7 +1,4 @@
-"""Play the tasks of ``suchus.envs`` with policies that nobody trained, whose returns the page on environments states.
-
-Usage: python tools/policies.py: plays all episodes, keeps the results, and writes the pages that state them anew.
-"""
+"""Tasks of ``suchus.envs`` played by policies that nobody trained, for the page on environments."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -10,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from pages import stated
 from suchus.control import Amphibious, HeadingHold, HeadingRule, Swimming
 from suchus.design import layout
 from suchus.envs import LONGER, STEPS, TASKS, Anything, Controlled, CrocodileVectorEnv, Follow, Still, SwimToGoal, Task
@@ -125,8 +121,3 @@ def measured() -> dict[str, Any]:
         "shores": {str(slope): shore_results(slope) for slope in SLOPES},
         "bodies": {robot: body_results(robot) for robot in ROBOTS if robot != "floating_caiman"},
     }
-
-
-if __name__ == "__main__":
-    stated.keep(NAME, measured())
-    stated.main([])
