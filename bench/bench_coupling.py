@@ -8,6 +8,7 @@ quarter of a second on, when kernels are loaded and the first added mass is know
 import argparse
 from time import process_time
 
+from form import SHORT, in_form
 from suchus import flow
 from suchus.control import Swimming
 from suchus.coupling import Swim
@@ -35,9 +36,11 @@ def spent(go, until):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--cells", type=int, default=80, help="per body length")
-    options.add_argument("--until", type=float, default=1.25, help="time that is swum, more than 0.25 [s]")
-    options.add_argument("--plane", action="store_true", help="swim in a slice")
+    options.add_argument("--cells", type=int, default=in_form(80, 64), help="per body length")
+    options.add_argument(
+        "--until", type=float, default=in_form(1.25, 0.3), help="time that is swum, more than 0.25 [s]"
+    )
+    options.add_argument("--plane", action="store_true", default=SHORT, help="swim in a slice")
     options.add_argument("--tail-height", type=float, default=0.0, help="of a fin on the last third [m]")
     chosen = options.parse_args()
     question = EXPERIMENTS["swim_3d"]

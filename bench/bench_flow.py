@@ -7,6 +7,7 @@ the page on the limits of the flow solver.
 import argparse
 import sys
 from collections import defaultdict
+from functools import partial
 from math import prod
 from pathlib import Path
 from time import perf_counter
@@ -14,6 +15,7 @@ from time import perf_counter
 import numba
 import numpy as np
 
+from form import SHORT, in_form
 from suchus import flow
 from suchus.experiments import EXPERIMENTS
 from suchus.flow import border, farfield, log, midline, multigrid, patch, poisson, simulation, water
@@ -87,7 +89,10 @@ def bandwidth(size, threads):
 
 def gain_of_two():
     """How much faster two threads are than one at arithmetic alone: what the machine's cores are worth."""
-    x, rounds = np.ones((2, 2, 512), np.float32), 200_000  # apart: neighbours share a line of the caches
+    x, rounds = (
+        np.ones((2, 2, 512), np.float32),
+        in_form(200_000, 2_000),
+    )  # apart: neighbours share a line of the caches
     numba.set_num_threads(2)
     both = best(lambda: spin_threads(x, rounds))
     numba.set_num_threads(1)
@@ -155,17 +160,17 @@ def tell_outline(cells=96, corners=240, steps=12, rounds=6):
     return {"shape_ellipse": ellipse, "shape_outline": outline, "shape_bent": bent}
 
 
-def tell_patch(steps=6, rounds=4):
+def tell_patch(steps=6, rounds=4, cells=64):
     """Print what a step takes on a patch of fine cells, over that on fine cells everywhere, on one thread [-]."""
     found = {}
-    plane = flow.Grid.covering((-3.0, 5.0), (-2.0, 2.0), cell=1 / 64), ((-0.3, 1.5), (-0.4, 0.4)), 4
+    plane = flow.Grid.covering((-3.0, 5.0), (-2.0, 2.0), cell=1 / cells), ((-0.3, 1.5), (-0.4, 0.4)), 4
     space = (
         flow.Grid.covering((-2.0, 3.0), (-2.0, 2.0), (-2.0, 2.0), cell=1 / 8),
         ((-0.95, 1.2), *[(-0.95, 0.95)] * 2),
         4,
     )
     aerofoil, sphere = flow.foil(1.0, thickness=0.12), flow.Sphere(diameter=1.0)
-    for (whole, box, ratio), shape in ((plane, aerofoil), (space, sphere)):
+    for (whole, box, ratio), shape in ((plane, aerofoil), (space, sphere))[: in_form(2, 1)]:
         fine = flow.Grid(cells=tuple(ratio * n for n in whole.cells), cell=whole.cell / ratio, origin=whole.origin)
         patch, key = whole.patch(*box, ratio=ratio), f"patch_{whole.axes}"
         more = {
@@ -270,7 +275,9 @@ def tell_solve(w, per_cell):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--steps", type=int, default=30, help="steps per batch; the fastest of 5 batches counts")
+    options.add_argument(
+        "--steps", type=int, default=in_form(30, 1), help="steps per batch; the fastest of 5 batches counts"
+    )
     options.add_argument("--pieces", action="store_true", help="say where the time goes instead")
     options.add_argument("--keep", action="store_true", help="state what was found on the page on limits")
     chosen = options.parse_args()
@@ -278,7 +285,7 @@ def main():
     many = min(2, numba.config.NUMBA_NUM_THREADS)
     far, found = {}, {}
     for threads in sorted({1, many}):
-        far[threads], near = bandwidth(16_000_000, threads), bandwidth(500_000, threads)
+        far[threads], near = bandwidth(in_form(16_000_000, 500_000), threads), bandwidth(500_000, threads)
         found[f"memory_{threads}"] = far[threads]
         print(f"memory, {threads} thread(s): {far[threads]:.1f} GB/s far, {near:.1f} GB/s near")
     if many > 1:
@@ -292,10 +299,11 @@ def main():
             else:
                 found |= tell_speed(label, make, cells, steps, far)
     if not chosen.pieces:
-        found |= tell_outline() | tell_patch()
-        for cells in (96, 128):
+        found |= in_form(tell_outline, partial(tell_outline, 48, 60, 1, 2))()
+        found |= in_form(tell_patch, partial(tell_patch, 1, 2, 32))()
+        for cells in in_form((96, 128), ()):
             found |= tell_swim(cells, far)
-    if chosen.keep and many > 1 and not chosen.pieces:
+    if chosen.keep and many > 1 and not chosen.pieces and not SHORT:
         sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
         from pages import stated  # noqa: PLC0415
 
@@ -349,9 +357,9 @@ def tell_speed(label, make, cells, steps, far):
 
 
 FLOWS = (
-    ("moving eel", eel, (128, 256)),
-    ("sphere at rest", in_space(moving=False), (128, 192)),
-    ("moving ellipsoid", in_space(moving=True), (128, 192)),
+    ("moving eel", eel, in_form((128, 256), (64,))),
+    ("sphere at rest", in_space(moving=False), in_form((128, 192), (96,))),
+    ("moving ellipsoid", in_space(moving=True), in_form((128, 192), (96,))),
 )
 """What is timed: what it is, how it is made from a number of cells and of threads, and for which numbers of cells."""
 

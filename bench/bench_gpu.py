@@ -3,7 +3,8 @@
 The face values are those of the flow solver: ``on_card`` hands the plain functions behind its parts to ``numba.cuda``.
 What each piece gives is compared with what the processor gives, to ``CLOSE`` of its largest value. The domain is a
 periodic box without a body. ``--out FILE`` writes what was found, ``--keep FILE`` states what such a file holds on the
-page on GPUs. Without a card, ``NUMBA_ENABLE_CUDASIM=1`` in the environment tries the arithmetic, on ``--cells 8``.
+page on GPUs. Without a card the program says so and ends; ``NUMBA_ENABLE_CUDASIM=1`` in the environment tries the
+arithmetic, on ``--cells 8``.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import numba
 import numpy as np
 from numba import cuda
 
+from form import in_form
 from suchus.flow import multigrid
 from suchus.flow.advect import advance
 from suchus.flow.compiled import PAD, Part, compiled, part_with
@@ -290,8 +292,10 @@ def copied(size=2**28):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--cells", type=int, nargs="+", default=[64, 128, 256], help="along y and z; twice along x")
-    options.add_argument("--times", type=int, default=20, help="calls of which the fastest counts")
+    options.add_argument(
+        "--cells", type=int, nargs="+", default=in_form([64, 128, 256], [8]), help="along y and z; twice along x"
+    )
+    options.add_argument("--times", type=int, default=in_form(20, 1), help="calls of which the fastest counts")
     options.add_argument("--out", type=Path, help="write what was found to this file")
     options.add_argument("--keep", type=Path, help="state what such a file holds on the page on GPUs")
     chosen = options.parse_args()
@@ -301,6 +305,9 @@ def main():
 
         stated.keep("bench_gpu", json.loads(chosen.keep.read_text(encoding="utf-8")))
         stated.main()
+        return
+    if not cuda.is_available():
+        print("There is no card of NVIDIA that numba can use; NUMBA_ENABLE_CUDASIM=1 tries the arithmetic without one.")
         return
     found = {"card": "simulated", "copied": 0.0}
     if not numba.config.ENABLE_CUDASIM:

@@ -13,6 +13,7 @@ import time
 
 import numpy as np
 
+from form import in_form
 from suchus.control import Swimming
 from suchus.gaits import GAITS
 from suchus.land import Lake, Run
@@ -20,7 +21,8 @@ from suchus.land.loop import Loop, physics_steps
 from suchus.robots import ROBOTS
 from suchus.water import fit, printed_wave
 
-RUNS, TICKS, TURNS, WARM = 8, 20, 24, 3  # TICKS control periods in a turn; the first WARM turns do not count
+RUNS, TICKS = 8, in_form(20, 2)  # TICKS control periods in a turn
+TURNS, WARM = in_form(24, 1), in_form(3, 1)  # the first WARM turns do not count
 WAVE = fit(ROBOTS["caiman"], printed_wave(ROBOTS["caiman"], frequency=1.0)).gait
 GAIT = GAITS["belly_crawl"]
 ARMS = {
@@ -69,7 +71,8 @@ class Arm:
 def first() -> float:
     """Return the processor time of the first wet step of a new process, its kernel compiled before [s]."""
     times = [
-        float(subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True).stdout) for _ in range(3)
+        float(subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True).stdout)
+        for _ in range(in_form(3, 1))
     ]
     return min(times)
 

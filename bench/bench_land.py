@@ -13,16 +13,18 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from form import in_form
 from suchus import threads
 from suchus.envs import Follow
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
-from suchus.model import compile_model
+from suchus.model import activations, compile_model
 from suchus.robots import ROBOTS
 
-TIMESTEP, DURATION, RUNS, REPEATS = 0.002, 4.0, 32, 5
+TIMESTEP, DURATION, RUNS, REPEATS = 0.002, in_form(4.0, 0.2), in_form(32, 2), in_form(5, 1)
 NOISE = 0.01  # rad on every commanded angle
-ACTIONS = {1: 160, RUNS: 20}  # of each environment, by their number
+ALIKE = 0.001  # m between the ends of a walk with and without suchus, whose servos' integrals start otherwise
+ACTIONS = {1: in_form(160, 2), RUNS: in_form(20, 2)}  # of each environment, by their number
 
 
 def timed(task) -> float:
@@ -63,16 +65,18 @@ def batches() -> None:
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     model = compile_model(robot, TIMESTEP)
     runs = [Run(robot=robot, gait=gait, noise=NOISE, seed=i) for i in range(RUNS)]
-    record = simulate(runs, duration=DURATION)
+    record = simulate(runs, duration=DURATION, timestep=TIMESTEP)
     assert len({values.tobytes() for values in record.position.values}) == RUNS
     targets = np.repeat(record.servo_target.values[:, :-1], round(0.01 / TIMESTEP), axis=1)
     states = np.array([_first_state(model, record, run) for run in range(RUNS)])
+    ends = rolled(model, states, targets)[:, -1, 1:4]  # after the time; the same walks, or their ratio says nothing
+    np.testing.assert_allclose(ends, record.position.values[:, -1], rtol=0.0, atol=ALIKE)
     for count in (1, RUNS):
         report(
             f"{count:3d} runs of {DURATION} s at {TIMESTEP} s",
             count * round(DURATION / TIMESTEP),
             lambda n=count: rolled(model, states[:n], targets[:n]),
-            lambda n=count: simulate(runs[:n], duration=DURATION),
+            lambda n=count: simulate(runs[:n], duration=DURATION, timestep=TIMESTEP),
         )
 
 
@@ -133,7 +137,7 @@ def _first_state(model: mujoco.MjModel, record, run: int) -> np.ndarray:
     data.qpos[:3], data.qpos[3:7] = now.position.values, now.orientation.values
     for name in record.joint.values:
         data.joint(str(name)).qpos = float(now.joint_angle.sel(joint=name))
-    data.act[:] = now.servo_target.values
+    data.act[:] = activations(model, now.servo_target.values)
     state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
     mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
     return state

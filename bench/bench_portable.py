@@ -8,10 +8,11 @@ import resource
 import subprocess
 import sys
 
+from form import in_form
 from suchus import machine
 
-TURNS = 5
-CRAWL = "import suchus; suchus.crawl('caiman', 'belly_crawl', cycles=4)"
+TURNS = in_form(5, 1)
+CRAWL = f"import suchus; suchus.crawl('caiman', 'belly_crawl', cycles={in_form(4, 1)})"
 
 
 def seconds(environment: dict[str, str]) -> float:
@@ -28,7 +29,8 @@ def main() -> None:
     portable = fastest | dict(machine.PORTABLE)
     turns = [(seconds(fastest), seconds(portable)) for _ in range(TURNS)]
     least = [min(column) for column in zip(*turns, strict=True)]
-    print(f"fastest routines {least[0]:.2f} s, portable {least[1]:.2f} s of processor time: {least[1] / least[0]:.2f}")
+    times = f"fastest routines {least[0]:.2f} s, portable {least[1]:.2f} s of processor time"
+    print(f"{times}: ratio {least[1] / least[0]:.2f}")
 
 
 if __name__ == "__main__":

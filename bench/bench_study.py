@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
+from form import in_form
 from suchus import threads
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate
@@ -24,8 +25,8 @@ from suchus.robots import ROBOTS
 from suchus.study import Study, Vary, conduct, run_chunk
 
 MEASURES = ("displacement", "slip", "cost_of_transport", "height_std", "peak_torque")
-RUNS, DURATION, HALVED = 100, 10.0, 8
-STEPS = (0.01, 0.005, 0.0025)
+RUNS, DURATION, HALVED = in_form(100, 2), in_form(10.0, 1.1), in_form(8, 1)
+STEPS = in_form((0.01, 0.005, 0.0025), (0.01,))
 ALIKE = 0.01  # of the way, in the median of the runs that are run with half the step as well
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 
@@ -88,7 +89,7 @@ def largest_step() -> float:
     return STEPS[-1]
 
 
-def bare(timestep: float, runs: int = 10, duration: float = DURATION) -> tuple[Spent, float]:
+def bare(timestep: float, runs: int = in_form(10, 2), duration: float = DURATION) -> tuple[Spent, float]:
     """Let MuJoCo's own rollout do the same crawl with as many threads; return what it took, and the steps.
 
     It is as long as the runs of the study: a robot stands for the first second, in which a step costs less.

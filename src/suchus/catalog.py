@@ -147,7 +147,7 @@ class Catalog(Mapping[str, T], Generic[T]):
             )
         return thing
 
-    def file(self, value: Any, place: Path = Path()) -> Path | None:
+    def file(self, value: Any, place: str | Path = Path()) -> Path | None:
         """Return the file that a value names, None where it names none.
 
         A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
@@ -158,10 +158,10 @@ class Catalog(Mapping[str, T], Generic[T]):
         """
         if not isinstance(value, (str, Path)) or self._read is None or (isinstance(value, str) and value in self):
             return None
-        path = place / value
+        path = Path(place) / value
         return path if path.suffix == ".toml" or there(path) else None
 
-    def resolve(self, value: Any, place: Path = Path()) -> T:
+    def resolve(self, value: Any, place: str | Path = Path()) -> T:
         """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
 
         Args:

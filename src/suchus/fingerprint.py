@@ -1,10 +1,12 @@
 """A fingerprint of a setup: every value in it, down to what its functions compute with."""
 
+import csv
 import sys
 import sysconfig
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from hashlib import sha256
 from numbers import Real
 from pathlib import Path
@@ -62,8 +64,14 @@ class _Walk:
     def _write_value(self, value: object) -> None:
         if value is None or isinstance(value, bool | np.bool_ | str | bytes):
             self._word("plain", repr(value.item() if isinstance(value, np.bool_) else value))
+        elif isinstance(value, np.datetime64 | np.timedelta64):  # to NumPy a timedelta64 is a Real, without a float
+            self._word("date", f"{value.dtype.str}{value.astype(np.int64)}")
         elif isinstance(value, Real):
             self._word("number", float(value).hex())
+        elif isinstance(value, complex | np.complexfloating):
+            self._word("complex", f"{float(value.real).hex()}{float(value.imag).hex()}")
+        elif isinstance(value, np.ndarray) and value.dtype.hasobject:  # its bytes are addresses
+            self._parts("objects", {"shape": value.shape, "items": value.tolist()})
         elif isinstance(value, np.ndarray):
             self._word("array", f"{value.dtype.str}{value.shape}")
             self._word("numbers", np.ascontiguousarray(value).tobytes())
@@ -148,17 +156,54 @@ def _decides(value: object, module: str) -> bool:
 
 
 def _given(value: object) -> bool:
-    """Return whether a function, class or module is the user's own: neither this package's nor an installed one's."""
+    """Return whether a function, class or module is the user's own: neither this package's nor an installed one's.
+
+    Installed are the standard library, what suchus itself requires, files in a folder ``site-packages`` or
+    ``dist-packages``, and files that a distribution beside them records, as after ``pip install --target``. A package
+    that is installed as editable is edited, and so is the user's own.
+    """
     name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
-    if not isinstance(name, str) or name.split(".")[0] == "suchus":
+    if not isinstance(name, str) or name.split(".")[0] in ("suchus", *REQUIRED):
         return False
     file = getattr(sys.modules.get(name), "__file__", None)
     if file is None:
         return name == "__main__"
-    return not any(Path(file).resolve().is_relative_to(place) for place in _INSTALLED)
+    return not _is_installed(Path(file).resolve())
 
 
-_INSTALLED = tuple({Path(sysconfig.get_path(key)).resolve() for key in ("stdlib", "platstdlib", "purelib", "platlib")})
+REQUIRED = (
+    "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "h5py", "tyro", "pydantic", "matplotlib", "PIL", "rich",
+    "jinja2", "jaxtyping", "packaging",
+)  # fmt: skip
+"""Import names of what ``pyproject.toml`` requires; wherever they lie, they are libraries."""
+_STANDARD = tuple({Path(sysconfig.get_path(key)).resolve() for key in ("stdlib", "platstdlib")})
+
+
+def _is_installed(file: Path) -> bool:
+    """Return whether the file of a module belongs to the standard library or to an installed distribution."""
+    if not {"site-packages", "dist-packages"}.isdisjoint(file.parts):
+        return True
+    if any(file.is_relative_to(folder) for folder in _STANDARD):
+        return True
+    folders = (Path(entry).resolve() for entry in sys.path)
+    return any(
+        file.relative_to(folder).as_posix() in _recorded_files(folder)
+        for folder in folders
+        if file.is_relative_to(folder)
+    )
+
+
+@lru_cache
+def _recorded_files(folder: Path) -> frozenset[str]:
+    """Return the files that the distributions in a folder of the import path record, relative to the folder.
+
+    An ``egg-info`` does not count: it lies beside sources that are edited.
+    """
+    files: set[str] = set()
+    for record in folder.glob("*.dist-info/RECORD"):
+        with suppress(OSError), record.open(encoding="utf-8", errors="replace", newline="") as lines:
+            files.update(row[0] for row in csv.reader(lines) if row)
+    return frozenset(files)
 
 
 def _class_of(value: object) -> dict[str, object]:

@@ -19,8 +19,9 @@ class NoMeshes(UnreadableFile):
     """Trimesh, which reads meshes, is not installed."""
 
 
-def there(path: Path) -> bool:
+def there(path: str | Path) -> bool:
     """Return whether something is at a path, or would be if its folder let us look; never raises."""
+    path = Path(path)
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError, ValueError):
@@ -30,12 +31,13 @@ def there(path: Path) -> bool:
     return True
 
 
-def check_file(path: Path) -> None:
+def check_file(path: str | Path) -> None:
     """Refuse what is no ordinary file: a pipe or a device may never end.
 
     Raises:
         UnreadableFile: it is missing, a folder, a pipe, a socket or a device, or lies where we may not look.
     """
+    path = Path(path)
     try:
         mode = path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -48,19 +50,20 @@ def check_file(path: Path) -> None:
         raise UnreadableFile(f"{path} is a pipe, a socket or a device; write its content to an ordinary file first.")
 
 
-def unreadable(path: Path, error: OSError | ValueError) -> UnreadableFile:
+def unreadable(path: str | Path, error: OSError | ValueError) -> UnreadableFile:
     """Return what to raise where the system does not let us read a file."""
     if isinstance(error, OSError):
         return UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.")
     return UnreadableFile(f"{str(path)!r} is no name that a file can have.")
 
 
-def read_bytes(path: Path, most: int = LARGEST) -> bytes:
+def read_bytes(path: str | Path, most: int = LARGEST) -> bytes:
     """Return what is in a file of at most so many bytes.
 
     Raises:
         UnreadableFile: it is no ordinary file, cannot be read, or is larger.
     """
+    path = Path(path)
     check_file(path)
     try:
         with path.open("rb") as file:
@@ -72,7 +75,7 @@ def read_bytes(path: Path, most: int = LARGEST) -> bytes:
     return data
 
 
-def read_mesh(path: Path, data: bytes | None = None) -> Any:
+def read_mesh(path: str | Path, data: bytes | None = None) -> Any:
     """Return the mesh of a file as trimesh has it, equal corners made one; nothing that it names is opened.
 
     Args:
@@ -83,6 +86,7 @@ def read_mesh(path: Path, data: bytes | None = None) -> Any:
         NoMeshes: trimesh is not installed.
         UnreadableFile: it is of none of the ``MESHES``, cannot be read, or holds no faces.
     """
+    path = Path(path)
     if path.suffix.lower() not in MESHES:
         raise UnreadableFile(
             f"{path.name} is no mesh of a format that is read ({', '.join(MESHES)}); convert it, as with Blender."
@@ -102,7 +106,7 @@ def read_mesh(path: Path, data: bytes | None = None) -> Any:
     return mesh
 
 
-def read_text(path: Path, most: int = LARGEST) -> str:
+def read_text(path: str | Path, most: int = LARGEST) -> str:
     """Return the text of a file.
 
     Args:
@@ -119,7 +123,7 @@ def read_text(path: Path, most: int = LARGEST) -> str:
         raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: str | Path) -> dict[str, Any]:
     """Return what a TOML file says.
 
     Raises:
@@ -134,7 +138,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise _beyond(path, error) from error
 
 
-def read_json(path: Path) -> Any:
+def read_json(path: str | Path) -> Any:
     """Return what a JSON file says.
 
     Raises:
@@ -149,7 +153,7 @@ def read_json(path: Path) -> Any:
         raise _beyond(path, error) from error
 
 
-def _beyond(path: Path, error: ValueError | RecursionError) -> UnreadableFile:
+def _beyond(path: str | Path, error: ValueError | RecursionError) -> UnreadableFile:
     deep = isinstance(error, RecursionError)
     what = "brackets or tables nested more deeply" if deep else "a number or a date of more digits"
     return UnreadableFile(f"{path} holds {what} than can be read.")

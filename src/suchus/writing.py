@@ -48,12 +48,13 @@ def check_name(name: str, what: str) -> None:
         )
 
 
-def check_writable(folder: Path) -> None:
+def check_writable(folder: str | Path) -> None:
     """Refuse a folder that could not be made or written to, without leaving anything behind.
 
     Raises:
         Unwritable: it lies below a file, on a read-only disk, or permission is missing.
     """
+    folder = Path(folder)
     above = folder
     while not there(above) and above != above.parent:
         above = above.parent
@@ -66,7 +67,7 @@ def check_writable(folder: Path) -> None:
 
 
 @contextmanager
-def new_file(path: Path, *, lasting: bool = False) -> Iterator[Path]:
+def new_file(path: str | Path, *, lasting: bool = False) -> Iterator[Path]:
     """Yield a temporary path beside ``path`` that takes its place when the block ends well.
 
     It is for what suchus keeps for itself, and replaces whatever is there; a file for a user is written by ``write``.
@@ -78,6 +79,7 @@ def new_file(path: Path, *, lasting: bool = False) -> Iterator[Path]:
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     try:
         _check_names(path)
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -93,12 +95,13 @@ def new_file(path: Path, *, lasting: bool = False) -> Iterator[Path]:
         raise _unwritable(path, error) from error
 
 
-def keep(path: Path, data: bytes) -> None:
+def keep(path: str | Path, data: bytes) -> None:
     """Write a file that suchus keeps for itself, such as a checkpoint, onto the disk; what is there is replaced.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     if _is_draft(path):
         path.write_bytes(data)
         return
@@ -106,7 +109,7 @@ def keep(path: Path, data: bytes) -> None:
         draft.write_bytes(data)
 
 
-def write(path: Path, content: str | bytes) -> Path:
+def write(path: str | Path, content: str | bytes) -> Path:
     """Write a file for a user and return its path; what the user wrote or changed there is not replaced.
 
     Args:
@@ -116,6 +119,7 @@ def write(path: Path, content: str | bytes) -> Path:
     Raises:
         Unwritable: the place cannot be written to, or is taken by something that suchus did not write.
     """
+    path = Path(path)
     try:
         data = content.encode() if isinstance(content, str) else content
     except UnicodeEncodeError as error:
@@ -135,7 +139,7 @@ def write(path: Path, content: str | bytes) -> Path:
 
 
 @contextmanager
-def new_folder(path: Path, *, lasting: bool = False) -> Iterator[Path]:
+def new_folder(path: str | Path, *, lasting: bool = False) -> Iterator[Path]:
     """Yield a temporary folder beside ``path`` that takes its place when the block ends well.
 
     Until then an older folder stays as it was; if the block ends badly, or by Ctrl-C, it stays for good. Files of the
@@ -148,6 +152,7 @@ def new_folder(path: Path, *, lasting: bool = False) -> Iterator[Path]:
     Raises:
         Unwritable: the place cannot be written to, or is taken by something that suchus did not write.
     """
+    path = Path(path)
     check_replaceable(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -176,11 +181,12 @@ def new_folder(path: Path, *, lasting: bool = False) -> Iterator[Path]:
         raise _unwritable(path, error) from error
 
 
-def sweep(path: Path) -> None:
+def sweep(path: str | Path) -> None:
     """Remove what processes that died while they wrote ``path`` have left beside it; an older folder comes back.
 
     What a living process is at stays: it holds a lock on its draft.
     """
+    path = Path(path)
     with suppress(OSError):
         for shelter in path.parent.glob(f".{glob.escape(path.name)}-*"):
             with _locked(shelter) as ours:
@@ -293,7 +299,7 @@ def asked_to_replace() -> bool:
     return _replacing.get()
 
 
-def check_replaceable(path: Path) -> None:
+def check_replaceable(path: str | Path) -> None:
     """Refuse a place that is taken by what suchus did not write, or by what was changed since.
 
     Free are a place where nothing is, an empty file, an empty folder, and what stands there as suchus wrote it. Beside
@@ -302,6 +308,7 @@ def check_replaceable(path: Path) -> None:
     Raises:
         Unwritable: the place is taken, and nobody asked for ``replacing``; or it cannot be looked at.
     """
+    path = Path(path)
     try:
         _check_names(path)
         if _replacing.get() or not there(path):

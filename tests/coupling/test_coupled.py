@@ -264,7 +264,7 @@ def killed(run, file):
             raise Killed
 
     with pytest.raises(Killed):
-        Swim(run, 0.1).go(0.1, watch=look, checkpoint=file, checkpoint_every=0.0, progress=silent)
+        Swim(run, 0.1).go(0.1, watch=look, checkpoint=str(file), checkpoint_every=0.0, progress=silent)
 
 
 def test_a_swim_that_was_killed_goes_on_to_the_same_bytes(tmp_path):

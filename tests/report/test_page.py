@@ -75,7 +75,7 @@ def result(tmp_path_factory):
     question, tmp_path = Question(), tmp_path_factory.mktemp("results")
     outcome = question.run()
     folder = save_outcome(
-        outcome, question.draw(outcome), question, tmp_path / "question", command="suchus run question"
+        outcome, question.draw(outcome), question, str(tmp_path / "question"), command="suchus run question"
     )
     return load_result(folder)
 

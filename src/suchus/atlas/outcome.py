@@ -78,12 +78,13 @@ def compute(case: Case, *, quick: bool, grid: int = 1, progress: Progress = sile
     )  # fmt: skip
 
 
-def place(folder: Path, flow: str) -> Path:
+def place(folder: str | Path, flow: str) -> Path:
     """Return the file of the outcome of a flow on one of its grids, by the name that ``flow_on`` gives."""
+    folder = Path(folder)
     return folder / "flows" / f"{flow}.json"
 
 
-def save_outcome(outcome: FlowOutcome, folder: Path) -> None:
+def save_outcome(outcome: FlowOutcome, folder: str | Path) -> None:
     """Write an outcome; an earlier one stays until it is whole.
 
     Raises:
@@ -100,7 +101,7 @@ def _short(curve: np.ndarray) -> object:
     return plain(rounded)
 
 
-def load_outcome(folder: Path, case: str, grid: int = 1) -> FlowOutcome | None:
+def load_outcome(folder: str | Path, case: str, grid: int = 1) -> FlowOutcome | None:
     """Return a flow's outcome, None if there is none.
 
     Raises:
@@ -116,7 +117,7 @@ def load_outcome(folder: Path, case: str, grid: int = 1) -> FlowOutcome | None:
     return FlowOutcome(**{**values, "curves": curves})
 
 
-def load_outcomes(folder: Path, cases: Iterable[Case]) -> dict[str, FlowOutcome]:
+def load_outcomes(folder: str | Path, cases: Iterable[Case]) -> dict[str, FlowOutcome]:
     """Return the outcomes that a folder has of flows on their grids, by the names that ``flow_on`` gives.
 
     Raises:
@@ -129,7 +130,7 @@ def load_outcomes(folder: Path, cases: Iterable[Case]) -> dict[str, FlowOutcome]
 
 def compute_all(
     cases: Iterable[Case],
-    folder: Path,
+    folder: str | Path,
     *,
     jobs: int,
     quick: bool,
@@ -156,6 +157,7 @@ def compute_all(
         Unwritable: an outcome cannot be written.
         NoCluster: the cluster was lost.
     """
+    folder = Path(folder)
     place = place_for("the atlas", client=client, jobs=jobs)
     wanted = (1,) if quick else tuple(grids)
     flows = [OnGrid(case, grid) for case in cases for grid in wanted if grid <= len(case.grids)]
@@ -198,7 +200,7 @@ class OnGrid(NamedTuple):
         return flow_on(self.case.name, self.grid)
 
 
-def finished_outcome(case: Case, folder: Path, *, quick: bool, grid: int = 1) -> FlowOutcome | None:
+def finished_outcome(case: Case, folder: str | Path, *, quick: bool, grid: int = 1) -> FlowOutcome | None:
     """Return the outcome of a flow if it is there and of this set-up and code; one that is broken does not count."""
     with suppress(UnreadableFile):
         old = load_outcome(folder, case.name, grid)

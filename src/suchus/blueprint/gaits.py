@@ -15,7 +15,7 @@ from suchus.record import read_toml
 _WAVE = ("amplitude", "waves", "phase")
 
 
-def read_gait(path: Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
+def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
     """Read a gait from a TOML file.
 
     Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
@@ -33,6 +33,7 @@ def read_gait(path: Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
         OutsideLimits: metres are given and the robot has not two pairs of limbs.
     """
+    path = Path(path)
     data = read_toml(path)
     named = data.pop("base", None)
     mistakes: dict[Place, str] = {}

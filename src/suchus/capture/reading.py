@@ -207,7 +207,7 @@ def _read(path: Path, how: ReadingOptions) -> Tracks:
     return replace(tracks, unit="m", position=UNITS[str(how.unit)] * tracks.position)
 
 
-def write_gait(captured: Captured, walk: Walk, path: Path) -> Path:
+def write_gait(captured: Captured, walk: Walk, path: str | Path) -> Path:
     """Write a captured gait as TOML, with what was seen and what got lost as comments, and return the path.
 
     Raises:

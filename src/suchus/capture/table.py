@@ -208,15 +208,16 @@ class AngleCycle:
         return np.asarray((turn @ self.harmonics.T).real)
 
 
-def is_angle_table(path: Path) -> bool:
+def is_angle_table(path: str | Path) -> bool:
     """Return whether a file is a CSV table of joint angles: its first column is ``time``, a share, without a unit."""
+    path = Path(path)
     if path.suffix.lower() != ".csv" or not path.is_file():
         return False
     with path.open("rb") as file:
         return file.read(16).removeprefix(b"\xef\xbb\xbf").partition(b",")[0].strip() == b"time"
 
 
-def read_angles(path: Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
+def read_angles(path: str | Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
     """Read a table of one cycle: ``time`` as a share of it, then an angle in degrees for every joint.
 
     Args:
@@ -227,6 +228,7 @@ def read_angles(path: Path, *, harmonics: int = MOST_HARMONICS) -> AngleCycle:
         InvalidDesign: the number of harmonics is out of range.
         UnreadableFile: there is no such table, or it does not hold one whole cycle.
     """
+    path = Path(path)
     require("angles", "harmonics", harmonics, LEAST_HARMONICS, MOST_HARMONICS, "")
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:

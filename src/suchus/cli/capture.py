@@ -34,6 +34,7 @@ from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.run import run_it
 from suchus.cli.terminal import working
+from suchus.cli.word_checks import check_toml
 from suchus.design import Robot, check_needs
 from suchus.figures import captioned, places, save
 from suchus.figures.forces import ground_forces_figure, water_forces_figure
@@ -136,8 +137,7 @@ def capture(words: Sequence[str]) -> int:
         raise BadCommand(f"--tables and --forces both name {options.tables}; give each a folder of its own.")
     unknown = _unknown(options)
     if out:
-        if out.suffix != ".toml":
-            raise BadCommand(f"the gait goes into a .toml file; --out is {str(out)!r}.")
+        check_toml(out, "gait")
         check_writable(out.parent)
         check_replaceable(out)
     if is_angle_table(options.tracks):

@@ -12,7 +12,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from suchus.cli.entry import BadCommand, printable
-from suchus.cli.options import check_page, parse
+from suchus.cli.options import parse
+from suchus.cli.word_checks import check_page
 from suchus.record import check_replaceable, check_writable
 from suchus.report import OUTCOME, Comparison, compare, load_result, number, quantity, write_comparison
 

@@ -11,9 +11,10 @@ import tyro
 import xarray as xr
 
 from suchus.cli.doctor import browser
-from suchus.cli.options import check_page, parse
+from suchus.cli.options import parse
 from suchus.cli.terminal import working
 from suchus.cli.view import ViewWalkOptions, serve_walk
+from suchus.cli.word_checks import check_page
 from suchus.design.checks import require
 from suchus.gaits import GAITS
 from suchus.land import Run, simulate

@@ -54,47 +54,85 @@ class Subcommand:
     """Summary in one line, for the help."""
     function: str
     """``module:function`` that takes the remaining words and returns the exit code."""
+    first_word: str = ""
+    """Kind of what the first word names: experiment, robot, gait, or file; empty where it is not checked early."""
+    other_words: tuple[str, ...] = ()
+    """Words that may stand in the place of that name."""
+    shelf_options: tuple[str, ...] = ()
+    """Kinds of what an option of that name names: robot, gait."""
+    output: str = ""
+    """What ``--out`` names: a folder, a page, or a file for a gait or a robot; empty where it is not checked early."""
 
     def __call__(self, words: Sequence[str]) -> int:
-        """Carry the command out and return the exit code."""
+        """Carry the command out and return the exit code; what is plainly wrong is refused before it is loaded."""
+        check: Callable[[Subcommand, Sequence[str]], None] = resolve_name("suchus.cli.word_checks:check_words")
+        check(self, words)
         function: Callable[[Sequence[str]], int] = resolve_name(self.function)
         return function(words)
 
 
 COMMANDS = (
-    Subcommand("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo"),
+    Subcommand("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.cli.demo:demo", output="page"),
     Subcommand(
         "reproduce",
         "[--out DIR] [--jobs N]",
         "run every experiment and write the report",
         "suchus.cli.reproduce:reproduce",
     ),
-    Subcommand("run", "NAME [--FIELD VALUE ...]", "run one experiment", "suchus.cli.run:run"),
     Subcommand(
-        "compare", "A B [--out FILE.html]", "set two outcomes side by side", "suchus.cli.compare:compare_outcomes"
+        "run",
+        "NAME [--FIELD VALUE ...]",
+        "run one experiment",
+        "suchus.cli.run:run",
+        first_word="experiment",
+        shelf_options=("robot", "gait"),
+        output="folder",
+    ),
+    Subcommand(
+        "compare",
+        "A B [--out FILE.html]",
+        "set two outcomes side by side",
+        "suchus.cli.compare:compare_outcomes",
+        output="page",
     ),
     Subcommand(
         "capture",
         "TRACKS [--out FILE.toml]",
         "read a gait from tracked keypoints",
         "suchus.cli.capture:capture",
+        first_word="file",
+        shelf_options=("robot",),
+        output="gait",
     ),
     Subcommand(
         "view",
         "[ROBOT] [GAIT] | RECORD.nc",
         "see it walk in the browser, live or played back",
         "suchus.cli.view:view",
+        first_word="robot",
+        other_words=("swim",),
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "replay",
         "RECORD.nc [--out FILE.html]",
         "make a page of a stored run that plays offline",
         "suchus.cli.replay:make_replay",
+        first_word="file",
+        shelf_options=("robot",),
+        output="page",
     ),
     Subcommand(
         "lessons", "[--out DIR]", "write five lessons for a class, that play offline", "suchus.cli.lessons:lessons"
     ),
-    Subcommand("study", "claims|FILE.toml [--out DIR]", "run many variants, resumable", "suchus.cli.study:study"),
+    Subcommand(
+        "study",
+        "claims|FILE.toml [--out DIR]",
+        "run many variants, resumable",
+        "suchus.cli.study:study",
+        first_word="file",
+        other_words=("claims",),
+    ),
     Subcommand(
         "optimise",
         "crawl|FILE.toml [--out DIR]",
@@ -106,43 +144,62 @@ COMMANDS = (
         "ROBOT.urdf|ROBOT.xml [--out FILE.toml]",
         "read a robot from a URDF or an MJCF",
         "suchus.cli.import_robot:import_file",
+        first_word="file",
+        output="robot",
     ),
     Subcommand(
         "export",
         "[--format mjcf|urdf|usd] [--robot ROBOT]",
         "write a robot for other tools",
         "suchus.cli.export:export_robot",
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "size",
         "[ROBOT] [GAIT ...] [--family NAME]",
         "find the servos that a robot needs",
         "suchus.cli.size:size_servos",
+        first_word="robot",
+        shelf_options=("robot",),
     ),
-    Subcommand("parts", "[ROBOT] [--out DIR]", "write what a robot is built of", "suchus.cli.parts:list_parts"),
+    Subcommand(
+        "parts",
+        "[ROBOT] [--out DIR]",
+        "write what a robot is built of",
+        "suchus.cli.parts:list_parts",
+        first_word="robot",
+        shelf_options=("robot", "gait"),
+    ),
     Subcommand(
         "export-commands",
         "GAIT [--map FILE.toml]",
         "write a gait as timed servo angles",
         "suchus.cli.export_commands:export_commands",
+        first_word="gait",
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "emulate",
         "ROBOT [--view] [--hardware FILE.toml]",
         "emulate a robot's servos on a bus",
         "suchus.cli.emulate:emulate",
+        first_word="robot",
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "drive",
         "GAIT [--robot ROBOT] [--hardware FILE.toml]",
         "drive a robot of servos",
         "suchus.cli.drive:run",
+        first_word="gait",
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "calibrate",
         "wiring|zero|log [RECORD.nc] [--robot ROBOT]",
         "find out how a robot is wired and how stiff it is",
         "suchus.cli.calibrate:calibrate",
+        shelf_options=("robot",),
     ),
     Subcommand(
         "flow-atlas",

@@ -7,7 +7,8 @@ from typing import Annotated, get_args
 
 import tyro
 
-from suchus.cli.options import given, parse
+from suchus.cli.options import parse
+from suchus.cli.word_checks import given
 from suchus.design import Robot
 from suchus.errors import UnknownName
 from suchus.gaits import own_gait

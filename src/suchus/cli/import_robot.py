@@ -8,9 +8,9 @@ from typing import Annotated
 import tyro
 
 from suchus import blueprint
-from suchus.cli.entry import BadCommand
 from suchus.cli.options import parse
 from suchus.cli.run import run_it
+from suchus.cli.word_checks import check_toml
 from suchus.design import layout
 from suchus.errors import OutsideLimits
 from suchus.model.importing import Draft, Words, import_robot
@@ -58,8 +58,7 @@ def import_file(words: Sequence[str]) -> int:
     )
     options = parse(ImportOptions, "suchus import", words, about)
     out = options.out or Path(f"{options.file.stem}.toml")
-    if out.suffix != ".toml":
-        raise BadCommand(f"the robot goes into a .toml file; --out is {str(out)!r}.")
+    check_toml(out, "robot")
     check_writable(out.parent)
     walk = out.with_name(f"{out.stem}_walk.toml")
     for file in (out, walk):

@@ -5,7 +5,6 @@ import re
 from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import dataclass, field, fields, make_dataclass
-from itertools import pairwise
 from pathlib import Path
 from textwrap import fill
 from typing import Annotated, Any, TypeVar
@@ -14,6 +13,7 @@ import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from suchus.cli.entry import BadCommand
+from suchus.cli.word_checks import given
 from suchus.design import Robot
 from suchus.errors import SuchusError, UnknownName
 from suchus.experiment import Experiment
@@ -107,22 +107,6 @@ def _robot(words: Sequence[str]) -> Robot | None:
     except SuchusError:
         return None
     return robot
-
-
-def given(words: Sequence[str], option: str) -> list[str]:
-    """Return the values that words give an option, before all of them are read."""
-    joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
-    return joined + [after for word, after in pairwise(words) if word == option]
-
-
-def check_page(path: Path) -> None:
-    """Refuse a page that a browser would not open as one.
-
-    Raises:
-        BadCommand: the name of its file does not end in .html.
-    """
-    if path.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
 
 
 Options = TypeVar("Options")

@@ -10,7 +10,8 @@ import xarray as xr
 
 from suchus import record
 from suchus.cli.entry import BadCommand
-from suchus.cli.options import check_page, parse
+from suchus.cli.options import parse
+from suchus.cli.word_checks import check_page
 from suchus.design import Robot
 from suchus.hardware import held
 from suchus.record import check_file, check_replaceable

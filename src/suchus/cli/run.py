@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from suchus.cli.entry import PROJECT, BadCommand
+from suchus.cli.entry import PROJECT
 from suchus.cli.options import TABLES, choose
 from suchus.cli.shelves import entry, title
 from suchus.cli.terminal import working
@@ -151,15 +151,15 @@ def moves(question: Experiment) -> list[str]:
 def run(words: Sequence[str]) -> int:
     """Run one experiment and return 0.
 
+    Args:
+        words: the name of the experiment, which ``word_checks`` found on the shelf, and options.
+
     Raises:
         SuchusError: the words make no sense, or the run failed.
     """
     if words[:1] in (["-h"], ["--help"]):
         print(_help())
         return 0
-    if not words or words[0].startswith("-"):
-        names = ", ".join(EXPERIMENTS)
-        raise BadCommand(f"the name of the experiment comes first, as in suchus run NAME --quick; there is {names}.")
     name, *options = words
     choice = choose(EXPERIMENTS[name], name, options)
     check_writable(choice.out)

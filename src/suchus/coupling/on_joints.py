@@ -59,7 +59,7 @@ def swim_on_joints(
     gait: Gait,
     setting: SwimSetting,
     *,
-    checkpoint: Path | None = None,
+    checkpoint: str | Path | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return a swim in space of a robot whose servos, springs and cables are solved together with the water.

@@ -576,7 +576,7 @@ class Swim:
         *,
         progress: Progress | None = None,
         watch: Callable[["Swim"], None] | None = None,
-        checkpoint: Path | None = None,
+        checkpoint: str | Path | None = None,
         checkpoint_every: float = 15.0,
     ) -> None:
         """Go on until a time, a whole number of control periods [s]; the same bytes, stopped and gone on or not.
@@ -593,6 +593,7 @@ class Swim:
             UnreadableFile: the checkpoint is broken or belongs to another run.
             Unwritable: the checkpoint cannot be written.
         """
+        checkpoint = None if checkpoint is None else Path(checkpoint)
         if checkpoint is not None and checkpoint.exists():
             store.load(self, checkpoint)
         saver = store.Saver(checkpoint, checkpoint_every)

@@ -40,7 +40,7 @@ class Server:
         Unwritable: a link cannot be made.
     """
 
-    def __init__(self, emulator: Emulator, links: Sequence[Path] = (), *, sockets: bool = False) -> None:
+    def __init__(self, emulator: Emulator, links: Sequence[str | Path] = (), *, sockets: bool = False) -> None:
         self._emulator = emulator
         sockets = sockets or pty is None
         self._ends: list[Any] = []

@@ -170,12 +170,13 @@ def caption(figure: Figure) -> str:
     return str(getattr(figure, "suchus_caption", ""))
 
 
-def places(folder: Path, stem: str) -> tuple[Path, Path, Path]:
+def places(folder: str | Path, stem: str) -> tuple[Path, Path, Path]:
     """Return where ``save`` writes a figure: as SVG, as PNG, and its numbers."""
+    folder = Path(folder)
     return folder / f"{stem}.svg", folder / f"{stem}.png", folder / f"{stem}{DATA}"
 
 
-def save(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
+def save(figure: Figure, folder: str | Path, stem: str) -> tuple[Path, Path]:
     """Write a figure as SVG and as PNG and return both paths; equal figures give equal bytes.
 
     The numbers that it shows stand beside it, as ``STEM.data.csv``; see ``figures.data``.

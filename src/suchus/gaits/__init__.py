@@ -102,7 +102,7 @@ def _turns(robot: Robot) -> list[list[str]]:
     return [[hinge.turn for hinge in girdle.limb.hinges] for girdle in robot.girdles]
 
 
-def gait_of(robot: Robot, gait: Gait | str | Path | None, place: Path = Path()) -> Gait:
+def gait_of(robot: Robot, gait: Gait | str | Path | None, place: str | Path = Path()) -> Gait:
     """Return the gait that is meant for a robot: itself, by its name, by the path of its file, or the robot's own.
 
     Args:

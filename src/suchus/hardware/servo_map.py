@@ -130,7 +130,7 @@ def straight(robot: Robot) -> ServoMap:
     )
 
 
-def read_map(path: Path, robot: Robot) -> ServoMap:
+def read_map(path: str | Path, robot: Robot) -> ServoMap:
     """Read a servo map of a robot from a TOML file.
 
     Raises:
@@ -144,7 +144,7 @@ def read_map(path: Path, robot: Robot) -> ServoMap:
     return found
 
 
-def write_map(servo_map: ServoMap, path: Path) -> Path:
+def write_map(servo_map: ServoMap, path: str | Path) -> Path:
     """Write a servo map as a TOML file with one line for each servo, and return the path.
 
     Raises:

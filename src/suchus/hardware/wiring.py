@@ -11,7 +11,7 @@ from suchus.design.meaning import meanings
 from suchus.record import read_toml, write
 
 
-def read_wiring(path: Path, robot: Robot) -> Wiring:
+def read_wiring(path: str | Path, robot: Robot) -> Wiring:
     """Read the wiring of a robot; a port that is no whole path is looked for beside the file.
 
     Raises:
@@ -19,12 +19,13 @@ def read_wiring(path: Path, robot: Robot) -> Wiring:
         MistakenFile: values are missing, unknown, of the wrong kind or impossible.
         InvalidDesign: it is for another robot, or not for all of its servos.
     """
+    path = Path(path)
     wiring: Wiring = described(read_toml(path), Wiring, path.name)
     wiring.ordered(robot)
     return replace(wiring, bus=tuple(replace(one, port=_beside(one.port, path)) for one in wiring.bus))
 
 
-def write_wiring(wiring: Wiring, path: Path) -> Path:
+def write_wiring(wiring: Wiring, path: str | Path) -> Path:
     """Write a wiring, and return the path.
 
     Raises:

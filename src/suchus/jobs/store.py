@@ -50,13 +50,13 @@ class Store:
 
     def __init__(
         self,
-        folder: Path,
+        folder: str | Path,
         study: Asked,
         *,
         kind: str = "study",
         versions: Callable[[], Mapping[str, str]] = deciding,
     ) -> None:
-        self.folder = folder
+        self.folder = Path(folder)
         self.study = study
         self.kind = kind
         self._mark = f"{kind}.json"

@@ -41,7 +41,7 @@ def conduct_sweep(
     name: str,
     work: Callable[[Item, Progress], xr.Dataset],
     items: Sequence[Item],
-    folder: Path,
+    folder: str | Path,
     *,
     rooms: Sequence[str] = FLOW,
     progress: Progress = silent,

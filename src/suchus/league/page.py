@@ -95,12 +95,13 @@ def _plain(one: LeagueEntry) -> Any:
     return data
 
 
-def standings_of(path: Path) -> list[LeagueEntry]:
+def standings_of(path: str | Path) -> list[LeagueEntry]:
     """Return the standings that a file keeps.
 
     Raises:
         UnreadableFile: it is no such file.
     """
+    path = Path(path)
     try:
         return [standing_of(data) for data in read_json(path)]
     except (TypeError, KeyError, ValueError, AttributeError) as error:

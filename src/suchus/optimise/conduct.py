@@ -36,7 +36,7 @@ _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the bud
 
 
 def optimise(
-    spec: Optimisation, folder: Path, *, progress: Progress = silent, client: Any = None
+    spec: Optimisation, folder: str | Path, *, progress: Progress = silent, client: Any = None
 ) -> tuple[SearchResult, ...]:
     """Search each condition, check what was found, and return it.
 
@@ -59,6 +59,7 @@ def optimise(
         NoCluster: the cluster was lost.
         InvalidDesign: it is larger than anybody asked for, see ``suchus.large``.
     """
+    folder = Path(folder)
     place, count = place_for("a search", client=client), len(spec.arms)
     walks = count * spec.evaluations * len(spec.friction_scales)
     seconds = walks * processor_seconds(spec.run, spec.duration, spec.timestep)

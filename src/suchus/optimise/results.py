@@ -26,7 +26,7 @@ _TOLD = 5  # fields that the sentence names
 _END = 0.02  # of its range; a field that is nearer to an end is at it
 
 
-def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: Path) -> Path:
+def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: str | Path) -> Path:
     """Write everything into ``folder/result``, which appears complete or not at all, and return that folder.
 
     Args:
@@ -37,6 +37,7 @@ def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: 
     Raises:
         Unwritable: the place cannot be written to.
     """
+    folder = Path(folder)
     runs = [run for search in searches for run in search.runs]
     shown = [_start(spec), *runs]
     record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))

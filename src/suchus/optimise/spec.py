@@ -239,7 +239,7 @@ EXAMPLE = SearchFile(
 """What a file's mistakes are mended with while the others are looked for."""
 
 
-def read_optimisation(path: Path) -> Optimisation:
+def read_optimisation(path: str | Path) -> Optimisation:
     """Read a search from a TOML file.
 
     Raises:
@@ -248,6 +248,7 @@ def read_optimisation(path: Path) -> Optimisation:
         UnknownName: a field, an aim, a limit, a robot or a gait that does not exist.
         InvalidDesign: a range that cannot be, or that the start is not in.
     """
+    path = Path(path)
     page = blueprint.read(path, SearchFile, {EXAMPLE.name: EXAMPLE})
     robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(

@@ -17,7 +17,7 @@ _SINGLE = "single"  # values without any dimension
 _ROWS = 65536  # that are turned into text at a time
 
 
-def write_tables(record: xr.Dataset, folder: Path) -> Path:
+def write_tables(record: xr.Dataset, folder: str | Path) -> Path:
     """Write a record as CSV files into a folder, which appears whole or not at all, and return its path.
 
     A file is named after its dimensions, as ``run_time_leg.csv``. It has a column for each of them and one for each
@@ -31,6 +31,7 @@ def write_tables(record: xr.Dataset, folder: Path) -> Path:
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
+    folder = Path(folder)
     about: list[tuple[str, str, str, str]] = []
     with new_folder(folder) as draft:
         for dims, names in _sets(record).items():

@@ -119,7 +119,7 @@ def rendered(
     )  # fmt: skip
 
 
-def save(page: str, path: Path) -> Path:
+def save(page: str, path: str | Path) -> Path:
     """Write a page, which appears complete or not at all, and return its path.
 
     Raises:

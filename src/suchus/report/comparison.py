@@ -123,23 +123,25 @@ def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison
     )
 
 
-def write_comparison(comparison: Comparison, path: Path) -> Path:
+def write_comparison(comparison: Comparison, path: str | Path) -> Path:
     """Write the page of a comparison and return its path; replays stay where they are and are shown from there.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     text = render_comparison(comparison, path.parent)
     return write(path, text)
 
 
-def render_comparison(comparison: Comparison, place: Path) -> str:
+def render_comparison(comparison: Comparison, place: str | Path) -> str:
     """Return the page as text.
 
     Args:
         comparison: what to show.
         place: the folder of the page, from which it shows the replays.
     """
+    place = Path(place)
     first, second = comparison.results
     content: dict[str, Any] = {
         "it": comparison,

@@ -42,7 +42,7 @@ _HEAVY = 2 * 2**20
 """Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""
 
 
-def write_outcome_page(folder: Path) -> Path:
+def write_outcome_page(folder: str | Path) -> Path:
     """Write the page of an outcome into its folder and return its path.
 
     Args:
@@ -51,6 +51,7 @@ def write_outcome_page(folder: Path) -> Path:
     Raises:
         SuchusError: there is no outcome in it, or the place cannot be written to.
     """
+    folder = Path(folder)
     text = render_outcome_page(load_result(folder))
     return write(folder / PAGE, text)
 

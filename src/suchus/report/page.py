@@ -44,7 +44,7 @@ HEADLINE = (
 """Claims that the page begins with: what the article is about, in its order."""
 
 
-def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Path) -> Path:
+def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str | Path) -> Path:
     """Write the page, and those of outcomes that have none yet, and return its path.
 
     An earlier one stays until the new one is complete.
@@ -52,6 +52,7 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Pat
     Raises:
         Unwritable: the place cannot be written to.
     """
+    path = Path(path)
     for result in results:
         if not (result.folder / PAGE).is_file():
             write_outcome_page(result.folder)
@@ -59,7 +60,7 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: Pat
     return write(path, text)
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure], place: Path | None = None) -> str:
+def render_page(results: Sequence[Result], failures: Sequence[Failure], place: str | Path | None = None) -> str:
     """Return the page as text.
 
     Args:
@@ -67,6 +68,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], place: P
         failures: what did not.
         place: the folder of the page, from which it links films and replays; None: the one that holds the results.
     """
+    place = None if place is None else Path(place)
     return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
 
 

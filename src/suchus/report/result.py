@@ -176,13 +176,14 @@ class Failure:
     """Where in the code, if it was none of our own errors."""
 
 
-def load_result(folder: Path) -> Result:
+def load_result(folder: str | Path) -> Result:
     """Read a folder that ``save_outcome`` wrote.
 
     Raises:
         UnreadableFile: there is no outcome in it.
         IncompatibleRecord: it says something else than an outcome should.
     """
+    folder = Path(folder)
     file = folder / OUTCOME
     try:
         outcome = read_json(file)

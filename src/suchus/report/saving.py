@@ -18,7 +18,7 @@ from suchus.report.result import OUTCOME, RECORD
 from suchus.verdict import Verdict, ladder
 
 
-def check_place(folder: Path) -> None:
+def check_place(folder: str | Path) -> None:
     """Refuse a place for results that cannot be written to or holds something else.
 
     Raises:
@@ -29,7 +29,7 @@ def check_place(folder: Path) -> None:
 
 
 def save_outcome(
-    outcome: Outcome, figures: Mapping[str, Figure], experiment: Experiment, folder: Path, *, command: str
+    outcome: Outcome, figures: Mapping[str, Figure], experiment: Experiment, folder: str | Path, *, command: str
 ) -> Path:
     """Write an outcome as a folder, which appears complete or not at all, and return its path.
 
@@ -43,6 +43,7 @@ def save_outcome(
     Raises:
         Unwritable: the place cannot be written to, or is taken.
     """
+    folder = Path(folder)
     with record.new_folder(folder, lasting=True) as draft:
         for name, figure in figures.items():
             pictures.save(figure, draft, name)

@@ -137,7 +137,7 @@ class Claims:
 
 
 def conduct_claims(
-    asked: Claims, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
+    asked: Claims, folder: str | Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
     """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
 
@@ -157,6 +157,7 @@ def conduct_claims(
         IncompatibleRecord: a store is another study's or another version's, or a rule needs what is not measured.
         NoCluster: the cluster was lost.
     """
+    folder = Path(folder)
     nothing = measures_of(xr.Dataset(coords={"sample": []}), asked.least)
     for rule in asked_rules():  # an hour before it would be found out
         held(rule, nothing)
@@ -181,7 +182,7 @@ def conduct_claims(
     return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
 
 
-def answer_finished(asked: Claims, folder: Path) -> xr.Dataset:
+def answer_finished(asked: Claims, folder: str | Path) -> xr.Dataset:
     """Answer from what ``conduct_claims`` has stored so far, whatever version stored it, and run nothing.
 
     Args:
@@ -194,6 +195,7 @@ def answer_finished(asked: Claims, folder: Path) -> xr.Dataset:
     Raises:
         UnreadableFile: not even one batch of the runs is finished.
     """
+    folder = Path(folder)
 
     def read(place: str) -> tuple[Study, xr.Dataset]:
         makers = made_by(folder / place, key="fields")

@@ -21,7 +21,7 @@ HERE = ThisProcess(at_once=2)
 
 
 def conduct(
-    study: Study, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
+    study: Study, folder: str | Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
 ) -> xr.Dataset:
     """Run what of a study is not in its store yet, and return all results.
 

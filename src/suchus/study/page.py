@@ -71,7 +71,7 @@ EXAMPLE = StudyFile(
 """Nine strokes of the article's crawl: what a file's mistakes are mended with while the others are looked for."""
 
 
-def read_study(path: Path) -> Study:
+def read_study(path: str | Path) -> Study:
     """Read a study from a TOML file.
 
     Raises:
@@ -80,6 +80,7 @@ def read_study(path: Path) -> Study:
         UnknownName: a field, a measure, a robot or a gait that does not exist.
         InvalidDesign: a field cannot take one of its values.
     """
+    path = Path(path)
     page = blueprint.read(path, StudyFile, {EXAMPLE.name: EXAMPLE})
     robot = ROBOTS.resolve(page.robot, path.parent)
     run = Run(

@@ -25,7 +25,7 @@ Its numbers come from robot.toml; keep this note with copies.
 """
 
 
-def export(robot: Robot, gait: Gait, folder: Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
+def export(robot: Robot, gait: Gait, folder: str | Path, kind: Format, *, timestep: float = TIMESTEP) -> Path:
     """Write a robot for another tool and return the folder, which appears whole or not at all.
 
     Args:
@@ -42,6 +42,7 @@ def export(robot: Robot, gait: Gait, folder: Path, kind: Format, *, timestep: fl
         Unwritable: the place cannot be written to, or is taken.
         NoUsd: USD without usd-core.
     """
+    folder = Path(folder)
     if kind not in get_args(Format):
         raise UnknownName("format", kind, get_args(Format))
     if not robot.name or robot.name.startswith(".") or any(c in robot.name for c in "/\\\0"):

@@ -33,7 +33,7 @@ class Loaded:
     """Notes on what was not taken over, a sentence each."""
 
 
-def load(path: Path, *, packages: Sequence[Path] = (), without_meshes: bool = False) -> Loaded:
+def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: bool = False) -> Loaded:
     """Load a URDF or an MJCF. No file outside its folder and those of packages is read, nothing in it is executed.
 
     Args:

@@ -21,8 +21,8 @@ class Meshes:
         packages: folders in which the packages lie that ``package://NAME/...`` names, or such packages themselves.
     """
 
-    def __init__(self, home: Path, packages: Sequence[Path] = ()) -> None:
-        self._home, self._packages = home.resolve(), [folder.resolve() for folder in packages]
+    def __init__(self, home: Path, packages: Sequence[str | Path] = ()) -> None:
+        self._home, self._packages = home.resolve(), [Path(folder).resolve() for folder in packages]
         self.assets: dict[str, bytes] = {}
         """STL files by the names under which MuJoCo finds them."""
         self.open: list[str] = []

@@ -31,7 +31,7 @@ class Words:
     """Bodies to leave out with all that hangs on them, such as arms."""
     foot_radius: float | None = None
     """Radius of every foot [m]."""
-    packages: tuple[Path, ...] = ()
+    packages: tuple[str | Path, ...] = ()
     """Folders in which the packages lie that meshes name by ``package://``."""
     without_meshes: bool = False
     """Whether a body whose mesh is not read gets a rod."""

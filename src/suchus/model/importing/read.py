@@ -99,7 +99,7 @@ def _moved(piece: ShapePiece, moved: Callable[[np.ndarray], np.ndarray], rotatio
     return ShapePiece(ends=moved(piece.ends), half=half)
 
 
-def import_robot(path: Path, *, name: str, words: Words | None = None) -> Draft:
+def import_robot(path: str | Path, *, name: str, words: Words | None = None) -> Draft:
     """Read a robot from a URDF or an MJCF: axis, girdles and limbs by geometry, drives and contact by its size.
 
     Nothing in the file is executed, and no file outside its folder and those of packages is read.
@@ -113,6 +113,7 @@ def import_robot(path: Path, *, name: str, words: Words | None = None) -> Draft:
         UnreadableFile: it cannot be read, or is no tree of hinges with a mirror plane.
         UnknownName: a body that the words name is not there.
     """
+    path = Path(path)
     words = words or Words()
     if words.foot_radius is not None:
         require("import", "foot_radius", words.foot_radius, 1e-5, 10.0, "m")

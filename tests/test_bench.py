@@ -1,0 +1,46 @@
+"""Every bench runs, in its short form, and prints ratios; no test depends on what they are."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+BENCHES = {path.stem: path for path in sorted((ROOT / "bench").glob("bench_*.py"))}
+RATIOS = {
+    "bench_coupling": r"coupled [\d.]+ s in \d+ steps, \d+\.\d+ times",
+    "bench_flow": r"an outline of its \d+ corners [\d.]+ ms: \d+\.\d+ times",
+    "bench_kinematics": r"leg\.inverse .* \d+\.\d+ of leg\.forward",
+    "bench_lake": r"swimming +\d+ +\d+\.\d+",
+    "bench_land": r"\d+ environments .* ratio \d+\.\d+",
+    "bench_portable": r"of processor time: ratio \d+\.\d+",
+    "bench_study": r"beside the bare physics \d+\.\d+",
+}
+"""How a bench prints a ratio; that of a card prints one only where there is a card."""
+
+
+def run_bench(name, *words, **environment):
+    return subprocess.run(
+        [sys.executable, str(BENCHES[name]), *words], env=os.environ | {"SUCHUS_BENCH": "short"} | environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_every_bench_but_that_of_a_card_has_a_ratio():
+    assert {*RATIOS, "bench_gpu"} == {*BENCHES}
+
+
+@pytest.mark.parametrize("name", RATIOS)
+def test_a_bench_prints_ratios(name):
+    done = run_bench(name)
+    assert done.returncode == 0, done.stderr
+    assert re.search(RATIOS[name], done.stdout), done.stdout
+
+
+def test_the_bench_of_a_card_says_that_there_is_none():
+    done = run_bench("bench_gpu", CUDA_VISIBLE_DEVICES="-1")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("There is no card of NVIDIA that numba can use")
