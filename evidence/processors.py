@@ -1,7 +1,7 @@
 """Other processors, imitated: settings with which the libraries take the routines of a processor of another kind.
 
-Usage: python -m evidence.processors PROCESSOR NAME ...: runs the quick forms of experiments as that processor would, and
-prints their measures as JSON.
+Usage: python -m evidence.processors PROCESSOR NAME ...: runs the quick forms of experiments on it, and prints their
+measures as JSON.
 """
 
 import json
