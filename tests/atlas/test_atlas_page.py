@@ -1,12 +1,12 @@
 """The page of the atlas: made of the outcomes, so that others make another one; failures stay in and are marked."""
 
-import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import atlas_page
+from evidence import store
 from suchus.atlas import CASES, ROWS, FlowOutcome, compare, digest_of, published, save_outcome
 from suchus.atlas.comparison import points
 from suchus.errors import IncompatibleRecord
@@ -188,7 +188,7 @@ def test_what_other_pages_state_is_of_the_rows_themselves():
 
 
 def test_the_page_in_the_documentation_has_the_numbers_that_other_pages_state():
-    kept = json.loads((atlas_page.DOCS.parent / "tests" / "docs" / "stated" / "atlas.json").read_text())
+    kept = store.load("atlas").values
     lines = (atlas_page.DOCS / "atlas.md").read_text().splitlines()
     table = {line.partition("](#")[2].partition(")")[0]: line.split("|")[2] for line in lines if line[:3] == "| ["}
     assert {name: f" {100 * row['rms']:.1f} % " for name, row in kept["rows"].items()} == table

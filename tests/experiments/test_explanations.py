@@ -1,6 +1,5 @@
 """What experiments say decided their outcomes: words beside the question, whose numbers are filled in by name."""
 
-import json
 import re
 import sys
 from dataclasses import dataclass
@@ -10,11 +9,11 @@ import pytest
 from jinja2 import nodes
 
 import suchus.experiments
+from evidence import store
 from suchus.errors import BrokenFile, InvalidDesign
 from suchus.experiment import EXPLANATION, Experiment, templates
 from suchus.experiments import EXPERIMENTS
 
-STATED = Path(__file__).parents[1] / "docs" / "stated"
 """Measures of full forms, by experiment: those of a question's options that no quick form takes among them."""
 ASKED_FOR = {
     "swim_3d": {"misfit_tail_only_as_taken", "misfit_trunk_and_tail_as_taken", "speed_trunk_and_tail_as_taken"},
@@ -61,7 +60,7 @@ def test_no_result_stands_in_the_words(folder):
 @pytest.mark.parametrize("folder", [file.parent for file in FOLDERS], ids=lambda folder: folder.name)
 def test_every_measure_that_the_words_name_is_measured(folder, quick_outcome):
     """Also in branches that a quick form does not take: a misspelt name that is looked for is never there."""
-    full = [json.loads(file.read_text()) for file in STATED.glob(f"{folder.name}*.json")]
+    full = [store.load(name).values for name in store.names() if name.startswith(folder.name)]
     known = set(quick_outcome(folder.name).measures).union(*full)
     assert named(folder) - known == ASKED_FOR.get(folder.name, set())
 

@@ -1,15 +1,14 @@
 """Measures of the swims below the surface, on hand-made records; and which robots swim there."""
 
-import json
 from dataclasses import replace
 from math import isnan
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 from tests.swims import crocodile_swim
 
+from evidence import store
 from suchus.experiments import EXPERIMENTS
 from suchus.experiments.swim_free import submerged
 from suchus.land import Lake
@@ -50,7 +49,7 @@ def test_a_dive_ends_where_it_stays_near_its_depth():
 
 def test_what_is_said_of_the_swims_has_the_sign_of_their_pitch():
     explain = EXPERIMENTS["swim_free"].explain
-    kept = json.loads((Path(__file__).parents[1] / "docs" / "stated" / "swim_free.json").read_text())
+    kept = store.load("swim_free").values
     afloat = {name: value for name, value in kept.items() if "deep" not in name}
     for pitch, words in ((0.1, "nose down by 6 degrees"), (-0.1, "nose up by 6 degrees"), (0.005, "level")):
         m = {name: one.value for name, one in submerged.measures(record(np.full(101, 0.6), pitch)).items()}
