@@ -10,17 +10,17 @@ from time import process_time
 
 from form import SHORT, in_form
 from suchus import flow
-from suchus.control import Swimming
-from suchus.coupling import Swim
-from suchus.coupling.on_joints import floating
-from suchus.experiments import EXPERIMENTS
-from suchus.land.run import Run
-from suchus.land.waters import Slice, Space
-from suchus.motion import LIMBS_BACK, with_limbs
-from suchus.progress import silent
-from suchus.water import fit, printed_wave
-from suchus.water.setting import GROWS, SwimSetting
-from suchus.water.swim_setup import ResolvedSwim
+from suchus.robot.control import Swimming
+from suchus.swim.coupling import Swim
+from suchus.swim.coupling.on_joints import floating
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.sim.land.run import Run
+from suchus.sim.land.waters import Slice, Space
+from suchus.robot.motion import LIMBS_BACK, with_limbs
+from suchus.core.progress import silent
+from suchus.swim.water import fit, printed_wave
+from suchus.swim.water.setting import GROWS, SwimSetting
+from suchus.swim.water.swim_setup import ResolvedSwim
 
 BEGIN = 0.25
 """Time from which it is measured [s]."""

@@ -17,13 +17,13 @@ import numpy as np
 
 from form import SHORT, in_form
 from suchus import flow
-from suchus.experiments import EXPERIMENTS
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.flow import border, farfield, log, midline, multigrid, patch, poisson, simulation, water
 from suchus.flow.compiled import compiled, threaded
 from suchus.flow.slab import inner_strides
-from suchus.water import fit, printed_wave
-from suchus.water.setting import SwimSetting
-from suchus.water.swim_setup import ResolvedSwim
+from suchus.swim.water import fit, printed_wave
+from suchus.swim.water.setting import SwimSetting
+from suchus.swim.water.swim_setup import ResolvedSwim
 
 PIECES = (
     (water, "immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),

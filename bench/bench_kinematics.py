@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from form import in_form
-from suchus.design import joint_names
-from suchus.kinematics import landmarks, leg, limb, spine
-from suchus.robots import ROBOTS
+from suchus.robot.design import joint_names
+from suchus.robot.kinematics import landmarks, leg, limb, spine
+from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]
 HIND = ROBOT.hind_leg

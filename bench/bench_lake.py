@@ -14,12 +14,12 @@ import time
 import numpy as np
 
 from form import in_form
-from suchus.control import Swimming
-from suchus.gaits import GAITS
-from suchus.land import Lake, Run
-from suchus.land.loop import Loop, physics_steps
-from suchus.robots import ROBOTS
-from suchus.water import fit, printed_wave
+from suchus.robot.control import Swimming
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, Run
+from suchus.sim.land.loop import Loop, physics_steps
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import fit, printed_wave
 
 RUNS, TICKS = 8, in_form(20, 2)  # TICKS control periods in a turn
 TURNS, WARM = in_form(24, 1), in_form(3, 1)  # the first WARM turns do not count
@@ -38,7 +38,7 @@ ARMS = {
 }
 FIRST = """
 import time
-from suchus.land import Lake, crawl
+from suchus.sim.land import Lake, crawl
 crawl("caiman", "belly_crawl", duration=0.01)
 start = time.process_time()
 crawl("caiman", "belly_crawl", duration=0.01, lake=Lake(level=0.06))

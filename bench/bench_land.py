@@ -14,12 +14,12 @@ import numpy as np
 from mujoco import rollout
 
 from form import in_form
-from suchus import threads
-from suchus.envs import Follow
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.model import activations, compile_model
-from suchus.robots import ROBOTS
+from suchus.core import threads
+from suchus.apps.envs import Follow
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.sim.model import activations, compile_model
+from suchus.robot.robots import ROBOTS
 
 TIMESTEP, DURATION, RUNS, REPEATS = 0.002, in_form(4.0, 0.2), in_form(32, 2), in_form(5, 1)
 NOISE = 0.01  # rad on every commanded angle

@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 from form import in_form
-from suchus import machine
+from suchus.core import machine
 
 TURNS = in_form(5, 1)
 CRAWL = f"import suchus; suchus.crawl('caiman', 'belly_crawl', cycles={in_form(4, 1)})"

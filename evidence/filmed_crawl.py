@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.capture import Camera, driven_share, film, observe, to_gait
-from suchus.design import LEGS
-from suchus.gaits import GAITS
-from suchus.land import crawl
-from suchus.motion import START, Gait, limb_reaches
-from suchus.robots import ROBOTS
+from suchus.animals.capture import Camera, driven_share, film, observe, to_gait
+from suchus.robot.design import LEGS
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import crawl
+from suchus.robot.motion import START, Gait, limb_reaches
+from suchus.robot.robots import ROBOTS
 
 NAME = "filmed_crawl"
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 
 from suchus import swim
-from suchus.control.standing import BALANCE, Standing
-from suchus.errors import InvalidDesign
+from suchus.robot.control.standing import BALANCE, Standing
+from suchus.core.errors import InvalidDesign
 from suchus.flow.setup import LAYER_CELLS
-from suchus.gaits import GAITS
-from suchus.land import Ground, Run, simulate
-from suchus.metrics.reach import lead
-from suchus.motion import Gait
-from suchus.motion.rising import stand_up, tallest
-from suchus.robots import ROBOTS
-from suchus.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
-from suchus.water.resolved import SwimSetting, resolved_swim
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Ground, Run, simulate
+from suchus.sim.metrics.reach import lead
+from suchus.robot.motion import Gait
+from suchus.robot.motion.rising import stand_up, tallest
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
+from suchus.swim.water.resolved import SwimSetting, resolved_swim
 
 ROBOT = ROBOTS["caiman"]
 FREQUENCY = 1.0

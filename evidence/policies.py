@@ -1,4 +1,4 @@
-"""Tasks of ``suchus.envs`` played by policies that nobody trained, for the page on environments."""
+"""Tasks of ``suchus.apps.envs`` played by policies that nobody trained, for the page on environments."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from suchus.control import Amphibious, HeadingHold, HeadingRule, Swimming
-from suchus.design import layout
-from suchus.envs import LONGER, STEPS, TASKS, Anything, Controlled, CrocodileVectorEnv, Follow, Still, SwimToGoal, Task
-from suchus.envs.policies import Played, Policy, play
-from suchus.envs.shelf import chosen
-from suchus.gaits import own_gait
-from suchus.land import Ground, Lake
-from suchus.robots import ROBOTS
+from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming
+from suchus.robot.design import layout
+from suchus.apps.envs import LONGER, STEPS, TASKS, Anything, Controlled, CrocodileVectorEnv, Follow, Still, SwimToGoal, Task
+from suchus.apps.envs.policies import Played, Policy, play
+from suchus.apps.envs.shelf import chosen
+from suchus.robot.gaits import own_gait
+from suchus.sim.land import Ground, Lake
+from suchus.robot.robots import ROBOTS
 
 NAME = "policies"
 EPISODES, SEED = 32, 1000

@@ -16,19 +16,19 @@ import numpy as np
 from suchus import flow
 from suchus.atlas import CASES
 from suchus.contestants import CONTESTANTS
-from suchus.errors import SuchusError
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
+from suchus.core.errors import SuchusError
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
 from suchus.hardware import cases, loads_of_each
 from suchus.league import find
-from suchus.motion import cycle_targets
-from suchus.optimise import READY
-from suchus.optimise.evaluate import evaluate
-from suchus.progress import silent
-from suchus.robots import ROBOTS
-from suchus.study.chunk import run_chunk
-from suchus.study.claims import Claims
-from suchus.water import fit, printed_wave
+from suchus.robot.motion import cycle_targets
+from suchus.experiments.optimise import READY
+from suchus.experiments.optimise.evaluate import evaluate
+from suchus.core.progress import silent
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study.chunk import run_chunk
+from suchus.experiments.study.claims import Claims
+from suchus.swim.water import fit, printed_wave
 
 Numbers = Mapping[str, float]
 """What a probe gives: numbers by name."""

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from suchus import machine
+from suchus.core import machine
 
 PROCESSORS: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
@@ -60,7 +60,7 @@ def quick_measures(processor: str, names: Sequence[str]) -> dict[str, dict[str, 
 
 def main(names: Sequence[str]) -> None:
     """Print the measures of the quick forms of experiments."""
-    from suchus.experiments import EXPERIMENTS  # noqa: PLC0415  after the environment is known to be right
+    from suchus.experiments.catalog import EXPERIMENTS  # noqa: PLC0415  after the environment is known to be right
 
     measures = {name: EXPERIMENTS[name].quick().run().measures for name in names}
     print(json.dumps({name: {key: one.value for key, one in found.items()} for name, found in measures.items()}))

@@ -8,8 +8,8 @@ from typing import Any
 
 from evidence import built, filmed_crawl, page_measures, policies, probes, servo_loads, tolerance, wall_model
 from evidence.tolerance import Bounded
-from suchus.experiments import EXPERIMENTS
-from suchus.robots import ROBOTS
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.robots import ROBOTS
 
 FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
     {
@@ -21,7 +21,7 @@ FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
 """Experiment and settings of each result that is an experiment in full."""
 SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
 """Searches whose outcome is kept, as ``optimise_NAME``."""
-_SWIMS = ("suchus.experiments.swim_free", "suchus.coupling", "suchus.flow")
+_SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swim.coupling", "suchus.flow")
 _ATLAS = "suchus.atlas"
 _VALIDATE = "make validate"
 
@@ -68,7 +68,7 @@ def run_experiment(name: str) -> dict[str, float]:
 
 def _experiment(name: str, of: str) -> Kept:
     return Kept(
-        name=name, modules=(f"suchus.experiments.{of}", "suchus.experiment"), probe=partial(probes.experiment, of),
+        name=name, modules=(f"suchus.experiments.catalog.{of}", "suchus.experiments.experiment"), probe=partial(probes.experiment, of),
         renew=f"make renew NAME={name}", compute=partial(run_experiment, name),
     )  # fmt: skip
 
@@ -82,42 +82,42 @@ def _flows(name: str, renew: str, *modules: str, flows: Sequence[str] = probes.P
 _OTHERS = (
     *(
         Kept(
-            name=f"optimise_{name}", modules=("suchus.optimise",), probe=partial(probes.search, name),
+            name=f"optimise_{name}", modules=("suchus.experiments.optimise",), probe=partial(probes.search, name),
             renew=f"suchus optimise {name} --out out/optimise && make renew NAME=optimise_{name}",
         )
         for name in SEARCHES
     ),
     Kept(
         name="lifted_design",
-        modules=("suchus.experiments.crawl_stability", "suchus.experiments.displacement", "suchus.experiment"),
+        modules=("suchus.experiments.catalog.crawl_stability", "suchus.experiments.catalog.displacement", "suchus.experiments.experiment"),
         probe=partial(probes.experiment, "displacement"), renew="python tools/lifted_design.py",
         of=("optimise_lifted",),
     ),
     Kept(
-        name="claims", modules=("suchus.study", "suchus.verdict"), probe=probes.claims,
+        name="claims", modules=("suchus.experiments.study", "suchus.article.verdict"), probe=probes.claims,
         renew="suchus study claims --out out/claims && make renew NAME=claims",
     ),
     Kept(
-        name="verdicts", modules=("suchus.verdict",), renew="make reproduce && python tools/verdict_table.py out",
+        name="verdicts", modules=("suchus.article.verdict",), renew="make reproduce && python tools/verdict_table.py out",
         of=("claims", *EXPERIMENTS),
     ),
-    Kept(name="bodies", modules=("suchus.cli",), renew="python tools/body_table.py --anew"),
+    Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),
     Kept(
         name="league", modules=("suchus.contestants", "suchus.league"), probe=probes.predictions,
         renew="suchus league --out out/league && python tools/league_page.py out/league",
     ),
     _flows("atlas", "make atlas", _ATLAS, flows=probes.ATLAS),
-    _flows("validation", _VALIDATE, "suchus.coupling", flows=(*probes.PLANE, *probes.SPACE)),
+    _flows("validation", _VALIDATE, "suchus.swim.coupling", flows=(*probes.PLANE, *probes.SPACE)),
     _flows("snakes", _VALIDATE, _ATLAS),
     _flows("sphere_300", _VALIDATE, flows=probes.SPACE),
-    _flows("flag", _VALIDATE, "suchus.coupling"),
+    _flows("flag", _VALIDATE, "suchus.swim.coupling"),
     _flows("wall_stress", _VALIDATE, flows=(*probes.PLANE, *probes.SPACE)),
-    _flows("sections", "python tools/sections.py out/sections", "suchus.water.sections", _ATLAS),
-    _flows("calibration", "python tools/calibration.py out/calibration", "suchus.water", flows=probes.SPACE),
+    _flows("sections", "python tools/sections.py out/sections", "suchus.swim.water.sections", _ATLAS),
+    _flows("calibration", "python tools/calibration.py out/calibration", "suchus.swim.water", flows=probes.SPACE),
     Kept(
         name="swim_grids", modules=_SWIMS, probe=partial(probes.experiment, "swimming"), renew=_VALIDATE,
     ),
-    Kept(name="wave_fits", modules=("suchus.water",), probe=probes.wave_fit, renew="python tools/wave_fits.py"),
+    Kept(name="wave_fits", modules=("suchus.swim.water",), probe=probes.wave_fit, renew="python tools/wave_fits.py"),
     Kept(
         name="servo_loads", modules=("suchus.hardware",), probe=probes.servo_loads, renew="make renew NAME=servo_loads",
         compute=partial(servo_loads.measured, ROBOTS["caiman"], cycles=2),
@@ -126,17 +126,17 @@ _OTHERS = (
          compute=built.measured),
     *(
         Kept(
-            name=name, modules=("suchus.water", "suchus.land", "suchus.control"), compute=compute,
+            name=name, modules=("suchus.swim.water", "suchus.sim.land", "suchus.robot.control"), compute=compute,
             probe=probes.wave_fit if name == "printed_direction" else compute, renew=f"make renew NAME={name}",
         )
         for name, compute in page_measures.SOURCES.items()
     ),
     Kept(
-        name="policies", modules=("suchus.envs",), compute=policies.measured, renew="make renew NAME=policies",
+        name="policies", modules=("suchus.apps.envs",), compute=policies.measured, renew="make renew NAME=policies",
         probe=partial(policies.body_results, "caiman"),
     ),
     Kept(
-        name="filmed_crawl", modules=("suchus.capture", "suchus.land"), compute=filmed_crawl.measured,
+        name="filmed_crawl", modules=("suchus.animals.capture", "suchus.sim.land"), compute=filmed_crawl.measured,
         probe=partial(filmed_crawl.measured, 1), renew="make renew NAME=filmed_crawl",
     ),
     Kept(

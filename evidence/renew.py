@@ -18,7 +18,7 @@ from typing import Any
 from evidence import source
 from evidence.registry import FORMS, RESULTS
 from evidence.store import Origin, StoredResult, save
-from suchus.errors import IncompatibleRecord, SuchusError
+from suchus.core.errors import IncompatibleRecord, SuchusError
 
 
 def store(name: str, values: Any, seconds: float | None = None) -> Path:

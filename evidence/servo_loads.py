@@ -4,13 +4,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from suchus.design import Robot, Servo, with_named_servos
-from suchus.errors import OutsideLimits
-from suchus.gaits import GAITS, suits
+from suchus.robot.design import Robot, Servo, with_named_servos
+from suchus.core.errors import OutsideLimits
+from suchus.robot.gaits import GAITS, suits
 from suchus.hardware import ServoLoad, cases, check_loads, loads_of_each, overloaded, with_better
 from suchus.hardware.loads import AT_LIMIT, LoadCase, borne, cold, records_of_each
-from suchus.motion import Gait
-from suchus.motors import motor
+from suchus.robot.motion import Gait
+from suchus.robot.motors import motor
 
 
 def measured(

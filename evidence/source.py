@@ -8,7 +8,7 @@ from pathlib import Path
 import grimp
 
 import suchus
-from suchus.record.provenance import syntax_of
+from suchus.core.files.provenance import syntax_of
 
 PACKAGE = Path(suchus.__file__).parent
 CATALOGS = ("control", "faults", "gaits", "metrics", "motors", "robots")
@@ -26,7 +26,7 @@ def reached(modules: tuple[str, ...]) -> frozenset[str]:
     """Return all modules of suchus that some modules import, directly or not, and these themselves.
 
     Args:
-        modules: full names, as ``suchus.land.stepper``; of a package all of its modules.
+        modules: full names, as ``suchus.sim.land.stepper``; of a package all of its modules.
 
     Raises:
         KeyError: there is no such module.

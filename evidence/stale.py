@@ -18,8 +18,8 @@ from typing import Literal
 from evidence import probes, source, tolerance
 from evidence.registry import RESULTS, Kept
 from evidence.store import ROOT, StoredResult, load, names
-from suchus.errors import SuchusError
-from suchus.record import new_file
+from suchus.core.errors import SuchusError
+from suchus.core.files import new_file
 
 State = Literal["current", "possibly old", "old", "not checked here"]
 """What is known of a result."""

@@ -10,9 +10,9 @@ from typing import Any
 
 from evidence import tolerance
 from evidence.tolerance import Bounded
-from suchus import machine
-from suchus.errors import IncompatibleRecord, UnreadableFile
-from suchus.record import new_file
+from suchus.core import machine
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.core.files import new_file
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "results"

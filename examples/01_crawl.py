@@ -6,7 +6,7 @@ Usage: python examples/01_crawl.py
 """
 
 import suchus
-from suchus.metrics import cost_of_transport, displacement, height_std, slip
+from suchus.sim.metrics import cost_of_transport, displacement, height_std, slip
 
 robot = suchus.ROBOTS["caiman"]
 for name in ("belly_crawl", "limbs_only"):

@@ -8,7 +8,7 @@ Usage: python examples/02_break_a_joint.py
 from math import degrees
 
 import suchus
-from suchus.metrics import displacement, heading_change
+from suchus.sim.metrics import displacement, heading_change
 
 robot, gait = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 faults = {

@@ -6,8 +6,8 @@ Usage: python examples/03_your_own_robot.py
 """
 
 import suchus
-from suchus.design import with_values
-from suchus.metrics import displacement
+from suchus.robot.design import with_values
+from suchus.sim.metrics import displacement
 
 caiman, gait = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 weak = with_values(caiman, {"name": "weak", "spine.yaw_servo.torque": 1.0})

@@ -6,7 +6,7 @@ Usage: python examples/04_kinematics.py
 import numpy as np
 
 import suchus
-from suchus.kinematics import leg, spine, tail
+from suchus.robot.kinematics import leg, spine, tail
 
 robot = suchus.ROBOTS["caiman"]
 feet = np.array([0.156, 0.0, 0.089]) + np.random.default_rng(0).uniform(-0.02, 0.02, (100_000, 3))

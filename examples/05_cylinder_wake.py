@@ -1,7 +1,7 @@
 """A cylinder in a stream at Reynolds number 150: its wake as a picture, and its Strouhal number."""
 
 from suchus import flow
-from suchus.figures.flow import vorticity
+from suchus.visual.figures.flow import vorticity
 
 grid = flow.Grid.covering((-4.0, 12.0), (-4.0, 4.0), cell=1 / 16)
 cylinder = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Pose(position=(0.0, 0.1)))

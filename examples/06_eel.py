@@ -1,7 +1,7 @@
 """An eel that swims by itself, from rest, and the film of it; the grid travels with it."""
 
 from suchus import flow
-from suchus.figures.flow import FieldFilm, vorticity
+from suchus.visual.figures.flow import FieldFilm, vorticity
 
 grid = flow.Grid.covering((-1.0, 3.0), (-1.0, 1.0), cell=1 / 96)
 eel = flow.FreeBody(shape=flow.eel(1.0, period=1.0), name="eel")

@@ -10,8 +10,8 @@ from dataclasses import replace
 from math import degrees
 
 import suchus
-from suchus.control import LAWS
-from suchus.metrics import displacement, heading_change
+from suchus.robot.control import LAWS
+from suchus.sim.metrics import displacement, heading_change
 
 robot, gait = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 closed = suchus.Coordinated()

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import suchus
-from suchus.capture import (
+from suchus.animals.capture import (
     Camera,
     SyntheticAnimal,
     driven_share,
@@ -24,7 +24,7 @@ from suchus.capture import (
     write_gait,
     write_table,
 )
-from suchus.metrics import displacement
+from suchus.sim.metrics import displacement
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "out/capture")
 robot, crawl = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]

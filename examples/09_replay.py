@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import suchus
-from suchus.replay import replay, save
+from suchus.visual.replay import replay, save
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 robot, gait = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]

@@ -13,7 +13,7 @@ import numpy as np
 try:
     import gymnasium
 
-    from suchus import envs  # makes the names known
+    from suchus.apps import envs  # makes the names known
 except ImportError as error:
     print(error)
     sys.exit(0)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-import suchus.envs as envs
+import suchus.apps.envs as envs
 
 STEPS = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
 ROBOTS, SEED = 32, 0

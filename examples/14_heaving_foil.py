@@ -3,7 +3,7 @@
 import numpy as np
 
 from suchus import flow
-from suchus.figures.flow import vorticity
+from suchus.visual.figures.flow import vorticity
 
 spine = flow.foil(1.0, thickness=0.12).spine(0.0).thickened(1.75 / 48)  # a round tail that the grid resolves
 foil = flow.Body(

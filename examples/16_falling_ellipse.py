@@ -3,7 +3,7 @@
 import numpy as np
 
 from suchus import flow
-from suchus.figures.flow import vorticity
+from suchus.visual.figures.flow import vorticity
 
 gravity, density = 2.0, 2.0
 ellipse = flow.FreeBody(

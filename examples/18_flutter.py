@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.image import imsave
 
-from suchus import flow, rotation
-from suchus.figures.vortices import Viewpoint, picture
-from suchus.skin.mesh import Mesh, ellipsoid, joined
+from suchus import flow
+from suchus.core import rotation
+from suchus.visual.figures.vortices import Viewpoint, picture
+from suchus.visual.skin.mesh import Mesh, ellipsoid, joined
 
 shape = flow.Ellipsoid(length=1.0, width=1.0, height=0.28)
 seed = flow.FreeBody(shape=shape, density=2.5, gravity=(0.0, 0.0, -1.0), pitch=0.6, spin_x=0.5, name="seed")

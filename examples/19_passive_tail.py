@@ -1,11 +1,11 @@
 """A passive tail of one's own: how soft may its end be? Robot and flow are solved together, in a slice of water."""
 
 import suchus
-from suchus.control import Swimming
-from suchus.coupling import simulate
-from suchus.design import with_spring
-from suchus.land.waters import Slice
-from suchus.water import swim_of
+from suchus.robot.control import Swimming
+from suchus.swim.coupling import simulate
+from suchus.robot.design import with_spring
+from suchus.sim.land.waters import Slice
+from suchus.swim.water import swim_of
 
 robot = suchus.ROBOTS["floating_caiman"]
 gait = swim_of(robot, frequency=1.0)  # (20) on the joints; the cable and the passive end share the rest with the water

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from suchus import flow
-from suchus.figures.flow import skin
+from suchus.visual.figures.flow import skin
 
 ball = trimesh.creation.icosphere(subdivisions=3)  # a fin of yours comes from a CAD program
 wide, thick, high = ball.vertices.T

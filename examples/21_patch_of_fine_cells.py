@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus import flow
-from suchus.figures.flow import vorticity
+from suchus.visual.figures.flow import vorticity
 
 whole = flow.Grid.covering((-1.7, 4.0), (-1.4, 1.4), cell=1 / 24)
 fine = whole.patch((-0.4, 1.6), (-0.5, 0.4), ratio=4)

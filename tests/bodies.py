@@ -5,10 +5,10 @@ from functools import lru_cache
 from pathlib import Path
 
 from body_files import eight
-from suchus import blueprint
-from suchus.design import Robot, crocodile
-from suchus.design.scale import scaled
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.robot.design import Robot, crocodile
+from suchus.robot.design.scale import scaled
+from suchus.robot.robots import ROBOTS
 
 __all__ = ["CAIMAN", "eel", "eight", "hatchling", "six"]
 

@@ -21,24 +21,24 @@ from batteries import counted  # noqa: F401  a fixture
 from left_out import COLLECTED
 
 CHECKED = (
-    "suchus.kinematics",
-    "suchus.motion.axis",
-    "suchus.motion.movement",
-    "suchus.motion.limits",
-    "suchus.control",
-    "suchus.metrics",
+    "suchus.robot.kinematics",
+    "suchus.robot.motion.axis",
+    "suchus.robot.motion.movement",
+    "suchus.robot.motion.limits",
+    "suchus.robot.control",
+    "suchus.sim.metrics",
 )
 """Rooms whose arrays' shapes are checked in the first calls of each test; production pays nothing."""
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
-from suchus import blueprint  # noqa: E402
-from suchus.design import Robot, crocodile  # noqa: E402
-from suchus.experiment import Outcome  # noqa: E402
-from suchus.experiments import EXPERIMENTS  # noqa: E402
-from suchus.gaits import GAITS  # noqa: E402
-from suchus.motion import Gait  # noqa: E402
-from suchus.robots import ROBOTS  # noqa: E402
+from suchus.robot import blueprint  # noqa: E402
+from suchus.robot.design import Robot, crocodile  # noqa: E402
+from suchus.experiments.experiment import Outcome  # noqa: E402
+from suchus.experiments.catalog import EXPERIMENTS  # noqa: E402
+from suchus.robot.gaits import GAITS  # noqa: E402
+from suchus.robot.motion import Gait  # noqa: E402
+from suchus.robot.robots import ROBOTS  # noqa: E402
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")

@@ -5,7 +5,7 @@ import errno
 import io
 import os
 
-from suchus.errors import Unwritable
+from suchus.core.errors import Unwritable
 
 KINDS = ("open", "write", "close", "rename", "fsync", "link", "mkdir")
 """What can fail."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from suchus.control import Sensed
-from suchus.design import layout
+from suchus.robot.control import Sensed
+from suchus.robot.design import layout
 
 
 def felt(robot, runs=1, time=0.0, **readings):

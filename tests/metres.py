@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from suchus.gaits.belly_crawl import LIMBS
-from suchus.motion import START, Gait, GaitInMetres, movement
-from suchus.robots import ROBOTS
+from suchus.robot.gaits.belly_crawl import LIMBS
+from suchus.robot.motion import START, Gait, GaitInMetres, movement
+from suchus.robot.robots import ROBOTS
 
 
 def with_metres(gait: Gait, **changes) -> Gait:

@@ -1,6 +1,6 @@
 """Controllers of a batch, started from lists, for tests."""
 
-from suchus.control import Runs
+from suchus.robot.control import Runs
 
 
 def start_batch(controls, robots, gaits, seeds, ticks, period):

@@ -1,7 +1,7 @@
 """Swims by the numbers of a crocodile's lateral servos: three yaw joints from the pelvis forward, the tail's cable."""
 
-from suchus.motion import LIMBS_BACK, LIMBS_UP, Gait, swimming_gait
-from suchus.robots import ROBOTS
+from suchus.robot.motion import LIMBS_BACK, LIMBS_UP, Gait, swimming_gait
+from suchus.robot.robots import ROBOTS
 
 
 def crocodile_swim(  # as many as the article's numbers

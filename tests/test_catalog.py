@@ -4,8 +4,8 @@ import sys
 import pytest
 
 import suchus
-from suchus.catalog import Catalog
-from suchus.errors import InvalidDesign, UnknownName
+from suchus.core.catalog import Catalog
+from suchus.core.errors import InvalidDesign, UnknownName
 
 
 @pytest.fixture

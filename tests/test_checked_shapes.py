@@ -5,8 +5,8 @@ import pytest
 from jaxtyping import TypeCheckError
 
 import first_calls
-from suchus.kinematics import leg
-from suchus.robots import ROBOTS
+from suchus.robot.kinematics import leg
+from suchus.robot.robots import ROBOTS
 
 LINKS = ROBOTS["caiman"].hind_leg
 

@@ -5,11 +5,11 @@ from typing import ClassVar
 import pytest
 import xarray as xr
 
-from suchus.errors import AmbiguousName, IncompatibleRecord, InvalidDesign
-from suchus.experiment import Experiment, Measure, Measures, Simulated, estimated, ranged, silent, staged
-from suchus.motion import Gait
-from suchus.progress import portion
-from suchus.verdict import Clause, Rule
+from suchus.core.errors import AmbiguousName, IncompatibleRecord, InvalidDesign
+from suchus.experiments.experiment import Experiment, Measure, Measures, Simulated, estimated, ranged, silent, staged
+from suchus.robot.motion import Gait
+from suchus.core.progress import portion
+from suchus.article.verdict import Clause, Rule
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from packaging.requirements import Requirement
 
-from suchus import fingerprint as prints
-from suchus.fingerprint import fingerprint
+from suchus.core import fingerprint as prints
+from suchus.core.fingerprint import fingerprint
 
 LIBRARY = """
 import numpy as np

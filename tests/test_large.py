@@ -9,16 +9,16 @@ import time
 import mujoco
 import pytest
 
-from suchus import large
-from suchus.cli import main
-from suchus.cli.entry import LEAST
-from suchus.errors import InvalidDesign, NoMemory
-from suchus.gaits import GAITS
-from suchus.jobs import processes
-from suchus.land import Run, simulate
-from suchus.land.extent import processor_seconds, record_bytes
-from suchus.robots import ROBOTS
-from suchus.study import read_study, run_chunk
+from suchus.core import large
+from suchus.apps.cli import main
+from suchus.apps.cli.entry import LEAST
+from suchus.core.errors import InvalidDesign, NoMemory
+from suchus.robot.gaits import GAITS
+from suchus.core.jobs import processes
+from suchus.sim.land import Run, simulate
+from suchus.sim.land.extent import processor_seconds, record_bytes
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import read_study, run_chunk
 
 CRAWL = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])
 STUDY = """
@@ -134,7 +134,7 @@ def test_a_search_is_refused_by_its_walks_and_begins_with_large(tmp_path, monkey
     def begun(*_):
         raise InvalidDesign("it has begun.")
 
-    monkeypatch.setattr(sys.modules["suchus.optimise.conduct"], "_arm", begun)
+    monkeypatch.setattr(sys.modules["suchus.experiments.optimise.conduct"], "_arm", begun)
     assert main(["optimise", "o.toml", "--out", "made", "--large"]) == 2
     assert "it has begun" in capsys.readouterr().err
 
@@ -151,7 +151,7 @@ def test_memory_that_runs_out_is_a_sentence(monkeypatch, capsys):
     def hungry(words):
         raise MemoryError
 
-    monkeypatch.setattr(sys.modules["suchus.cli.entry"], "_dispatch", hungry)
+    monkeypatch.setattr(sys.modules["suchus.apps.cli.entry"], "_dispatch", hungry)
     assert main(["list"]) == 2
     assert "the memory does not suffice" in capsys.readouterr().err
 
@@ -162,7 +162,7 @@ def test_memory_that_mujoco_does_not_get_is_told_as_such(monkeypatch):
     def full(*_, **__):
         raise ValueError(said[0])
 
-    monkeypatch.setattr("suchus.land.batch.Batch", full)
+    monkeypatch.setattr("suchus.sim.land.batch.Batch", full)
     with pytest.raises(NoMemory, match="the memory does not suffice"):
         simulate([CRAWL], duration=0.02)
     said[0] = "nsim must be positive"
@@ -174,7 +174,7 @@ def test_a_command_that_gets_no_memory_of_mujoco_says_so(monkeypatch, capsys):
     def hungry(words):
         raise mujoco.FatalError("Could not allocate memory")
 
-    monkeypatch.setattr(sys.modules["suchus.cli.entry"], "_dispatch", hungry)
+    monkeypatch.setattr(sys.modules["suchus.apps.cli.entry"], "_dispatch", hungry)
     assert main(["list"]) == 2
     assert "the memory does not suffice" in capsys.readouterr().err
 
@@ -188,7 +188,7 @@ def test_a_batch_that_does_not_fit_is_halved_and_a_run_that_does_not_is_no_resul
             raise NoMemory
         return walked(runs, **options)
 
-    monkeypatch.setattr("suchus.study.chunk.simulate", narrow)
+    monkeypatch.setattr("suchus.experiments.study.chunk.simulate", narrow)
     whole = run_chunk(study, 0)
     most[0] = 1
     assert run_chunk(study, 0).identical(whole)

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from suchus import machine
-from suchus.errors import IncompatibleRecord, OutsideLimits
-from suchus.jobs.store import MARK, Store
-from suchus.record import provenance
-from suchus.record.provenance import made_alike
+from suchus.core import machine
+from suchus.core.errors import IncompatibleRecord, OutsideLimits
+from suchus.core.jobs.store import MARK, Store
+from suchus.core.files import provenance
+from suchus.core.files.provenance import made_alike
 
 LINUX = pytest.mark.skipif(
     (platform.machine(), platform.libc_ver()[0]) != ("x86_64", "glibc"), reason="portable arithmetic is for x86-64"
@@ -113,7 +113,7 @@ def test_a_portable_study_has_the_same_bytes_on_two_imitated_processors(tmp_path
 
     def digest(name, **environment):
         words = ["study", str(file), "--out", name]
-        in_a_process(f"from suchus.cli.entry import main; assert main({words!r}) == 0", **environment)
+        in_a_process(f"from suchus.apps.cli.entry import main; assert main({words!r}) == 0", **environment)
         return hashlib.sha256((tmp_path / name / "results.nc").read_bytes()).hexdigest()
 
     names = [str(tmp_path / name) for name in "abcd"]

@@ -15,27 +15,31 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import suchus
-from suchus import GAITS, ROBOTS, atlas, blueprint, hardware, optimise, record, report, study
-from suchus import capture as captures
-from suchus.coupling import Swim
-from suchus.emulator import Server
-from suchus.errors import SuchusError
-from suchus.figures import places
-from suchus.figures import save as save_figure
-from suchus.gaits import gait_of
-from suchus.jobs import Store, conduct_sweep
+from suchus import GAITS, ROBOTS, atlas, hardware
+from suchus.robot import blueprint
+from suchus.experiments import optimise, study
+from suchus.core import files as record
+from suchus.apps import report
+from suchus.animals import capture as captures
+from suchus.swim.coupling import Swim
+from suchus.hardware.emulator import Server
+from suchus.core.errors import SuchusError
+from suchus.visual.figures import places
+from suchus.visual.figures import save as save_figure
+from suchus.robot.gaits import gait_of
+from suchus.core.jobs import Store, conduct_sweep
 from suchus.league.page import standings_of
-from suchus.model.export import export
-from suchus.model.importing import import_robot
-from suchus.reading import read_bytes, read_mesh
-from suchus.replay import save as save_replay
-from suchus.samples import sample
-from suchus.writing import keep
+from suchus.sim.model.export import export
+from suchus.sim.model.importing import import_robot
+from suchus.core.reading import read_bytes, read_mesh
+from suchus.visual.replay import save as save_replay
+from suchus.core.samples import sample
+from suchus.core.writing import keep
 from wires import wiring
 
 ROOMS = (
     *(module.name for module in pkgutil.walk_packages(suchus.__path__, "suchus.") if module.ispkg),
-    "suchus.catalog", "suchus.reading", "suchus.writing",
+    "suchus.core.catalog", "suchus.core.reading", "suchus.core.writing",
 )  # fmt: skip
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 RECORD = xr.Dataset({"x": ("time", [0.0, 1.0])}, {"time": [0.0, 0.1]})

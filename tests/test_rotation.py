@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from suchus import rotation
+from suchus.core import rotation
 
 X, Y, Z = np.eye(3)
 turns = st.builds(

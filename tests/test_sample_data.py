@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import suchus
-from suchus.capture import observe, read_tracks
-from suchus.errors import UnknownName
-from suchus.model.importing import import_robot
-from suchus.samples import SAMPLES
+from suchus.animals.capture import observe, read_tracks
+from suchus.core.errors import UnknownName
+from suchus.sim.model.importing import import_robot
+from suchus.core.samples import SAMPLES
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 from pages.blocks import blocks, follow

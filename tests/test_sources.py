@@ -10,21 +10,21 @@ from pathlib import Path
 import pytest
 
 import suchus
-from suchus import sources
-from suchus.blueprint import read_gait
-from suchus.cli import main
-from suchus.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusError, UnknownName, UnreadableFile
-from suchus.faults import FAULTS, from_table
-from suchus.gaits import GAITS, own_gait
-from suchus.jobs import processes
-from suchus.robots import ROBOTS
-from suchus.study import MEASURES
+from suchus.core import sources
+from suchus.robot.blueprint import read_gait
+from suchus.apps.cli import main
+from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusError, UnknownName, UnreadableFile
+from suchus.sim.faults import FAULTS, from_table
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.core.jobs import processes
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import MEASURES
 
 TIRED = '''"""A servo without its strength."""
 
 from dataclasses import dataclass
 
-from suchus.fault import ServoFault
+from suchus.sim.fault import ServoFault
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ def _no_project_stays(monkeypatch):
     monkeypatch.setattr(sources, "_AT_START", None)
     yield
     os.environ.pop(sources.VARIABLE, None)
-    for name in [name for name in sys.modules if name in ("suchus.faults.tired", "suchus.robots.broken")]:
+    for name in [name for name in sys.modules if name in ("suchus.sim.faults.tired", "suchus.robot.robots.broken")]:
         del sys.modules[name]
 
 
@@ -71,7 +71,7 @@ def test_the_shelves_hold_what_stands_in_the_project(lab):
     before = [*FAULTS]
     suchus.project(lab)
     assert [*FAULTS] == sorted([*before, "tired"])
-    assert FAULTS["tired"].__module__ == "suchus.faults.tired"
+    assert FAULTS["tired"].__module__ == "suchus.sim.faults.tired"
     assert from_table({"kind": "tired", "joint": "LF_yaw"}) == FAULTS["tired"]("LF_yaw")
     assert ROBOTS["short"].hind_leg.femur == 0.05
     assert ROBOTS["short"] is ROBOTS["short"]
@@ -163,7 +163,7 @@ def test_what_is_broken_is_named_with_file_and_line_and_the_rest_works(lab, caps
 def test_our_own_errors_in_a_file_of_the_user_are_told_with_its_line(lab):
     suchus.project(lab)
     (lab / "robots/broken.py").write_text(
-        "from dataclasses import replace\n\nfrom suchus.robots import caiman\n\n"
+        "from dataclasses import replace\n\nfrom suchus.robot.robots import caiman\n\n"
         "robot = replace(caiman.tables.tail, joints=0)\n"
     )
     with pytest.raises(BrokenFile, match=r"^robots/broken.py, line 5, cannot be loaded: tail.joints is 0"):
@@ -254,7 +254,7 @@ def test_a_folder_may_stand_for_a_file(lab):
     try:
         assert FAULTS["tired"]("LF_yaw").at == 3.0
     finally:
-        for name in [name for name in sys.modules if name.startswith("suchus.faults.tired")]:
+        for name in [name for name in sys.modules if name.startswith("suchus.sim.faults.tired")]:
             del sys.modules[name]
 
 
@@ -282,7 +282,7 @@ def test_what_is_sent_elsewhere_takes_its_project_along(lab):
 
 
 def test_what_makes_the_bytes_includes_the_project(lab):
-    from suchus.jobs.made_by import deciding  # noqa: PLC0415
+    from suchus.core.jobs.made_by import deciding  # noqa: PLC0415
 
     without = deciding()
     assert "project" not in without
@@ -343,4 +343,4 @@ def test_the_option_holds_for_its_command_only(lab, capsys):
 
 def test_modules_of_the_project_can_import_each_other(lab):
     suchus.project(lab)
-    assert importlib.import_module("suchus.faults.tired").fault is FAULTS["tired"]
+    assert importlib.import_module("suchus.sim.faults.tired").fault is FAULTS["tired"]

@@ -1,7 +1,7 @@
 import pytest
 
-from suchus import threads
-from suchus.errors import OutsideLimits
+from suchus.core import threads
+from suchus.core.errors import OutsideLimits
 
 
 def test_threads_follow_the_environment(monkeypatch):

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 from tests.felt import felt
 
-from suchus.bus import FRAMINGS, Bus, BusPlace, straight
-from suchus.design import layout
-from suchus.design.scale import control_period
-from suchus.emulator import USUAL, Emulator, MemoryPort, Trouble
-from suchus.robots import ROBOTS
+from suchus.hardware.bus import FRAMINGS, Bus, BusPlace, straight
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period
+from suchus.hardware.emulator import USUAL, Emulator, MemoryPort, Trouble
+from suchus.robot.robots import ROBOTS
 
 
 class Obedient:

@@ -17,9 +17,9 @@ from lighter import lighten
 from pages.stated import keep
 from pages.stated import main as write_pages
 from suchus.atlas import CASES, GRIDS, ROWS, load_outcomes, published
-from suchus.errors import IncompatibleRecord, SuchusError
-from suchus.figures.atlas import Entry, entries, write_atlas
-from suchus.writing import MANIFEST
+from suchus.core.errors import IncompatibleRecord, SuchusError
+from suchus.visual.figures.atlas import Entry, entries, write_atlas
+from suchus.core.writing import MANIFEST
 
 DOCS = Path(__file__).parents[1] / "docs"
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
-from suchus import blueprint
-from suchus.design import Robot, crocodile
-from suchus.design.scale import scaled
-from suchus.gaits import GAITS
-from suchus.model.export import export
-from suchus.model.importing import import_robot
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.robot.design import Robot, crocodile
+from suchus.robot.design.scale import scaled
+from suchus.robot.gaits import GAITS
+from suchus.sim.model.export import export
+from suchus.sim.model.importing import import_robot
+from suchus.robot.robots import ROBOTS
 
 _CAIMAN: Robot = ROBOTS["caiman"]
 

@@ -25,16 +25,16 @@ import gymnasium
 from evidence import store
 
 from body_files import FILES, write_files
-from suchus import blueprint
-from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
-from suchus.cli.entry import main as suchus
-from suchus.design import Robot
-from suchus.design.scale import coarse_step
-from suchus.envs import TASKS
-from suchus.errors import SuchusError
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import own_gait
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, write_table
+from suchus.apps.cli.entry import main as suchus
+from suchus.robot.design import Robot
+from suchus.robot.design.scale import coarse_step
+from suchus.apps.envs import TASKS
+from suchus.core.errors import SuchusError
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import own_gait
+from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[1]
 NAME, PAGE = "bodies", ROOT / "docs" / "robots_from_files.md"
@@ -150,7 +150,7 @@ def door(row: str, body: str, folder: Path) -> Callable[[], int]:
         return lambda: suchus(words)
 
     def viewed() -> int:
-        with mock.patch("suchus.cli.view._serve", return_value=0):  # all but the browser
+        with mock.patch("suchus.apps.cli.view._serve", return_value=0):  # all but the browser
             return suchus(words)
 
     return viewed

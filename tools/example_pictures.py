@@ -15,15 +15,15 @@ from matplotlib.figure import Figure
 
 import suchus
 from lighter import lighten
-from suchus import envs
-from suchus.design import with_values
-from suchus.experiments.bipedal_reach.figure import draw_side_views
-from suchus.experiments.displacement.figure import draw_crawls
-from suchus.figures import COLOURS, dimension_drawing, panels, styled
-from suchus.land import Run, simulate
-from suchus.metrics import displacement
-from suchus.optimise import READY
-from suchus.optimise.pictures import draw_gaits
+from suchus.apps import envs
+from suchus.robot.design import with_values
+from suchus.experiments.catalog.bipedal_reach.figure import draw_side_views
+from suchus.experiments.catalog.displacement.figure import draw_crawls
+from suchus.visual.figures import COLOURS, dimension_drawing, panels, styled
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement
+from suchus.experiments.optimise import READY
+from suchus.experiments.optimise.pictures import draw_gaits
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]

@@ -2,7 +2,7 @@
 
 Usage: python tools/ladder_grids.py FOLDER: swims as the experiment ``swimming`` does on the rung of three dimensions,
 but on 68, 80 and 96 cells a length, some eight minutes of processor time. A folder that holds finished swims goes on.
-It writes ``src/suchus/experiments/swimming/grids.json``, which the experiment reads.
+It writes ``src/suchus/experiments/catalog/swimming/grids.json``, which the experiment reads.
 """
 
 import json
@@ -13,9 +13,9 @@ from typing import Any
 
 import xarray as xr
 
-from suchus.experiments.swimming.experiment import experiment
-from suchus.experiments.swimming.ladder import GRIDS, Climb, Swims, numbers_in_space, rules_digest, space_swims
-from suchus.progress import silent
+from suchus.experiments.catalog.swimming.experiment import experiment
+from suchus.experiments.catalog.swimming.ladder import GRIDS, Climb, Swims, numbers_in_space, rules_digest, space_swims
+from suchus.core.progress import silent
 
 KEPT = Path(__file__).parents[1] / "src" / "suchus" / "experiments" / "swimming" / GRIDS
 CELLS = (68, 80, 96)

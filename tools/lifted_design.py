@@ -9,12 +9,12 @@ from string import Formatter
 from typing import Any
 
 from pages import stated
-from suchus.design import Robot, with_values
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
-from suchus.motion import Gait
-from suchus.robots import ROBOTS
-from suchus.verdict import RULES
+from suchus.robot.design import Robot, with_values
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.claims import RULES
 
 NAME, SEARCH = "lifted_design", "optimise_lifted"
 ASKED = ("com_height_pp_change_tail_lifted", "com_height_pp_change", "forward_ratio_tail_lifted", "forward_ratio",

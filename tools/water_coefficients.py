@@ -10,12 +10,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 import xarray as xr
 
-from suchus.design import Robot
-from suchus.design.checks import Course
-from suchus.design.water import Water
-from suchus.land.lake import Lake
-from suchus.land.prescribed import held_sections
-from suchus.motion import Gait
+from suchus.robot.design import Robot
+from suchus.core.checks import Course
+from suchus.robot.design.water import Water
+from suchus.sim.land.lake import Lake
+from suchus.sim.land.prescribed import held_sections
+from suchus.robot.motion import Gait
 
 QUANTITIES = ("thrust", "aside", "power")
 """What is compared over a cycle."""

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from pages import stated as pages
-from suchus.design import layout
-from suchus.errors import OutsideLimits
-from suchus.kinematics.tail import bend_of_servo
-from suchus.motion import cycle_targets, lateral_servos
-from suchus.robots import ROBOTS
-from suchus.water import fit, printed_wave
+from suchus.robot.design import layout
+from suchus.core.errors import OutsideLimits
+from suchus.robot.kinematics.tail import bend_of_servo
+from suchus.robot.motion import cycle_targets, lateral_servos
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import fit, printed_wave
 
 NAME = "wave_fits"
 WAVES = {

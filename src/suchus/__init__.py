@@ -7,55 +7,55 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from suchus.catalog import Catalog as Catalog
-    from suchus.control import CONTROLLERS as CONTROLLERS
-    from suchus.control import Coordinated as Coordinated
-    from suchus.control import HeadingRule as HeadingRule
-    from suchus.design import Robot as Robot
-    from suchus.errors import Diverged as Diverged
-    from suchus.errors import IncompatibleRecord as IncompatibleRecord
-    from suchus.errors import InvalidDesign as InvalidDesign
-    from suchus.errors import NotConverged as NotConverged
-    from suchus.errors import OutsideLimits as OutsideLimits
-    from suchus.errors import SuchusError as SuchusError
-    from suchus.errors import UnknownName as UnknownName
-    from suchus.errors import Unreachable as Unreachable
-    from suchus.errors import UnreadableFile as UnreadableFile
-    from suchus.experiment import Experiment as Experiment
-    from suchus.experiment import Outcome as Outcome
-    from suchus.experiments import EXPERIMENTS as EXPERIMENTS
-    from suchus.fault import Fault as Fault
-    from suchus.faults import FAULTS as FAULTS
-    from suchus.faults import Backlash as Backlash
-    from suchus.faults import Deaf as Deaf
-    from suchus.faults import Limp as Limp
-    from suchus.faults import Locked as Locked
-    from suchus.faults import LostFoot as LostFoot
-    from suchus.faults import Offset as Offset
-    from suchus.faults import Slow as Slow
-    from suchus.faults import Weak as Weak
-    from suchus.gaits import GAITS as GAITS
-    from suchus.land import Ground as Ground
-    from suchus.land import Live as Live
-    from suchus.land import Push as Push
-    from suchus.land import Run as Run
-    from suchus.land import crawl as crawl
-    from suchus.land import simulate as simulate
-    from suchus.motion import Gait as Gait
-    from suchus.motion import swimming_gait as swimming_gait
-    from suchus.robots import ROBOTS as ROBOTS
-    from suchus.samples import sample as sample
-    from suchus.sources import project as project
-    from suchus.study import MEASURES as MEASURES
-    from suchus.water import swim as swim
+    from suchus.core.catalog import Catalog as Catalog
+    from suchus.robot.control import CONTROLLERS as CONTROLLERS
+    from suchus.robot.control import Coordinated as Coordinated
+    from suchus.robot.control import HeadingRule as HeadingRule
+    from suchus.robot.design import Robot as Robot
+    from suchus.core.errors import Diverged as Diverged
+    from suchus.core.errors import IncompatibleRecord as IncompatibleRecord
+    from suchus.core.errors import InvalidDesign as InvalidDesign
+    from suchus.core.errors import NotConverged as NotConverged
+    from suchus.core.errors import OutsideLimits as OutsideLimits
+    from suchus.core.errors import SuchusError as SuchusError
+    from suchus.core.errors import UnknownName as UnknownName
+    from suchus.core.errors import Unreachable as Unreachable
+    from suchus.core.errors import UnreadableFile as UnreadableFile
+    from suchus.experiments.experiment import Experiment as Experiment
+    from suchus.experiments.experiment import Outcome as Outcome
+    from suchus.experiments.catalog import EXPERIMENTS as EXPERIMENTS
+    from suchus.sim.fault import Fault as Fault
+    from suchus.sim.faults import FAULTS as FAULTS
+    from suchus.sim.faults import Backlash as Backlash
+    from suchus.sim.faults import Deaf as Deaf
+    from suchus.sim.faults import Limp as Limp
+    from suchus.sim.faults import Locked as Locked
+    from suchus.sim.faults import LostFoot as LostFoot
+    from suchus.sim.faults import Offset as Offset
+    from suchus.sim.faults import Slow as Slow
+    from suchus.sim.faults import Weak as Weak
+    from suchus.robot.gaits import GAITS as GAITS
+    from suchus.sim.land import Ground as Ground
+    from suchus.sim.land import Live as Live
+    from suchus.sim.land import Push as Push
+    from suchus.sim.land import Run as Run
+    from suchus.sim.land import crawl as crawl
+    from suchus.sim.land import simulate as simulate
+    from suchus.robot.motion import Gait as Gait
+    from suchus.robot.motion import swimming_gait as swimming_gait
+    from suchus.robot.robots import ROBOTS as ROBOTS
+    from suchus.core.samples import sample as sample
+    from suchus.core.sources import project as project
+    from suchus.experiments.study import MEASURES as MEASURES
+    from suchus.swim.water import swim as swim
 
     __version__: str
 
 _HOMES = {
-    "Catalog": "suchus.catalog",
-    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.control"),
-    "MEASURES": "suchus.study",
-    "Robot": "suchus.design",
+    "Catalog": "suchus.core.catalog",
+    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.robot.control"),
+    "MEASURES": "suchus.experiments.study",
+    "Robot": "suchus.robot.design",
     **dict.fromkeys(
         (
             "Diverged",
@@ -68,21 +68,21 @@ _HOMES = {
             "Unreachable",
             "UnreadableFile",
         ),
-        "suchus.errors",
+        "suchus.core.errors",
     ),
-    **dict.fromkeys(("Experiment", "Outcome"), "suchus.experiment"),
-    "EXPERIMENTS": "suchus.experiments",
-    "GAITS": "suchus.gaits",
-    "ROBOTS": "suchus.robots",
-    "Gait": "suchus.motion",
-    "swimming_gait": "suchus.motion",
-    "project": "suchus.sources",
-    "sample": "suchus.samples",
-    "swim": "suchus.water",
-    **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.land"),
-    "Fault": "suchus.fault",
+    **dict.fromkeys(("Experiment", "Outcome"), "suchus.experiments.experiment"),
+    "EXPERIMENTS": "suchus.experiments.catalog",
+    "GAITS": "suchus.robot.gaits",
+    "ROBOTS": "suchus.robot.robots",
+    "Gait": "suchus.robot.motion",
+    "swimming_gait": "suchus.robot.motion",
+    "project": "suchus.core.sources",
+    "sample": "suchus.core.samples",
+    "swim": "suchus.swim.water",
+    **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.sim.land"),
+    "Fault": "suchus.sim.fault",
     **dict.fromkeys(
-        ("FAULTS", "Backlash", "Deaf", "Limp", "Locked", "LostFoot", "Offset", "Slow", "Weak"), "suchus.faults"
+        ("FAULTS", "Backlash", "Deaf", "Limp", "Locked", "LostFoot", "Offset", "Slow", "Weak"), "suchus.sim.faults"
     ),
 }
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604 - the names are strings

@@ -2,7 +2,7 @@
 
 import sys
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 if __name__ == "__main__":
     sys.exit(main())

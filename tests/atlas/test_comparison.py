@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from suchus.atlas import AtlasRow, bound, compare, rms_over_peak
 from suchus.atlas.case import FINEST, UNKNOWN_SCATTER, PublishedCurves
-from suchus.errors import IncompatibleRecord
+from suchus.core.errors import IncompatibleRecord
 
 ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", ours="curve")
 

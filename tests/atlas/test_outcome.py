@@ -23,9 +23,9 @@ from suchus.atlas import (
     save_outcome,
 )
 from suchus.atlas.case import grids
-from suchus.errors import NotConverged, UnreadableFile, Unwritable
-from suchus.jobs import processes
-from suchus.progress import silent
+from suchus.core.errors import NotConverged, UnreadableFile, Unwritable
+from suchus.core.jobs import processes
+from suchus.core.progress import silent
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 
@@ -159,8 +159,8 @@ def test_a_flow_can_be_handed_to_another_process(name):
 
 def test_side_by_side_a_process_that_dies_takes_only_its_own_flow(tmp_path, monkeypatch):
     """Forked here: a process that starts afresh imports for some seconds."""
-    monkeypatch.setattr("suchus.jobs.processes.get_context", lambda kind: get_context("fork"))
-    monkeypatch.setattr("suchus.jobs.processes._PATIENCE", 0.5)  # forked ones hold each other's pipes open
+    monkeypatch.setattr("suchus.core.jobs.processes.get_context", lambda kind: get_context("fork"))
+    monkeypatch.setattr("suchus.core.jobs.processes._PATIENCE", 0.5)  # forked ones hold each other's pipes open
     cases = [case(), case("dies", dying_run)]
     came = compute_all(cases, tmp_path, jobs=2, quick=True)
     assert came["one"].curves["curve"][1, 1] == pytest.approx(2 / 3)

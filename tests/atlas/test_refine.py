@@ -7,7 +7,7 @@ import pytest
 
 from suchus import flow
 from suchus.atlas import refined
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 
 

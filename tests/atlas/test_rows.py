@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from suchus.atlas import CASES, GROUPS, LONGEST, ROWS, chosen, published
-from suchus.errors import UnknownName, UnreadableFile
+from suchus.core.errors import UnknownName, UnreadableFile
 
 
 def test_there_are_at_least_as_many_rows_as_were_asked_for():

@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.blueprint import MistakenFile, read, render, write
-from suchus.design import Robot, crocodile
-from suchus.errors import InvalidDesign, UnreadableFile
-from suchus.gaits import GAITS
-from suchus.motion import Gait
-from suchus.robots import ROBOTS
+from suchus.robot.blueprint import MistakenFile, read, render, write
+from suchus.robot.design import Robot, crocodile
+from suchus.core.errors import InvalidDesign, UnreadableFile
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 

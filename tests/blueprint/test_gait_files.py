@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.blueprint import MistakenFile, read_gait, write
-from suchus.errors import OutsideLimits, UnreadableFile
-from suchus.gaits import GAITS
-from suchus.motion import AxialWave, Bend, Curve, FootPath, Gait, GaitInMetres, Held, Sweep, cycle_targets
-from suchus.motion.forms import GaitByPlaces
-from suchus.robots import ROBOTS
+from suchus.robot.blueprint import MistakenFile, read_gait, write
+from suchus.core.errors import OutsideLimits, UnreadableFile
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import AxialWave, Bend, Curve, FootPath, Gait, GaitInMetres, Held, Sweep, cycle_targets
+from suchus.robot.motion.forms import GaitByPlaces
+from suchus.robot.robots import ROBOTS
 
 FROZEN = json.loads((Path(__file__).parent / "gait_files.json").read_text())
 """Files in the forms of before there was one, by whom they were for, and the servo angles that they gave then [rad]."""

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.bus import BROADCAST, FRAMINGS, Instruction, Packet
-from suchus.bus.dynamixel import crc
-from suchus.bus.feetech import checksum
+from suchus.hardware.bus import BROADCAST, FRAMINGS, Instruction, Packet
+from suchus.hardware.bus.dynamixel import crc
+from suchus.hardware.bus.feetech import checksum
 
 DYNAMIXEL, FEETECH, LINE = FRAMINGS["dynamixel"], FRAMINGS["feetech"], FRAMINGS["line"]
 PACKETS = st.builds(

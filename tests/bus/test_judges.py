@@ -5,7 +5,7 @@
 import pytest
 from tests.wires import emulated
 
-from suchus.bus import TABLES
+from suchus.hardware.bus import TABLES
 
 dynamixel = pytest.importorskip("dynamixel_sdk", reason="the maker's software, a judge only, is not installed")
 feetech = pytest.importorskip("scservo_sdk", reason="the maker's software, a judge only, is not installed")

@@ -4,7 +4,7 @@ from time import sleep
 
 import pytest
 
-from suchus.bus import FRAMINGS, Bus, Packet
+from suchus.hardware.bus import FRAMINGS, Bus, Packet
 
 FRAMING = FRAMINGS["dynamixel"]
 SERVOS, ADDRESS, LENGTH = (1, 2, 3), 126, 4

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from menagerie import Filmed, apart, built, truth
 
-from suchus.capture import Camera, Tracks, UnusableTracks, film_animal, observe
+from suchus.animals.capture import Camera, Tracks, UnusableTracks, film_animal, observe
 
 PIXELS = 1000.0
 """Pixels per metre of the films."""

@@ -2,10 +2,10 @@ from functools import cache
 
 import pytest
 
-from suchus.capture import Camera, SyntheticAnimal, film_animal, observe
-from suchus.gaits import GAITS
-from suchus.land import crawl as let_crawl
-from suchus.robots import ROBOTS
+from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, observe
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import crawl as let_crawl
+from suchus.robot.robots import ROBOTS
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from typing import Any
 
 from menagerie import AILMENTS, ailing, counted, read
 
-from suchus.record import code_digest
+from suchus.core.files import code_digest
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))

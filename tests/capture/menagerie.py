@@ -5,9 +5,9 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from suchus.capture import Camera, SyntheticAnimal, Tracks, UnusableTracks, film_animal, observe
-from suchus.capture.animal import Swing
-from suchus.design import LEGS
+from suchus.animals.capture import Camera, SyntheticAnimal, Tracks, UnusableTracks, film_animal, observe
+from suchus.animals.capture.animal import Swing
+from suchus.robot.design import LEGS
 
 AILMENTS = (
     "a foot hidden in the same 20 to 30 % of every cycle",

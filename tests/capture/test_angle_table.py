@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from suchus.capture import read_angles
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.animals.capture import read_angles
+from suchus.core.errors import InvalidDesign, UnreadableFile
 
 PHASE = np.arange(100) / 100
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from suchus.capture import Camera
-from suchus.capture.angles import bend_angles
-from suchus.capture.film import keypoints, tracked
-from suchus.capture.retarget import driven_share
-from suchus.design import joint_names
-from suchus.paper import BendAngles, to_joint_sums
+from suchus.animals.capture import Camera
+from suchus.animals.capture.angles import bend_angles
+from suchus.animals.capture.film import keypoints, tracked
+from suchus.animals.capture.retarget import driven_share
+from suchus.robot.design import joint_names
+from suchus.article.paper import BendAngles, to_joint_sums
 
 
 def posed(robot, crawl, bends):

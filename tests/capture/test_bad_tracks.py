@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.capture import UnusableTracks, film, film_animal, observe, to_gait
-from suchus.capture.tracks import renamed
-from suchus.gaits import GAITS
+from suchus.animals.capture import UnusableTracks, film, film_animal, observe, to_gait
+from suchus.animals.capture.tracks import renamed
+from suchus.robot.gaits import GAITS
 
 
 @pytest.fixture(scope="module")

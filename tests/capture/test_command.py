@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from suchus import blueprint
-from suchus.capture import Tracks, film, film_animal, write_table
-from suchus.cli import main
-from suchus.gaits import GAITS
-from suchus.motion import Gait
+from suchus.robot import blueprint
+from suchus.animals.capture import Tracks, film, film_animal, write_table
+from suchus.apps.cli import main
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from suchus.capture.cycle import find_period, fit
-from suchus.capture.tracks import UnusableTracks
+from suchus.animals.capture.cycle import find_period, fit
+from suchus.animals.capture.tracks import UnusableTracks
 
 TIME = np.arange(0.0, 5.0, 0.02)
 

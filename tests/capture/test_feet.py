@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.capture import film_animal
-from suchus.capture.feet import GRID, FootContact, contact, grid, path_shape, sweep
-from suchus.capture.swings import Swing
-from suchus.motion.limbs import foot_path
+from suchus.animals.capture import film_animal
+from suchus.animals.capture.feet import GRID, FootContact, contact, grid, path_shape, sweep
+from suchus.animals.capture.swings import Swing
+from suchus.robot.motion.limbs import foot_path
 
 
 @pytest.mark.parametrize("duty", [0.4, 0.5, 0.7])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.capture import ReadingOptions, UnusableTracks, film_animal, observe, read_tracks, write_table
-from suchus.capture.markers import upright
-from suchus.errors import SuchusError, UnknownName, UnreadableFile
+from suchus.animals.capture import ReadingOptions, UnusableTracks, film_animal, observe, read_tracks, write_table
+from suchus.animals.capture.markers import upright
+from suchus.core.errors import SuchusError, UnknownName, UnreadableFile
 
 HEAD = "time [s],hip_x [mm],hip_y [mm]\n"
 

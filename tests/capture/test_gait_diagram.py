@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from suchus.errors import InvalidDesign
-from suchus.figures import save
-from suchus.figures.gait_diagram import GaitTrack, bend_sign, gait_diagram, stretches
+from suchus.core.errors import InvalidDesign
+from suchus.visual.figures import save
+from suchus.visual.figures.gait_diagram import GaitTrack, bend_sign, gait_diagram, stretches
 
 TIME = np.linspace(0.0, 8.0, 401)
 

@@ -7,7 +7,7 @@ import pytest
 from menagerie import AILMENTS, ailing, counted
 from scipy.stats import binom
 
-from suchus.design import LEGS
+from suchus.robot.design import LEGS
 
 
 def binomial(found):

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus import blueprint
-from suchus.capture import driven_share, film_animal, observe, to_gait, write_table
-from suchus.cli import main
-from suchus.design import hips_ahead, layout
-from suchus.errors import OutsideLimits, UnsuitedRobot
-from suchus.gaits import GAITS, own_gait
-from suchus.motion import Gait, Held, check_limits, cycle_targets
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.animals.capture import driven_share, film_animal, observe, to_gait, write_table
+from suchus.apps.cli import main
+from suchus.robot.design import hips_ahead, layout
+from suchus.core.errors import OutsideLimits, UnsuitedRobot
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import Gait, Held, check_limits, cycle_targets
+from suchus.robot.robots import ROBOTS
 
 CLOCK = np.arange(256) / 256
 

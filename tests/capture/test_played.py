@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.capture import read_angles, to_curves
-from suchus.design import layout
-from suchus.errors import OutsideLimits, UnknownName
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
+from suchus.animals.capture import read_angles, to_curves
+from suchus.robot.design import layout
+from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
 TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
 """Karakasiliotis et al. 2013, Biol. Cybern. 107, 529, as processed in AlexPazzaglia/SalamandraSNN (MIT)."""

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.capture import standing_index
+from suchus.animals.capture import standing_index
 
 # first harmonics of the joints of Pleurobot's published salamander kinematics: amplitudes and phases [deg]
 WALK = (

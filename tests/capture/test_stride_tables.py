@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from suchus.capture import (
+from suchus.animals.capture import (
     Camera,
     ReadingOptions,
     SyntheticAnimal,
@@ -21,12 +21,12 @@ from suchus.capture import (
     to_gait,
     write_table,
 )
-from suchus.cli import main
-from suchus.design import LEGS
-from suchus.errors import UnreadableFile
-from suchus.figures.overlay import overlay
-from suchus.gaits import GAITS
-from suchus.record import load
+from suchus.apps.cli import main
+from suchus.robot.design import LEGS
+from suchus.core.errors import UnreadableFile
+from suchus.animals.overlay import overlay
+from suchus.robot.gaits import GAITS
+from suchus.core.files import load
 
 TURN = 0.06  # [rad per cycle]
 

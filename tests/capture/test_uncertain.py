@@ -8,9 +8,9 @@ import pytest
 from menagerie import apart, drawn, held, hidden, jumping, truth
 from scipy.stats import binom
 
-from suchus.capture import Camera, UnusableTracks, film_animal, observe, summary, to_gait
-from suchus.design import LEGS
-from suchus.gaits import GAITS
+from suchus.animals.capture import Camera, UnusableTracks, film_animal, observe, summary, to_gait
+from suchus.robot.design import LEGS
+from suchus.robot.gaits import GAITS
 
 DUTY = 0.68
 

@@ -7,11 +7,11 @@ import pytest
 from changed import changes, delayed, put, shaken, swapped, told, walker
 from menagerie import built
 
-from suchus.capture import Camera, Tracks, UnusableTracks, film_animal, observe
-from suchus.capture.late import late
-from suchus.capture.screen import screened
-from suchus.capture.swings import Clock
-from suchus.capture.walk import _timed
+from suchus.animals.capture import Camera, Tracks, UnusableTracks, film_animal, observe
+from suchus.animals.capture.late import late
+from suchus.animals.capture.screen import screened
+from suchus.animals.capture.swings import Clock
+from suchus.animals.capture.walk import _timed
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,13 @@ from pathlib import Path
 
 import pytest
 
-import suchus.experiments
-from suchus.verdict import RULES
+import suchus.experiments.catalog
+from suchus.experiments.claims import RULES
 
 FAKES = Path(__file__).parent / "fake_shelf"
 BROKEN = '''"""Does it break?"""
 from dataclasses import dataclass
-import suchus.experiments.wave as wave
+import suchus.experiments.catalog.wave as wave
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Broken(wave.Wave):
@@ -25,13 +25,13 @@ experiment = Broken()
 @pytest.fixture
 def fakes(monkeypatch):
     """Only the fake experiment stands on the shelf; rules that were read from it meanwhile are forgotten."""
-    path = suchus.experiments.__path__  # the import system holds the same list, so it is changed in place
+    path = suchus.experiments.catalog.__path__  # the import system holds the same list, so it is changed in place
     real = list(path)
     path[:] = [str(FAKES)]
     yield
     path[:] = real
     vars(RULES).pop("_by_claim", None)
-    for name in [n for n in sys.modules if n in ("suchus.experiments.wave", "suchus.experiments.broken")]:
+    for name in [n for n in sys.modules if n in ("suchus.experiments.catalog.wave", "suchus.experiments.catalog.broken")]:
         monkeypatch.delitem(sys.modules, name)
 
 
@@ -41,4 +41,4 @@ def broken(fakes, tmp_path):
     shelf = tmp_path / "broken_shelf"
     shelf.mkdir()
     (shelf / "broken.py").write_text(BROKEN)
-    suchus.experiments.__path__.append(str(shelf))
+    suchus.experiments.catalog.__path__.append(str(shelf))

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.cli.entry import main
-from suchus.cli.run import Performed, show_outcome
-from suchus.experiment import Measure, estimated
-from suchus.experiments import EXPERIMENTS
-from suchus.report import answer, carried, quantity
-from suchus.report.outcome_page import MOST
+from suchus.apps.cli.entry import main
+from suchus.apps.cli.run import Performed, show_outcome
+from suchus.experiments.experiment import Measure, estimated
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.apps.report import answer, carried, quantity
+from suchus.apps.report.outcome_page import MOST
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from suchus import blueprint
-from suchus.cli import main
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.apps.cli import main
+from suchus.robot.robots import ROBOTS
 
 BODY = blueprint.render(replace(ROBOTS["caiman"]))  # part by part: a replaced robot is none of the tables
 STRIDER = blueprint.render(ROBOTS["strider"])

@@ -9,23 +9,23 @@ from pathlib import Path
 
 import pytest
 
-import suchus.experiments
-from suchus import blueprint
-from suchus.cli import main
-from suchus.cli.entry import COMMANDS
-from suchus.gaits import GAITS
-from suchus.motion import Gait
-from suchus.record import load
-from suchus.robots import ROBOTS
-from suchus.writing import MANIFEST
+import suchus.experiments.catalog
+from suchus.robot import blueprint
+from suchus.apps.cli import main
+from suchus.apps.cli.entry import COMMANDS
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
+from suchus.core.files import load
+from suchus.robot.robots import ROBOTS
+from suchus.core.writing import MANIFEST
 
 pytestmark = pytest.mark.usefixtures("fakes")
 FAKES = Path(__file__).parent / "fake_shelf"
 DRIVER = f"""
-import signal, sys, suchus.experiments
+import signal, sys, suchus.experiments.catalog
 signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests' own shell ignores it
-suchus.experiments.__path__ = [{str(FAKES)!r}]
-from suchus.cli import main
+suchus.experiments.catalog.__path__ = [{str(FAKES)!r}]
+from suchus.apps.cli import main
 sys.exit(main())
 """
 
@@ -171,7 +171,7 @@ def test_reproduce_ends_with_the_path_of_the_page(capsys, tmp_path):
 
 @pytest.mark.usefixtures("broken")
 def test_reproduce_leaves_out_what_does_not_reproduce_the_article(capsys, tmp_path, monkeypatch):
-    monkeypatch.setattr(type(suchus.experiments.EXPERIMENTS["broken"]), "reproduces", False)
+    monkeypatch.setattr(type(suchus.experiments.catalog.EXPERIMENTS["broken"]), "reproduces", False)
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
     assert "broken" not in (tmp_path / "report.html").read_text()
     assert capsys.readouterr().err.count("wave") == 1
@@ -221,7 +221,7 @@ def test_ctrl_c_while_saving_keeps_the_earlier_result(tmp_path, monkeypatch, cap
     def stopped(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("suchus.record.save", stopped)
+    monkeypatch.setattr("suchus.core.files.save", stopped)
     assert main(["run", "wave", "--out", str(tmp_path)]) == 130
     assert "stopped" in capsys.readouterr().err
     assert [f.name for f in tmp_path.iterdir()] == ["wave"]
@@ -232,9 +232,9 @@ def test_ctrl_c_while_saving_keeps_the_earlier_result(tmp_path, monkeypatch, cap
     ("code", "unwanted"),
     [
         ("import suchus", {"numpy", "mujoco", "matplotlib", "xarray", "numba", "scipy", "tyro", "pydantic"}),
-        ("from suchus.cli import main; main(['--help'])", {"numpy", "mujoco", "matplotlib", "xarray", "tyro"}),
-        ("from suchus.cli import main; main(['list'])", {"numpy", "mujoco", "matplotlib", "xarray", "scipy"}),
-        ("import suchus.metrics", {"scipy.stats", "matplotlib", "mujoco"}),
+        ("from suchus.apps.cli import main; main(['--help'])", {"numpy", "mujoco", "matplotlib", "xarray", "tyro"}),
+        ("from suchus.apps.cli import main; main(['list'])", {"numpy", "mujoco", "matplotlib", "xarray", "scipy"}),
+        ("import suchus.sim.metrics", {"scipy.stats", "matplotlib", "mujoco"}),
     ],
 )
 def test_light_commands_load_nothing_heavy(code, unwanted):

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from suchus.cli import main
-from suchus.report import compare, load_result, render_comparison
+from suchus.apps.cli import main
+from suchus.apps.report import compare, load_result, render_comparison
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"></svg>'
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 STUDY = """name = "small"
 robot = "caiman"

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from suchus.cli import demo, doctor, main
-from suchus.land import simulate
+from suchus.apps.cli import demo, doctor, main
+from suchus.sim.land import simulate
 
 
 class Browser(webbrowser.BaseBrowser):
@@ -63,7 +63,7 @@ def test_without_the_extra_the_page_is_opened_and_the_extra_is_named(short, caps
 
 @pytest.mark.filterwarnings("default")  # viser's threads outlive its server for a moment
 def test_with_a_browser_the_walk_is_live(short, capsys, opener, monkeypatch):
-    pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+    pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
 
     def interrupted(viewer):
         raise KeyboardInterrupt

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from suchus.cli import doctor, main
-from suchus.cli.doctor import Finding, Trial
+from suchus.apps.cli import doctor, main
+from suchus.apps.cli.doctor import Finding, Trial
 
 REQUIRES = ("numpy>=2.2,<3", "mujoco>=3.17,<5", 'viser>=1.1,<2; extra == "viewer"', 'mjviser; extra == "viewer"')
 WALKED = Trial(found={"seconds": 0.4, "finite": True})

@@ -6,12 +6,12 @@ import sys
 import pytest
 
 HEAVY = {
-    "numpy", "scipy", "mujoco", "numba", "matplotlib", "xarray", "pandas", "tyro", "suchus.land", "suchus.control",
-    "suchus.faults", "suchus.design", "suchus.figures", "suchus.flow",
+    "numpy", "scipy", "mujoco", "numba", "matplotlib", "xarray", "pandas", "tyro", "suchus.sim.land", "suchus.robot.control",
+    "suchus.sim.faults", "suchus.robot.design", "suchus.visual.figures", "suchus.flow",
 }  # fmt: skip
 LOADED = """
 import sys
-from suchus.cli import main
+from suchus.apps.cli import main
 code = main(sys.argv[1:])
 print(code, *(name for name in sys.modules))
 """
@@ -66,7 +66,7 @@ def test_nothing_large_is_loaded_to_refuse(words, tmp_path):
 def test_what_is_right_goes_on_to_the_command(tmp_path):
     """The test of the test: these libraries are loaded where nothing is wrong."""
     done = run_command("export --robot caiman --format nothing", tmp_path)
-    assert {"numpy", "mujoco", "suchus.design"} <= {*done.stdout.split()}
+    assert {"numpy", "mujoco", "suchus.robot.design"} <= {*done.stdout.split()}
     assert "there is no format named 'nothing'" in done.stderr
 
 

@@ -22,16 +22,16 @@ from tests.league.toys import stone
 from tests.model.hinge_trees import quadruped
 from tests.wires import Obedient, wiring
 
-from suchus.cli import calibrate, demo, drive, main, view
-from suchus.cli.entry import COMMANDS
-from suchus.emulator import Emulator, MemoryPort
-from suchus.gaits import GAITS
+from suchus.apps.cli import calibrate, demo, drive, main, view
+from suchus.apps.cli.entry import COMMANDS
+from suchus.hardware.emulator import Emulator, MemoryPort
+from suchus.robot.gaits import GAITS
 from suchus.hardware import Rig, straight, write_map, write_wiring
-from suchus.land import Run, simulate
+from suchus.sim.land import Run, simulate
 from suchus.league import SingleContestant
-from suchus.record import load, save
-from suchus.robots import ROBOTS
-from suchus.writing import MANIFEST
+from suchus.core.files import load, save
+from suchus.robot.robots import ROBOTS
+from suchus.core.writing import MANIFEST
 
 SLOW = "commands are repeated with each of their places taken"
 MOST = 12
@@ -69,7 +69,7 @@ def emulated(patch):
 
 
 def toys(patch):
-    patch.setattr("suchus.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
+    patch.setattr("suchus.apps.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
 
 
 CASES = {

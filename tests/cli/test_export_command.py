@@ -2,8 +2,8 @@ import sys
 
 import pytest
 
-from suchus.cli import main
-from suchus.model.export import MARK
+from suchus.apps.cli import main
+from suchus.sim.model.export import MARK
 
 
 def test_export_writes_a_folder_named_after_robot_and_format(tmp_path, monkeypatch, capsys):

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from suchus.cli import main
+from suchus.apps.cli import main
 from suchus.hardware import read_map, straight
-from suchus.robots import ROBOTS
+from suchus.robot.robots import ROBOTS
 
 
 @pytest.fixture(autouse=True)

@@ -9,15 +9,15 @@ import pytest
 from tests.failing import each_failing
 from tests.swims import crocodile_swim
 
-from suchus.capture import Camera, film_animal
-from suchus.cli import main
-from suchus.errors import SuchusError
-from suchus.progress import silent
-from suchus.record import save
-from suchus.report import OUTCOME, PAGE
-from suchus.robots import ROBOTS
-from suchus.water.resolved import SwimSetting, resolved_swim
-from suchus.writing import MANIFEST
+from suchus.animals.capture import Camera, film_animal
+from suchus.apps.cli import main
+from suchus.core.errors import SuchusError
+from suchus.core.progress import silent
+from suchus.core.files import save
+from suchus.apps.report import OUTCOME, PAGE
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.core.writing import MANIFEST
 
 sys.path[:0] = [str(Path(__file__).parents[1] / room) for room in ("model", "capture")]
 from hinge_trees import quadruped  # noqa: E402

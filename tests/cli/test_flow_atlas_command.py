@@ -1,6 +1,6 @@
 import pytest
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 
 @pytest.fixture(autouse=True)

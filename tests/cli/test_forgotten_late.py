@@ -6,14 +6,14 @@ from dataclasses import fields, replace
 
 import pytest
 
-from suchus.cli.run import perform
-from suchus.errors import Unwritable
-from suchus.experiment import CONDUCT, silent
-from suchus.experiments import EXPERIMENTS
-from suchus.record.provenance import digest
-from suchus.robots import ROBOTS
+from suchus.apps.cli.run import perform
+from suchus.core.errors import Unwritable
+from suchus.experiments.experiment import CONDUCT, silent
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.core.files.provenance import digest
+from suchus.robot.robots import ROBOTS
 
-run = sys.modules["suchus.cli.run"]
+run = sys.modules["suchus.apps.cli.run"]
 
 
 @pytest.mark.usefixtures("fakes")

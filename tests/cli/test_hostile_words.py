@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 BIG = "1" * 5000
 BAD = {

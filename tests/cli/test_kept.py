@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from suchus.cli import main
-from suchus.cli.reproduce import Reproduction, attempt, kept
-from suchus.experiment import silent
-from suchus.experiments import EXPERIMENTS
-from suchus.report import Result
+from suchus.apps.cli import main
+from suchus.apps.cli.reproduce import Reproduction, attempt, kept
+from suchus.experiments.experiment import silent
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.apps.report import Result
 
-origin = sys.modules["suchus.record.provenance"]
+origin = sys.modules["suchus.core.files.provenance"]
 
 
 @pytest.fixture(scope="module")

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from suchus import blueprint
-from suchus.cli import main, view
-from suchus.cli.options import choose
-from suchus.errors import UnknownName, UnreadableFile
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS, gait_of, own_gait
-from suchus.land import Run
-from suchus.optimise.spec import read_optimisation
-from suchus.robots import ROBOTS
-from suchus.study.page import read_study
+from suchus.robot import blueprint
+from suchus.apps.cli import main, view
+from suchus.apps.cli.options import choose
+from suchus.core.errors import UnknownName, UnreadableFile
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS, gait_of, own_gait
+from suchus.sim.land import Run
+from suchus.experiments.optimise.spec import read_optimisation
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study.page import read_study
 
 STRIDER, TRIPOD = ROBOTS["strider"], GAITS["tripod"]
 STUDY = """
@@ -83,7 +83,7 @@ def test_studies_and_searches_take_files_and_else_the_robots_own_gait(here, read
 
 def test_tasks_take_files(here):
     pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
-    from suchus.envs.shelf import TASKS, chosen  # noqa: PLC0415
+    from suchus.apps.envs.shelf import TASKS, chosen  # noqa: PLC0415
 
     task = chosen("Crawl", {"robot": "mine.toml", "gait": "mine_walk.toml"})
     assert task == TASKS["Crawl"].on(replace(STRIDER, name="mine"), replace(TRIPOD, name="mine_walk", period=1.1))

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from suchus.cli import main
-from suchus.cli.options import choose
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
+from suchus.apps.cli import main
+from suchus.apps.cli.options import choose
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "robots_from_files.md").read_text()
 

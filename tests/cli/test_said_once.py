@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from suchus.cli.run import perform
-from suchus.errors import Doubtful, plain_warnings
-from suchus.experiment import silent
-from suchus.experiments import EXPERIMENTS
+from suchus.apps.cli.run import perform
+from suchus.core.errors import Doubtful, plain_warnings
+from suchus.experiments.experiment import silent
+from suchus.experiments.catalog import EXPERIMENTS
 
 pytestmark = pytest.mark.filterwarnings("always")
 

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import pytest
 
-from suchus.cli import main
-from suchus.report import PAGE
-from suchus.stopping import CUT
-from suchus.writing import MANIFEST
+from suchus.apps.cli import main
+from suchus.apps.report import PAGE
+from suchus.core.stopping import CUT
+from suchus.core.writing import MANIFEST
 
 FAKES = Path(__file__).parent / "fake_shelf"
 
 CRASHING = '''"""Does it crash?"""
 import os
 from dataclasses import dataclass
-import suchus.experiments.wave as wave
+import suchus.experiments.catalog.wave as wave
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Crashing(wave.Wave):
@@ -38,8 +38,8 @@ SLOW = '''"""Is it slow?"""
 import os, time
 from dataclasses import dataclass, replace
 from pathlib import Path
-import suchus.experiments.wave as wave
-from suchus.experiment import Replay
+import suchus.experiments.catalog.wave as wave
+from suchus.experiments.experiment import Replay
 
 def dawdle():
     Path(os.environ["STARTED"]).write_text(str(os.getpid()))
@@ -55,10 +55,10 @@ class Slow(wave.Wave):
 experiment = Slow()
 '''
 DRIVER = """
-import signal, sys, suchus.experiments
+import signal, sys, suchus.experiments.catalog
 signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests' own shell ignores it
-suchus.experiments.__path__ = sys.argv.pop(1).split(":")
-from suchus.cli import main
+suchus.experiments.catalog.__path__ = sys.argv.pop(1).split(":")
+from suchus.apps.cli import main
 sys.exit(main())
 """
 

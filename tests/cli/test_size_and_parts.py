@@ -6,16 +6,16 @@ from math import inf, nan
 
 import pytest
 
-from suchus.blueprint import read
-from suchus.cli import main
-from suchus.design import Robot, layout
-from suchus.gaits import GAITS
+from suchus.robot.blueprint import read
+from suchus.apps.cli import main
+from suchus.robot.design import Robot, layout
+from suchus.robot.gaits import GAITS
 from suchus.hardware import cases
 from suchus.hardware.loads import ServoLoad
 from suchus.hardware.sizing import Sizing
-from suchus.motors import motors
-from suchus.report.size_page import answer
-from suchus.robots import ROBOTS
+from suchus.robot.motors import motors
+from suchus.apps.report.size_page import answer
+from suchus.robot.robots import ROBOTS
 
 
 @pytest.fixture(autouse=True)

@@ -8,14 +8,14 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
-from suchus.control import Amphibious, HeadingHold, HeadingRule, Sensed, Swimming
-from suchus.control.holding import DepthHold
-from suchus.design import layout
-from suchus.errors import InvalidDesign
-from suchus.gaits import GAITS
-from suchus.land import Lake, Run, simulate
-from suchus.motion import LIMBS_UP, START
-from suchus.robots import ROBOTS
+from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Sensed, Swimming
+from suchus.robot.control.holding import DepthHold
+from suchus.robot.design import layout
+from suchus.core.errors import InvalidDesign
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, Run, simulate
+from suchus.robot.motion import LIMBS_UP, START
+from suchus.robot.robots import ROBOTS
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 WAVE = crocodile_swim(limbs=LIMBS_UP)

@@ -8,14 +8,14 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
-from suchus.control import DepthHold, HeadingHold, Swimming
-from suchus.control.holding import Depths, Headings, neutral_air_fraction
-from suchus.design import WATER_DENSITY
-from suchus.design.pieces import volumes
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.land import Lake, Run, simulate
-from suchus.robots import ROBOTS
-from suchus.rotation import about
+from suchus.robot.control import DepthHold, HeadingHold, Swimming
+from suchus.robot.control.holding import Depths, Headings, neutral_air_fraction
+from suchus.robot.design import WATER_DENSITY
+from suchus.robot.design.pieces import volumes
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.sim.land import Lake, Run, simulate
+from suchus.robot.robots import ROBOTS
+from suchus.core.rotation import about
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 WAVE = crocodile_swim()

@@ -3,11 +3,11 @@ import pytest
 from tests.metres import limb_phase
 from tests.start_batch import start_batch
 
-from suchus.control import Control, OpenLoop
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.gaits import own_gait
-from suchus.motion import as_table, cycle_targets, intended
-from suchus.robots import ROBOTS
+from suchus.robot.control import Control, OpenLoop
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.gaits import own_gait
+from suchus.robot.motion import as_table, cycle_targets, intended
+from suchus.robot.robots import ROBOTS
 
 
 def test_the_table_is_the_gait_at_every_tick(robot, crawl_gait, limbs_gait):

@@ -8,19 +8,19 @@ from hypothesis import strategies as st
 from tests.felt import felt
 from tests.start_batch import start_batch
 
-from suchus.capture.angles import standing_index
-from suchus.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
-from suchus.control import oscillate as turned
-from suchus.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
-from suchus.control.pattern_posture import axis_segments
-from suchus.design import layout, servo_ranges
-from suchus.design.scale import control_period
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.metrics import displacement
-from suchus.motion import START, middle_stance
-from suchus.robots import ROBOTS
+from suchus.animals.capture.angles import standing_index
+from suchus.robot.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
+from suchus.robot.control import oscillate as turned
+from suchus.robot.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
+from suchus.robot.control.pattern_posture import axis_segments
+from suchus.robot.design import layout, servo_ranges
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement
+from suchus.robot.motion import START, middle_stance
+from suchus.robot.robots import ROBOTS
 
 WALKERS = {
     "caiman": "belly_crawl",

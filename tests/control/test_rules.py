@@ -9,18 +9,18 @@ from tests.felt import felt as feels
 from tests.metres import limb_phase, placed, tail_bend, trunk_bend, with_metres
 from tests.start_batch import start_batch
 
-from suchus.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
-from suchus.control.limbs import GRAVITY, Limbs
-from suchus.control.shared import silence
-from suchus.control.spine import SpineController
-from suchus.control.tail import TailController
-from suchus.design import layout
-from suchus.design.scale import control_period
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.gaits import GAITS, own_gait
-from suchus.land import Run, simulate
-from suchus.motion import START, Batch, cycle_targets
-from suchus.robots import ROBOTS
+from suchus.robot.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
+from suchus.robot.control.limbs import GRAVITY, Limbs
+from suchus.robot.control.shared import silence
+from suchus.robot.control.spine import SpineController
+from suchus.robot.control.tail import TailController
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Run, simulate
+from suchus.robot.motion import START, Batch, cycle_targets
+from suchus.robot.robots import ROBOTS
 
 TRUNK_YAW = list(layout(ROBOTS["caiman"]).trunk_yaw)
 (PITCH,) = layout(ROBOTS["caiman"]).tail_pitch

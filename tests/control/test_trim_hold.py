@@ -10,15 +10,15 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
-from suchus import rotation
-from suchus.control import DepthHold, PitchHold, Sensed, Swimming
-from suchus.control.holding import neutral_air_fraction
-from suchus.control.trim import Pitches
-from suchus.design.pieces import chambers
-from suchus.errors import InvalidDesign
-from suchus.land import Lake, Run, simulate
-from suchus.robots import ROBOTS
-from suchus.rotation import about
+from suchus.core import rotation
+from suchus.robot.control import DepthHold, PitchHold, Sensed, Swimming
+from suchus.robot.control.holding import neutral_air_fraction
+from suchus.robot.control.trim import Pitches
+from suchus.robot.design.pieces import chambers
+from suchus.core.errors import InvalidDesign
+from suchus.sim.land import Lake, Run, simulate
+from suchus.robot.robots import ROBOTS
+from suchus.core.rotation import about
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 IN_FOAM = replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))

@@ -10,24 +10,24 @@ from scipy.linalg import eigh
 
 import suchus
 from body_files import eight, giant, hatchling, six
-from suchus.control import Swimming
-from suchus.control.holding import HeadingHold
-from suchus.coupling import Swim, check_on_joints, simulate
-from suchus.coupling import swim as coupled
-from suchus.coupling.chain import MidlineChain
-from suchus.coupling.on_joints import floating
-from suchus.design.scale import scaled
-from suchus.errors import Diverged, Doubtful, InvalidDesign, UnknownName, UnreadableFile
-from suchus.fingerprint import fingerprint
-from suchus.land import Ground, Lake, Push, Run
-from suchus.land.stepper import Stepper
-from suchus.land.waters import Sections, Slice, Space
-from suchus.motion import roll
-from suchus.progress import silent
-from suchus.record import COUPLED, WATER
-from suchus.water import Outline, swim_of
-from suchus.water.resolved import check_resolved_swim
-from suchus.water.setting import SwimSetting
+from suchus.robot.control import Swimming
+from suchus.robot.control.holding import HeadingHold
+from suchus.swim.coupling import Swim, check_on_joints, simulate
+from suchus.swim.coupling import swim as coupled
+from suchus.swim.coupling.chain import MidlineChain
+from suchus.swim.coupling.on_joints import floating
+from suchus.robot.design.scale import scaled
+from suchus.core.errors import Diverged, Doubtful, InvalidDesign, UnknownName, UnreadableFile
+from suchus.core.fingerprint import fingerprint
+from suchus.sim.land import Ground, Lake, Push, Run
+from suchus.sim.land.stepper import Stepper
+from suchus.sim.land.waters import Sections, Slice, Space
+from suchus.robot.motion import roll
+from suchus.core.progress import silent
+from suchus.sim.record import COUPLED, WATER
+from suchus.swim.water import Outline, swim_of
+from suchus.swim.water.resolved import check_resolved_swim
+from suchus.swim.water.setting import SwimSetting
 
 SLICE = Slice(cells=64, reynolds=1500.0)
 

@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus import blueprint
-from suchus.blueprint import MistakenFile, read_correction
-from suchus.control import Swimming
-from suchus.coupling.earned import ForceParts, judged, judgement_text
-from suchus.design import LinkFactors, SectionCorrection, with_values
-from suchus.errors import InvalidDesign
-from suchus.land import Lake, Run, simulate
-from suchus.land.lake import lake_text
-from suchus.land.prescribed import link_bodies, sections_along
-from suchus.motion.axis import yaw_hinges
-from suchus.robots import ROBOTS
-from suchus.water import swim_of
+from suchus.robot import blueprint
+from suchus.robot.blueprint import MistakenFile, read_correction
+from suchus.robot.control import Swimming
+from suchus.swim.coupling.earned import ForceParts, judged, judgement_text
+from suchus.robot.design import LinkFactors, SectionCorrection, with_values
+from suchus.core.errors import InvalidDesign
+from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.land.lake import lake_text
+from suchus.sim.land.prescribed import link_bodies, sections_along
+from suchus.robot.motion.axis import yaw_hinges
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import swim_of
 
 TIME = np.arange(600) / 100.0
 

@@ -6,24 +6,25 @@ import numpy as np
 import pytest
 
 from body_files import eight, hatchling, rigid
-from suchus import flow, rotation
-from suchus.control import OpenLoop, Swimming
-from suchus.coupling import Swim, simulate
-from suchus.coupling.chain import ChainState
-from suchus.coupling.linked import LinkChain
-from suchus.coupling.on_joints import floating
-from suchus.design.pieces import volumes
-from suchus.errors import InvalidDesign
+from suchus import flow
+from suchus.core import rotation
+from suchus.robot.control import OpenLoop, Swimming
+from suchus.swim.coupling import Swim, simulate
+from suchus.swim.coupling.chain import ChainState
+from suchus.swim.coupling.linked import LinkChain
+from suchus.swim.coupling.on_joints import floating
+from suchus.robot.design.pieces import volumes
+from suchus.core.errors import InvalidDesign
 from suchus.flow.momentum import Reaction
-from suchus.gaits import own_gait
-from suchus.land import Run
-from suchus.land.links import RobotLinks
-from suchus.land.waters import Slice, Space
-from suchus.model import compile_model
-from suchus.motion import Curve, Gait
-from suchus.progress import silent
-from suchus.robots import ROBOTS
-from suchus.water import swim_of
+from suchus.robot.gaits import own_gait
+from suchus.sim.land import Run
+from suchus.sim.land.links import RobotLinks
+from suchus.sim.land.waters import Slice, Space
+from suchus.sim.model import compile_model
+from suchus.robot.motion import Curve, Gait
+from suchus.core.progress import silent
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import swim_of
 
 BODIES = ("floating_caiman", "swimmer", "strider", eight, hatchling)
 ORIGIN, ABOUT = np.array([0.1, -0.3, 0.05]), np.array([0.4, 0.2, -0.1])

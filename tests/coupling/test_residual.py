@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.coupling.residual import _between_joints, _row, r2
-from suchus.design import with_values
-from suchus.land import Lake
-from suchus.land.prescribed import sections_along
-from suchus.motion.axis import yaw_hinges
-from suchus.robots import ROBOTS
+from suchus.swim.coupling.residual import _between_joints, _row, r2
+from suchus.robot.design import with_values
+from suchus.sim.land import Lake
+from suchus.sim.land.prescribed import sections_along
+from suchus.robot.motion.axis import yaw_hinges
+from suchus.robot.robots import ROBOTS
 
 TIME = np.arange(400) / 100.0
 ALL = np.ones(400, bool)

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus import blueprint
-from suchus.design import (
+from suchus.robot import blueprint
+from suchus.robot.design import (
     Cable,
     Hinge,
     Inertia,
@@ -21,11 +21,11 @@ from suchus.design import (
     servo_names,
     servo_ranges,
 )
-from suchus.design.body import servos_of
-from suchus.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
-from suchus.errors import InvalidDesign, UnknownName, UnsuitedRobot
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
+from suchus.robot.design.body import servos_of
+from suchus.robot.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
+from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
 CAIMAN, SALAMANDER, STRIDER = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["strider"]
 BODY = CAIMAN

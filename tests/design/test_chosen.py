@@ -1,9 +1,9 @@
 import pytest
 
-from suchus.design import value_at, with_values
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.gaits import CONDITIONS, GAITS
-from suchus.robots import ROBOTS
+from suchus.robot.design import value_at, with_values
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.gaits import CONDITIONS, GAITS
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 OTHERS = ("limbs_only", "limbs_tail_lifted", "spine_only", "tail_drag")

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus import blueprint
-from suchus.blueprint import MistakenFile
-from suchus.bus import BusPlace
-from suchus.bus import straight as wired
-from suchus.design import (
+from suchus.robot import blueprint
+from suchus.robot.blueprint import MistakenFile
+from suchus.hardware.bus import BusPlace
+from suchus.hardware.bus import straight as wired
+from suchus.robot.design import (
     LinearActuator,
     Robot,
     crocodile,
@@ -24,22 +24,22 @@ from suchus.design import (
     with_named_servos,
     with_servos,
 )
-from suchus.design.scale import scaled
-from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.experiments.tail_bending import figure as pictures
-from suchus.experiments.tail_bending.experiment import TailBending, _cords
-from suchus.gaits import GAITS
+from suchus.robot.design.scale import scaled
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.experiments.catalog.tail_bending import figure as pictures
+from suchus.experiments.catalog.tail_bending.experiment import TailBending, _cords
+from suchus.robot.gaits import GAITS
 from suchus.hardware import check_commands, commands, csv_text, ros, straight
 from suchus.hardware.limits import overloaded
 from suchus.hardware.loads import ServoLoad
 from suchus.hardware.parts import sheet
 from suchus.hardware.sizing import places
-from suchus.kinematics.tail import bend_of_servo, servo_angle
-from suchus.land import Run, simulate
-from suchus.model.export.folder import _mjcf
-from suchus.model.export.urdf import unsaid
-from suchus.report.building_sheet import write_parts
-from suchus.robots import ROBOTS
+from suchus.robot.kinematics.tail import bend_of_servo, servo_angle
+from suchus.sim.land import Run, simulate
+from suchus.sim.model.export.folder import _mjcf
+from suchus.sim.model.export.urdf import unsaid
+from suchus.apps.report.building_sheet import write_parts
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 EXAMPLE = Path(__file__).parents[2] / "examples" / "linear_tail.toml"

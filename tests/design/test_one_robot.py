@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import suchus
-from suchus import blueprint, paper
-from suchus.design import (
+from suchus.robot import blueprint
+from suchus.article import paper
+from suchus.robot.design import (
     MEASURED,
     NEEDS,
     Robot,
@@ -24,10 +25,10 @@ from suchus.design import (
     with_spring,
     with_values,
 )
-from suchus.design.scale import scaled
-from suchus.errors import UnknownName, UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.robots import ROBOTS
+from suchus.robot.design.scale import scaled
+from suchus.core.errors import UnknownName, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.robots import ROBOTS
 
 CAIMAN, STRIDER = ROBOTS["caiman"], ROBOTS["strider"]
 OF_TABLES = [name for name in ROBOTS if ROBOTS[name].tables is not None]

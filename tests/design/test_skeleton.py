@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.control import OpenLoop, Runs
-from suchus.design import with_named_servos
-from suchus.design.body import servos_of
-from suchus.design.scale import scaled
-from suchus.design.skeleton import skeleton
-from suchus.gaits import GAITS, own_gait
-from suchus.land import Run, Tolerances
-from suchus.motion import Batch, intended, movement
-from suchus.robots import ROBOTS
+from suchus.robot.control import OpenLoop, Runs
+from suchus.robot.design import with_named_servos
+from suchus.robot.design.body import servos_of
+from suchus.robot.design.scale import scaled
+from suchus.robot.design.skeleton import skeleton
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Run, Tolerances
+from suchus.robot.motion import Batch, intended, movement
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 SIZED = [*(ROBOTS[name] for name in ROBOTS), *(scaled(CAIMAN, length_factor=factor) for factor in (0.05, 4.0))]

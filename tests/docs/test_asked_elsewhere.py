@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus import rotation
-from suchus.experiments.floating.cases import BALLAST, DEEP, KEEL, SPHEROID, public_table
-from suchus.land import Lake
-from suchus.land.float_body import FloatBody, FloatTank
+from suchus.core import rotation
+from suchus.experiments.catalog.floating.cases import BALLAST, DEEP, KEEL, SPHEROID, public_table
+from suchus.sim.land import Lake
+from suchus.sim.land.float_body import FloatBody, FloatTank
 
 ROOT = Path(__file__).parents[2]
 HALF = (0.5, 0.1, 0.1)

@@ -12,8 +12,8 @@ from PIL import Image
 
 from pages import gallery, links, reference
 from pages.blocks import blocks
-from suchus.cli.entry import COMMANDS
-from suchus.experiments import EXPERIMENTS
+from suchus.apps.cli.entry import COMMANDS
+from suchus.experiments.catalog import EXPERIMENTS
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -69,7 +69,7 @@ def test_a_dead_link_is_noticed():
 
 
 def test_what_the_site_makes_pages_of_is_led_to_them():
-    page = "[a](../results/verdicts.json#tail_swing) [b](../examples/04_kinematics.py) [c](../src/suchus/metrics)"
+    page = "[a](../results/verdicts.json#tail_swing) [b](../examples/04_kinematics.py) [c](../src/suchus/sim/metrics)"
     assert links.built(page) == "[a](verdicts.md#tail_swing) [b](examples/04_kinematics.md) [c](api/metrics.md)"
     assert {page.partition("#")[0] for page in links.MADE.values()} <= made()
     assert all((ROOT / "docs" / source).exists() for source in links.MADE)

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import pytest
 
 from pages.blocks import blocks
-from suchus.sources import SHELVES
+from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "extending")

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from pages import gallery, links, reference
-from suchus.cli.entry import COMMANDS
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
+from suchus.apps.cli.entry import COMMANDS
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
 
 ROOT = Path(__file__).parents[2]
 READERS = ("Start", "Students", "Builders", "Biomechanists", "Learning", "Fluids", "Extending")

@@ -11,8 +11,8 @@ from evidence.renew import measures_of
 
 from pages.passages import names
 from pages.stated import filled, kept, made, pages, sources, text_of, wrapped
-from suchus.errors import IncompatibleRecord
-from suchus.experiment import write
+from suchus.core.errors import IncompatibleRecord
+from suchus.experiments.experiment import write
 
 STATED = {source: [name for name in made() if source in sources(name)] for name in made() for source in sources(name)}
 """Passages by what was measured."""

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 from tests.flow.validation_rows import ROOT, SOURCES, is_whole
 
-from suchus.errors import IncompatibleRecord
+from suchus.core.errors import IncompatibleRecord
 from validation_page import DRAWN, GROUPS, kept_rows, page, write_table, write_validation
 
 

@@ -48,14 +48,14 @@ _HELD = r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b"
 _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joints?\b|\bjoints? (?:is |are )?lost\b"
 MEANT = {
     "docs/glossary.md": tuple(OLD),
-    "src/suchus/experiments/sensitivity/experiment.py": (_APART,),
-    "src/suchus/experiments/shore/experiment.py": (_GRIP,),
-    "src/suchus/experiments/shore/figure.py": (_GRIP,),
+    "src/suchus/experiments/catalog/sensitivity/experiment.py": (_APART,),
+    "src/suchus/experiments/catalog/shore/experiment.py": (_GRIP,),
+    "src/suchus/experiments/catalog/shore/figure.py": (_GRIP,),
     "tools/validation_page.py": (_HELD,),
-    "src/suchus/paper/claims_land.py": (_LOST,),
-    "src/suchus/paper/errata.py": (_LOST,),
-    "src/suchus/record/schema.py": (_GRIP,),
-    "src/suchus/study/claims.py": (_APART,),
+    "src/suchus/article/paper/claims_land.py": (_LOST,),
+    "src/suchus/article/paper/errata.py": (_LOST,),
+    "src/suchus/sim/record/schema.py": (_GRIP,),
+    "src/suchus/experiments/study/claims.py": (_APART,),
 }
 """Where an old word is meant: the glossary explains it; others hold the article's own words, or names in files."""
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.bus import BusPlace, straight
-from suchus.control import OpenLoop
-from suchus.design import layout
-from suchus.emulator import EmulatedBody, Trouble, body
-from suchus.experiments.rehearsal.experiment import (
+from suchus.hardware.bus import BusPlace, straight
+from suchus.robot.control import OpenLoop
+from suchus.robot.design import layout
+from suchus.hardware.emulator import EmulatedBody, Trouble, body
+from suchus.experiments.catalog.rehearsal.experiment import (
     ENOUGH,
     LOSES,
     TURNS,
@@ -18,10 +18,10 @@ from suchus.experiments.rehearsal.experiment import (
     rehearse,
     sent_directly,
 )  # fmt: skip
-from suchus.gaits import GAITS
-from suchus.land import Lake, crawl
-from suchus.motion import START, intended
-from suchus.robots import ROBOTS
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, crawl
+from suchus.robot.motion import START, intended
+from suchus.robot.robots import ROBOTS
 
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 TICKS = 130

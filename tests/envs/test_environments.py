@@ -15,17 +15,18 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed:
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
-from suchus import envs, rotation  # noqa: E402
-from suchus.design import LINE, layout, leg_joints, servo_names, with_values  # noqa: E402
-from suchus.design.scale import scaled  # noqa: E402
-from suchus.envs.pack import Pack, draw  # noqa: E402
-from suchus.envs.task import Terms  # noqa: E402
-from suchus.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
-from suchus.faults import Locked, Weak  # noqa: E402
-from suchus.gaits import GAITS, own_gait  # noqa: E402
-from suchus.motion import intended  # noqa: E402
-from suchus.motion.rising import stretched  # noqa: E402
-from suchus.robots import ROBOTS  # noqa: E402
+from suchus.apps import envs  # noqa: E402
+from suchus.core import rotation  # noqa: E402
+from suchus.robot.design import LINE, layout, leg_joints, servo_names, with_values  # noqa: E402
+from suchus.robot.design.scale import scaled  # noqa: E402
+from suchus.apps.envs.pack import Pack, draw  # noqa: E402
+from suchus.apps.envs.task import Terms  # noqa: E402
+from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
+from suchus.sim.faults import Locked, Weak  # noqa: E402
+from suchus.robot.gaits import GAITS, own_gait  # noqa: E402
+from suchus.robot.motion import intended  # noqa: E402
+from suchus.robot.motion.rising import stretched  # noqa: E402
+from suchus.robot.robots import ROBOTS  # noqa: E402
 
 CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))
 DOCS = Path(__file__).parents[2] / "docs" / "environments.md"
@@ -409,7 +410,7 @@ def test_bad_actions_seeds_and_sizes_are_refused():
 
 
 def test_without_gymnasium_the_sentence_says_what_to_install():
-    code = "import sys; sys.modules['gymnasium'] = None; import suchus.envs"
+    code = "import sys; sys.modules['gymnasium'] = None; import suchus.apps.envs"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode
     assert done.stderr.strip().splitlines()[-1].endswith("install it with: pip install 'suchus[gym]'.")

@@ -8,9 +8,9 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from suchus.envs.single import _draw_goal, draw_water
-from suchus.envs.task import Goal, Landing
-from suchus.figures import COLOURS
+from suchus.apps.envs.single import _draw_goal, draw_water
+from suchus.apps.envs.task import Goal, Landing
+from suchus.visual.figures import COLOURS
 
 WATER = np.array(to_rgb(COLOURS["water"]))
 

@@ -4,15 +4,15 @@ import gymnasium
 import numpy as np
 import pytest
 
-import suchus.envs
-from suchus.coupling import Swim
-from suchus.design import layout
-from suchus.envs import CrocodileEnv, CrocodileVectorEnv, Landing
-from suchus.envs.pack import Pack
-from suchus.envs.shelf import chosen
-from suchus.errors import Diverged, InvalidDesign, UnknownName
-from suchus.land import Lake
-from suchus.land.waters import Slice, Space
+import suchus.apps.envs
+from suchus.swim.coupling import Swim
+from suchus.robot.design import layout
+from suchus.apps.envs import CrocodileEnv, CrocodileVectorEnv, Landing
+from suchus.apps.envs.pack import Pack
+from suchus.apps.envs.shelf import chosen
+from suchus.core.errors import Diverged, InvalidDesign, UnknownName
+from suchus.sim.land import Lake
+from suchus.sim.land.waters import Slice, Space
 
 WATER = Slice(cells=40, reynolds=600.0)
 ASKED = {"robot": "swimmer", "water": WATER}
@@ -81,4 +81,4 @@ def test_tasks_that_a_flow_cannot_hold_are_refused(task, changes, said):
 def test_a_rung_that_there_is_not_is_refused():
     with pytest.raises(UnknownName, match="sections, slice, space"):
         chosen("Swim", {"water": "tank"})
-    assert "suchus/Swim-v0" in suchus.envs.IDS
+    assert "suchus/Swim-v0" in suchus.apps.envs.IDS

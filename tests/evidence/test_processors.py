@@ -10,7 +10,7 @@ import pytest
 from evidence.processors import PROCESSORS, ROOT, can_imitate, quick_measures
 
 from evidence import tolerance
-from suchus.experiments import EXPERIMENTS
+from suchus.experiments.catalog import EXPERIMENTS
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 SOON = ("displacement", "gait_diagram", "spine_kinematics", "tail_bending", "turning", "working_space")

@@ -9,7 +9,7 @@ from evidence.store import Origin, StoredResult, load, save, save_part
 from evidence.tolerance import bounded
 
 from evidence import renew, store
-from suchus.errors import IncompatibleRecord, UnreadableFile
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
 
 RESULT = StoredResult(
     name="strokes",

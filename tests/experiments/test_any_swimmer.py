@@ -6,16 +6,16 @@ from math import isfinite
 import pytest
 
 from body_files import eight, giant, hatchling, imported_quadruped, six
-from suchus.control import LoadRule, PatternGenerator
-from suchus.design import check_needs, lacking
-from suchus.errors import UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free.experiment import _motions, _steered
-from suchus.gaits import GAITS, own_gait
-from suchus.land import Lake, Run, simulate
-from suchus.motion import START, check_speeds, still, suits
-from suchus.robots import ROBOTS
-from suchus.water import swim_of
+from suchus.robot.control import LoadRule, PatternGenerator
+from suchus.robot.design import check_needs, lacking
+from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swim_free.experiment import _motions, _steered
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Lake, Run, simulate
+from suchus.robot.motion import START, check_speeds, still, suits
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import swim_of
 
 AXIAL = [*(name for name in ROBOTS if not lacking(ROBOTS[name], ["axis"])), eight, giant, hatchling, six]
 

@@ -8,16 +8,16 @@ import pytest
 from tests.bodies import eel, eight, hatchling, six
 
 from body_files import giant
-from suchus import blueprint
-from suchus.cli.entry import main
-from suchus.cli.options import choose
-from suchus.cli.run import moves
-from suchus.design import NEEDS, lacking, layout
-from suchus.design.scale import coarse_step, control_period
-from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.apps.cli.entry import main
+from suchus.apps.cli.options import choose
+from suchus.apps.cli.run import moves
+from suchus.robot.design import NEEDS, lacking, layout
+from suchus.robot.design.scale import coarse_step, control_period
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
+from suchus.robot.robots import ROBOTS
 
 WALKERS = ("caiman", "long_tail", "pleurobot", "salamander", "salamandra", "strider")
 LEAST = {

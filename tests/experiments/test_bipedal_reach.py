@@ -5,13 +5,13 @@ import pytest
 import xarray as xr
 from tests.bodies import eight, six
 
-from suchus.design import lacking, with_values
-from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.bipedal_reach.experiment import least_lead
-from suchus.experiments.bipedal_reach.figure import draw_limits, draw_side_views
-from suchus.motion.rising import cantilever_torque, stretched
-from suchus.robots import ROBOTS
+from suchus.robot.design import lacking, with_values
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.bipedal_reach.experiment import least_lead
+from suchus.experiments.catalog.bipedal_reach.figure import draw_limits, draw_side_views
+from suchus.robot.motion.rising import cantilever_torque, stretched
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 

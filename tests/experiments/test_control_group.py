@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.cli.options import choose
-from suchus.design import layout
-from suchus.errors import OutsideLimits
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS, control_group, own_gait
-from suchus.motion import as_table, cycle_targets, suits
-from suchus.robots import ROBOTS
+from suchus.apps.cli.options import choose
+from suchus.robot.design import layout
+from suchus.core.errors import OutsideLimits
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS, control_group, own_gait
+from suchus.robot.motion import as_table, cycle_targets, suits
+from suchus.robot.robots import ROBOTS
 
 TWO_GROUPS = ("crawl_stability", "displacement", "joint_faults")
 CLOCK = np.linspace(0.0, 1.0, 41)

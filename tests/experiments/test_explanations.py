@@ -8,18 +8,18 @@ from pathlib import Path
 import pytest
 from jinja2 import nodes
 
-import suchus.experiments
+import suchus.experiments.catalog
 from evidence import store
-from suchus.errors import BrokenFile, InvalidDesign
-from suchus.experiment import EXPLANATION, Experiment, templates
-from suchus.experiments import EXPERIMENTS
+from suchus.core.errors import BrokenFile, InvalidDesign
+from suchus.experiments.experiment import EXPLANATION, Experiment, templates
+from suchus.experiments.catalog import EXPERIMENTS
 
 """Measures of full forms, by experiment: those of a question's options that no quick form takes among them."""
 ASKED_FOR = {
     "swim_3d": {"misfit_tail_only_as_taken", "misfit_trunk_and_tail_as_taken", "speed_trunk_and_tail_as_taken"},
 }
 """What is measured only when somebody asks for it, in minutes; test_swim_3d.py looks at it."""
-FOLDERS = sorted(Path(suchus.experiments.__file__).parent.glob(f"*/{EXPLANATION}"))
+FOLDERS = sorted(Path(suchus.experiments.catalog.__file__).parent.glob(f"*/{EXPLANATION}"))
 DEFINED = {
     "feedback": {"90"},  # the quantile in per cent that cycles_to_converge is
     "spine_kinematics": {"60.5", "0.5"},  # of the printed equation (15)

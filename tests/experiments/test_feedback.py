@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
-from suchus.experiments.feedback.experiment import ARMS, STARTS, _loop_measures, experiment
-from suchus.land import Limp, Locked, Run, simulate
-from suchus.metrics import displacement, heading
-from suchus.metrics.coordination import cycles_until, phase_error
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
+from suchus.experiments.catalog.feedback.experiment import ARMS, STARTS, _loop_measures, experiment
+from suchus.sim.land import Limp, Locked, Run, simulate
+from suchus.sim.metrics import displacement, heading
+from suchus.sim.metrics.coordination import cycles_until, phase_error
 
 STEP = 0.005
 DISTURBED = pytest.mark.slow(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.gait_diagram.experiment import _ANIMAL_PHASES
-from suchus.gaits import GAITS
-from suchus.metrics import sensed_phase
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.gait_diagram.experiment import _ANIMAL_PHASES
+from suchus.robot.gaits import GAITS
+from suchus.sim.metrics import sensed_phase
 
 
 def test_how_far_the_animals_feet_are_is_counted_round_the_cycle(quick_outcome):

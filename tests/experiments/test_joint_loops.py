@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign
-from suchus.experiments.joint_loops.experiment import JointLoops, overshoot, rise_time
+from suchus.core.errors import InvalidDesign
+from suchus.experiments.catalog.joint_loops.experiment import JointLoops, overshoot, rise_time
 
 TIME = np.linspace(0.0, 2.0, 2001)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.experiments.pattern_generator.experiment import _lags, _locked, experiment, lock_error
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.experiments.catalog.pattern_generator.experiment import _lags, _locked, experiment, lock_error
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
 
 def test_the_lock_error_is_that_of_the_farthest_oscillator_whatever_they_have_in_common():

@@ -5,8 +5,8 @@ from math import nan
 
 import pytest
 
-from suchus.errors import InvalidDesign
-from suchus.experiments import EXPERIMENTS
+from suchus.core.errors import InvalidDesign
+from suchus.experiments.catalog import EXPERIMENTS
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign, UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.salamander.animal_walk import ANIMAL, PARTS, step
-from suchus.robots import ROBOTS
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.salamander.animal_walk import ANIMAL, PARTS, step
+from suchus.robot.robots import ROBOTS
 
 
 def force(vertical, **others):

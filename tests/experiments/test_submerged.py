@@ -9,10 +9,10 @@ import xarray as xr
 from tests.swims import crocodile_swim
 
 from evidence import store
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_free import submerged
-from suchus.land import Lake
-from suchus.robots import ROBOTS
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swim_free import submerged
+from suchus.sim.land import Lake
+from suchus.robot.robots import ROBOTS
 
 ROBOT, LAKE = ROBOTS["floating_caiman"], Lake(level=2.0)
 SWIM = crocodile_swim(yaw=(0.1, 0.2, 0.3), yaw_lag=(0.0, 0.0, 0.0), tail=0.5, tail_lag=0.0)

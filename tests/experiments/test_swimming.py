@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_sweep.figure import draw_maps
-from suchus.experiments.swimming.experiment import ARMS, PlaneSwims
-from suchus.paper import ERRATA
-from suchus.water import fit, printed_wave, swim
+from suchus.core.errors import InvalidDesign
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swim_sweep.figure import draw_maps
+from suchus.experiments.catalog.swimming.experiment import ARMS, PlaneSwims
+from suchus.article.paper import ERRATA
+from suchus.swim.water import fit, printed_wave, swim
 
 
 def _no_conditions(self, printed, slices, progress):

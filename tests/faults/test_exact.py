@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from suchus.control import Command
-from suchus.design import GRAVITY, servo_names
-from suchus.gaits import GAITS
-from suchus.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
-from suchus.motion import movement
-from suchus.robots import ROBOTS
+from suchus.robot.control import Command
+from suchus.robot.design import GRAVITY, servo_names
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
+from suchus.robot.motion import movement
+from suchus.robot.robots import ROBOTS
 
 CAIMAN, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 LYING = tuple(

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.control import LAWS, Command, Coordinated
-from suchus.design import crocodile, servo_names
-from suchus.errors import InvalidDesign, SuchusError, UnknownName
-from suchus.fault import Fault, check_faults
-from suchus.faults import FAULTS, Backlash, Limp, Locked, Offset, Slow, from_table, numbers
-from suchus.gaits import GAITS
-from suchus.land import Live, Run, simulate
-from suchus.land.batch import SimulationBatch
-from suchus.land.injector import Injector
-from suchus.robots import ROBOTS
+from suchus.robot.control import LAWS, Command, Coordinated
+from suchus.robot.design import crocodile, servo_names
+from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
+from suchus.sim.fault import Fault, check_faults
+from suchus.sim.faults import FAULTS, Backlash, Limp, Locked, Offset, Slow, from_table, numbers
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Live, Run, simulate
+from suchus.sim.land.batch import SimulationBatch
+from suchus.sim.land.injector import Injector
+from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 GAIT = replace(GAITS["belly_crawl"], period=1.0)
@@ -124,7 +124,7 @@ class Played:
 
 
 def test_an_episode_breaks_as_a_run_of_a_batch_does_to_the_byte(shelved):
-    envs, pack = pytest.importorskip("suchus.envs", exc_type=ImportError), import_module("suchus.envs.pack")
+    envs, pack = pytest.importorskip("suchus.apps.envs", exc_type=ImportError), import_module("suchus.apps.envs.pack")
     task = replace(
         envs.TASKS["Fault"],
         gait=GAIT,

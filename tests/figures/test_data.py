@@ -7,8 +7,8 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from suchus.figures import new, panels, save, styled
-from suchus.figures.data import MOST, carry, table
+from suchus.visual.figures import new, panels, save, styled
+from suchus.visual.figures.data import MOST, carry, table
 
 
 def rows(figure):

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-from suchus.figures import film, film_caption
+from suchus.visual.figures import film, film_caption
 
 
 def _film(count=3):

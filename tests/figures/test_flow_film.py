@@ -8,9 +8,9 @@ import pytest
 from PIL import Image
 
 from suchus import flow
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.figures.film import film_caption
-from suchus.figures.flow import FieldFilm
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.visual.figures.film import film_caption
+from suchus.visual.figures.flow import FieldFilm
 
 
 def stirred(*films, until=0.4):

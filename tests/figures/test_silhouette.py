@@ -5,10 +5,10 @@ import pytest
 from matplotlib.path import Path
 from tests.bodies import eight
 
-from suchus.design import joint_names
-from suchus.figures.silhouette import silhouette
-from suchus.robots import ROBOTS
-from suchus.skin import poses, skin
+from suchus.robot.design import joint_names
+from suchus.visual.figures.silhouette import silhouette
+from suchus.robot.robots import ROBOTS
+from suchus.visual.skin import poses, skin
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
 

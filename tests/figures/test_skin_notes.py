@@ -4,9 +4,9 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.experiments.swimming.figure import draw_forces, draw_sides
-from suchus.figures import caption
-from suchus.figures.flow import skin
+from suchus.experiments.catalog.swimming.figure import draw_forces, draw_sides
+from suchus.visual.figures import caption
+from suchus.visual.figures.flow import skin
 
 
 def swum():

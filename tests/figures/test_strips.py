@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.experiments.displacement.figure import _width
+from suchus.experiments.catalog.displacement.figure import _width
 
 
 @pytest.mark.parametrize(("aside", "wide"), [(0.05, 0.19), (0.129, 0.19), (0.131, 0.191), (0.5, 0.56)])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from body_files import imported_quadruped
-from suchus.design import behind_hips
-from suchus.figures import (
+from suchus.robot.design import behind_hips
+from suchus.visual.figures import (
     COLOURS,
     LINES,
     STYLE,
@@ -20,7 +20,7 @@ from suchus.figures import (
     save,
     styled,
 )
-from suchus.robots import ROBOTS
+from suchus.robot.robots import ROBOTS
 
 
 def picture():
@@ -102,7 +102,7 @@ def test_both_views_of_the_drawing_have_one_scale(name, tmp_path):
 
 
 def test_figures_do_without_pyplot():
-    code = "import suchus.figures, sys; assert 'matplotlib.pyplot' not in sys.modules"
+    code = "import suchus.visual.figures, sys; assert 'matplotlib.pyplot' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from suchus.figures import panels, styled
-from suchus.figures.uncover import covering
+from suchus.visual.figures import panels, styled
+from suchus.visual.figures.uncover import covering
 
 DRAWN = {
     "line": lambda ax: ax.plot([0, 1], [0.95, 0.95], "-"),

@@ -7,9 +7,9 @@ import pytest
 from PIL import Image
 from tests.wakes import CORE, RADIUS, ringed
 
-from suchus.figures import caption, vortices
-from suchus.figures.vortices import Viewpoint, picture
-from suchus.skin.mesh import Mesh
+from suchus.visual.figures import caption, vortices
+from suchus.visual.figures.vortices import Viewpoint, picture
+from suchus.visual.skin.mesh import Mesh
 
 
 def square(x, colour, size=1.0):

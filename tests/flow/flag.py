@@ -19,10 +19,10 @@ import mujoco
 import numpy as np
 
 from suchus import flow
-from suchus.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
 from suchus.flow import checkpoint as store
-from suchus.water.outline import BodySilhouette
-from suchus.writing import keep
+from suchus.swim.water.outline import BodySilhouette
+from suchus.core.writing import keep
 
 WATER = 1000.0
 """Density of the water [kg/m3]."""

@@ -12,10 +12,10 @@ import mujoco
 import numpy as np
 
 from suchus import flow
-from suchus.coupling.chain import ChainState
-from suchus.design import Spring
+from suchus.swim.coupling.chain import ChainState
+from suchus.robot.design import Spring
 from suchus.flow.mass import Mass
-from suchus.model import joint_addresses
+from suchus.sim.model import joint_addresses
 
 SMALL = 1e-5
 """Change of a coordinate over which derivatives are taken [m, rad]."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow.added import added_mass, generalised_added_mass
 from suchus.flow.twist import Twists, held_faces
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from trimesh.creation import box, icosphere
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.pose import Pose
 
 W = 2 * pi

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 
 WALLS = {"bottom": flow.Wall(), "top": flow.Wall()}
 

@@ -7,7 +7,7 @@ import pytest
 from flow_cases import still_setup
 
 from suchus import flow
-from suchus.errors import Doubtful, InvalidDesign, OutsideLimits, UnknownName
+from suchus.core.errors import Doubtful, InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import resolution
 from suchus.flow.consistency import Consistency, GivenMotion
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flag import BEAM, CASES, CHANNEL, COLUMNS, POISSON, THICKNESS, Beam, channel, cycle, grids, run
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import pytest
 from flow_cases import eel_setup, still_setup
 
 from suchus import flow
-from suchus.errors import NotConverged
+from suchus.core.errors import NotConverged
 from suchus.flow import signals
 
 

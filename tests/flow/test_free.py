@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.special import kv
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.swimmer import Swimmer
 
 CIRCLE = flow.Cylinder(diameter=1.0)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.friction import SLOWEST, FrictionBand, along_stations, blasius, ittc
 
 WATER = {"viscosity": 1e-6, "density": 1000.0}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from test_scheme import vortices
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 
 BY_ORDER = {1: flow.EULER, 2: flow.HEUN, 3: flow.SHU_OSHER}

@@ -11,9 +11,9 @@ import numba
 import pytest
 from numba.core.caching import _CacheLocator
 
-from suchus import kernel_cache
+from suchus.core import kernel_cache
 from suchus.flow import compiled
-from suchus.hydro import vectors
+from suchus.sim.hydro import vectors
 
 ROOM = Path(compiled.__file__).parent
 MAKERS = {"compiled", "threaded", "part", "threaded_part"}

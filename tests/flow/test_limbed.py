@@ -5,7 +5,7 @@ import pytest
 from tests.flow.test_trunk import POSE, eel, rod
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 
 LIMBS = (
     flow.Capsule(at=0.3, start=(0.0, 0.12), end=(0.2, 0.12), radius=0.03),

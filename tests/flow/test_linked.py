@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from suchus import flow, rotation
-from suchus.errors import InvalidDesign
+from suchus import flow
+from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
 from suchus.flow.linked import between
 
 HINGE = np.array([0.1, 0.02, 0.0])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from test_space import ball
 
 from suchus import flow
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.flow.mesh import TriangleMesh
 
 BOX = trimesh.creation.box(extents=(0.8, 0.3, 0.5))

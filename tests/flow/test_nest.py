@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow import nest
 from suchus.flow.compiled import PAD
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus import flow
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.core.errors import InvalidDesign, UnreadableFile
 
 ELLIPSE = flow.Ellipse(length=2.0, width=0.7)
 SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])

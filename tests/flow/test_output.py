@@ -9,7 +9,7 @@ import xarray as xr
 from flow_cases import still_setup
 
 from suchus import flow
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName, UnreadableFile, Unwritable
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnreadableFile, Unwritable
 from suchus.flow.compiled import PAD
 from suchus.flow.record import COLUMNS
 

@@ -7,7 +7,7 @@ import pytest
 from flow_cases import still_setup
 
 from suchus import flow
-from suchus.errors import Diverged, InvalidDesign
+from suchus.core.errors import Diverged, InvalidDesign
 from suchus.flow.consistency import LEAP, Consistency, GivenMidline, GivenMotion
 from suchus.flow.swimmer import Swimmer
 

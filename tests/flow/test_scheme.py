@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.errors import InvalidDesign
-from suchus.fingerprint import fingerprint
+from suchus.core.errors import InvalidDesign
+from suchus.core.fingerprint import fingerprint
 from suchus.flow.advect import advance, advance_by
 from suchus.flow.compiled import PAD
 

@@ -11,8 +11,9 @@ from scipy.spatial.transform import Rotation
 from test_limbed import bending
 from test_trunk import eel, egg
 
-from suchus import flow, rotation
-from suchus.errors import InvalidDesign, OutsideLimits
+from suchus import flow
+from suchus.core import rotation
+from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.flow.added import added_mass
 from suchus.flow.swimmer import Swimmer
 

@@ -4,7 +4,7 @@ import pytest
 from flow_cases import eel_setup, still_setup
 
 from suchus import flow
-from suchus.errors import Diverged, InvalidDesign, OutsideLimits, UnreadableFile
+from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits, UnreadableFile
 from suchus.flow.body import window_of
 from suchus.flow.compiled import PAD
 from suchus.flow.setup import LAYER_CELLS

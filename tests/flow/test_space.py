@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus import flow, large
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus import flow
+from suchus.core import large
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import grid as grids
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from test_space import oblate
 
 from suchus import flow
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import body as bodies
 from suchus.flow.added import added_mass
 from suchus.flow.immerse import LEAST_SHARE, close_surface

@@ -9,7 +9,7 @@ from flag import CASES, COLUMNS, SHAKES, cycle, run, stem
 from validation_rows import OUT, note
 
 from pages.stated import keep, kept
-from suchus.record import code_digest
+from suchus.core.files import code_digest
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

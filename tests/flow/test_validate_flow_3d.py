@@ -14,13 +14,13 @@ from validation_rows import note
 
 from pages.stated import keep, kept
 from suchus import flow
-from suchus.experiments.swim_3d.experiment import Swim3d
+from suchus.experiments.catalog.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.progress import silent
-from suchus.water import setting
-from suchus.water.resolved import SwimSetting, resolved_swim
+from suchus.core.progress import silent
+from suchus.swim.water import setting
+from suchus.swim.water.resolved import SwimSetting, resolved_swim
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

@@ -15,13 +15,13 @@ from test_friction import lamb, meridian
 from validation_rows import note
 
 from suchus import flow
-from suchus.design.water import Water
+from suchus.robot.design.water import Water
 from suchus.flow import simulation
 from suchus.flow.compiled import PAD
 from suchus.flow.friction import FrictionBand, along_stations
-from suchus.robots import ROBOTS
-from suchus.water import Outline, cycle, fit, printed_wave, recoil, resolved
-from suchus.water.sections import coefficients
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Outline, cycle, fit, printed_wave, recoil, resolved
+from suchus.swim.water.sections import coefficients
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

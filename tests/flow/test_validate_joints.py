@@ -13,16 +13,16 @@ from validation_rows import note
 
 import suchus
 from suchus import flow
-from suchus.control import Swimming
-from suchus.coupling import Swim
-from suchus.coupling.chain import ChainState, Way
-from suchus.design.scale import scaled
+from suchus.robot.control import Swimming
+from suchus.swim.coupling import Swim
+from suchus.swim.coupling.chain import ChainState, Way
+from suchus.robot.design.scale import scaled
 from suchus.flow.added import generalised_added_mass
 from suchus.flow.twist import Twists, joined, none
-from suchus.land.run import Run
-from suchus.land.waters import Slice
-from suchus.progress import silent
-from suchus.water import swim_of
+from suchus.sim.land.run import Run
+from suchus.sim.land.waters import Slice
+from suchus.core.progress import silent
+from suchus.swim.water import swim_of
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 
@@ -285,7 +285,7 @@ def roots_apart(swim, times, states, force=None):
 def pushed_run(robot, push):
     """A run in which the head of a robot is pushed; in the world the other way round, which the flow sees turned."""
     x, y = push.force
-    world = suchus.land.Push(force=(-x, -y, 0.0), at=push.at, duration=push.duration, body=push.link)
+    world = suchus.sim.land.Push(force=(-x, -y, 0.0), at=push.at, duration=push.duration, body=push.link)
     still = swim_of(robot, frequency=1.0).straightened("neck", "trunk", "tail")
     return Run(robot=robot, gait=still, water=Slice(cells=48, reynolds=600.0), pushes=(world,))
 

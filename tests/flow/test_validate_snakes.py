@@ -11,7 +11,7 @@ from suchus import flow
 from suchus.atlas.case import published
 from suchus.atlas.marching import middles
 from suchus.atlas.snake import last_strouhal
-from suchus.record import code_digest
+from suchus.core.files import code_digest
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from suchus.record import code_digest
+from suchus.core.files import code_digest
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "out" / "validation"

@@ -43,7 +43,7 @@ from suchus.flow.immerse import fill_source
 from suchus.flow.nest import Nested
 from suchus.flow.solid import SpaceField, SpaceShape
 from suchus.flow.water import Fluid
-from suchus.writing import keep
+from suchus.core.writing import keep
 
 GAP = 2.0
 """Distance from the skin at which the water outside the layer is read, beyond kernel and offset of the wall [cells]."""

@@ -19,8 +19,8 @@ from typing import Any
 
 from doors import altered, pendulum, quadruped
 
-from suchus.errors import SuchusError
-from suchus.model.importing import Words, import_robot
+from suchus.core.errors import SuchusError
+from suchus.sim.model.importing import Words, import_robot
 
 KEPT = Path(__file__).with_name("guided.json")
 """By way and number of cases: the lines that they reached, how many of them were robots, and when."""

@@ -19,7 +19,7 @@ from typing import Any
 from doors import Doors
 from farm import alone, carried_out, kind_of
 
-from suchus.record import code_digest, versions
+from suchus.core.files import code_digest, versions
 
 COUNT = 100_000
 """How many cases there are."""

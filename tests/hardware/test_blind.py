@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.bus.pca9685 import Pulses, open_wires
-from suchus.control import Coordinated
-from suchus.errors import BusFailure, InvalidDesign, UnsuitedRobot
-from suchus.experiments._driven import Driven
-from suchus.gaits import GAITS
+from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.robot.control import Coordinated
+from suchus.core.errors import BusFailure, InvalidDesign, UnsuitedRobot
+from suchus.experiments.catalog._driven import Driven
+from suchus.robot.gaits import GAITS
 from suchus.hardware import BlindRig, DriveSettings, drive, held, straight
-from suchus.motion import intended
-from suchus.robots import ROBOTS
+from suchus.robot.motion import intended
+from suchus.robot.robots import ROBOTS
 
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 

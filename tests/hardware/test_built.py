@@ -7,12 +7,12 @@ from pathlib import Path
 
 from evidence.built import HASTY, ITS_OWN, former
 
-from suchus.design import Servo, with_servos
-from suchus.design.body import servos_of
-from suchus.gaits import GAITS
+from suchus.robot.design import Servo, with_servos
+from suchus.robot.design.body import servos_of
+from suchus.robot.gaits import GAITS
 from suchus.hardware.loads import AT_LIMIT
-from suchus.motors import motor
-from suchus.robots import ROBOTS
+from suchus.robot.motors import motor
+from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))

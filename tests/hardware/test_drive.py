@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from tests.wires import Obedient, wiring
 
-from suchus.bus import BusGone, BusPlace, straight
-from suchus.control import Coordinated, HeadingRule, OpenLoop
-from suchus.design import layout
-from suchus.emulator import Emulator, MemoryPort, Trouble
-from suchus.errors import BusFailure, InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.gaits import GAITS
+from suchus.hardware.bus import BusGone, BusPlace, straight
+from suchus.robot.control import Coordinated, HeadingRule, OpenLoop
+from suchus.robot.design import layout
+from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
+from suchus.core.errors import BusFailure, InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.robot.gaits import GAITS
 from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, about, drive, read_wiring, senses, write_wiring
 from suchus.hardware.drive import ASKED, check_drive
-from suchus.motion import intended
-from suchus.robots import ROBOTS
+from suchus.robot.motion import intended
+from suchus.robot.robots import ROBOTS
 
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 NAMES = layout(ROBOT).servos
@@ -164,7 +164,7 @@ def test_a_servo_with_too_old_a_firmware_has_no_watchdog_and_is_not_asked_for_on
 
 @pytest.mark.parametrize(("keeps", "refused"), [("16", True), ("2", True), ("1", False), (None, False)])
 def test_an_adapter_that_keeps_bytes_back_is_refused_with_what_would_mend_it(keeps, refused, tmp_path, monkeypatch):
-    monkeypatch.setattr("suchus.bus.ports.ADAPTERS", tmp_path)
+    monkeypatch.setattr("suchus.hardware.bus.ports.ADAPTERS", tmp_path)
     (tmp_path / "ttyUSB7").mkdir()
     if keeps is not None:
         (tmp_path / "ttyUSB7" / "latency_timer").write_text(f"{keeps}\n")

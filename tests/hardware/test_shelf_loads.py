@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from evidence.servo_loads import measured
 
-from suchus import blueprint
-from suchus.design import Robot
-from suchus.gaits import GAITS, suits
+from suchus.robot import blueprint
+from suchus.robot.design import Robot
+from suchus.robot.gaits import GAITS, suits
 from suchus.hardware.loads import AT_LIMIT
-from suchus.robots import ROBOTS
+from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tools"))

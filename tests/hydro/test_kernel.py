@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design.pieces import pieces
-from suchus.design.scale import physics_step
-from suchus.hydro import FORCE, UNDER, packed, unpacked
-from suchus.hydro.forces import _arcsine
-from suchus.hydro.table import LANES
-from suchus.land import Lake, Wave, wetting
-from suchus.model.wet import wet_model
-from suchus.robots import ROBOTS
+from suchus.robot.design.pieces import pieces
+from suchus.robot.design.scale import physics_step
+from suchus.robot.design.water_table import FORCE, UNDER, packed, unpacked
+from suchus.sim.hydro.forces import _arcsine
+from suchus.robot.design.water_table import LANES
+from suchus.sim.land import Lake, Wave, wetting
+from suchus.sim.model.wet import wet_model
+from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["floating_caiman"]
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from suchus.design import Foam, Hull, Rod, Segment, Shell
-from suchus.design.flotation import float_hull
-from suchus.design.pieces import masses, pieces, swollen, volumes
-from suchus.design.profile import profile, stations
-from suchus.errors import InvalidDesign
-from suchus.hydro import BALL, column, packed, unpacked
-from suchus.hydro.table import LANES
-from suchus.robots import ROBOTS
+from suchus.robot.design import Foam, Hull, Rod, Segment, Shell
+from suchus.robot.design.flotation import float_hull
+from suchus.robot.design.pieces import masses, pieces, swollen, volumes
+from suchus.robot.design.profile import profile, stations
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design.water_table import BALL, column, packed, unpacked
+from suchus.robot.design.water_table import LANES
+from suchus.robot.robots import ROBOTS
 
 
 @pytest.mark.parametrize("name", ["caiman", "salamandra", "swimmer"])

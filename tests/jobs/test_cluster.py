@@ -13,20 +13,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.cli import main
-from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swim_3d.experiment import Item, _swum_here, swum_in_space
-from suchus.fingerprint import fingerprint
-from suchus.jobs import NoCluster, conduct_sweep, connected
-from suchus.land import Run
-from suchus.optimise import Aim, Optimisation, optimise
-from suchus.optimise.conduct import tried
-from suchus.optimise.evaluate import evaluate
-from suchus.study import Study, Vary, conduct
-from suchus.study.varied import conduct_varied, varied_study
-from suchus.water import fit, printed_wave
-from suchus.water.resolved import SwimSetting
+from suchus.apps.cli import main
+from suchus.core.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swim_3d.experiment import Item, _swum_here, swum_in_space
+from suchus.core.fingerprint import fingerprint
+from suchus.core.jobs import NoCluster, conduct_sweep, connected
+from suchus.sim.land import Run
+from suchus.experiments.optimise import Aim, Optimisation, optimise
+from suchus.experiments.optimise.conduct import tried
+from suchus.experiments.optimise.evaluate import evaluate
+from suchus.experiments.study import Study, Vary, conduct
+from suchus.experiments.study.varied import conduct_varied, varied_study
+from suchus.swim.water import fit, printed_wave
+from suchus.swim.water.resolved import SwimSetting
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 

@@ -6,9 +6,9 @@ from contextlib import closing
 
 import pytest
 
-from suchus import threads
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.jobs import Cluster, Died, InMemory, Job, ProcessDied, Processes, Tally, ThisProcess, finish, place_for
+from suchus.core import threads
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.core.jobs import Cluster, Died, InMemory, Job, ProcessDied, Processes, Tally, ThisProcess, finish, place_for
 
 
 def squared(item, progress):
@@ -143,7 +143,7 @@ def test_a_place_is_this_machine_some_processes_of_it_or_a_cluster():
 
 def test_a_tally_tells_count_rate_time_left_failures_and_more(monkeypatch):
     now = [100.0]
-    monkeypatch.setattr("suchus.jobs.engine.time.perf_counter", lambda: now[0])
+    monkeypatch.setattr("suchus.core.jobs.engine.time.perf_counter", lambda: now[0])
     told = []
     tally = Tally(20, "runs", lambda *said: told.append(said), done=4, failed=1)
     tally.finished(0, 2, fresh=False)  # of an earlier start: it says nothing of the rate

@@ -12,14 +12,14 @@ import os, random, signal, sys, time
 os.environ["SUCHUS_THREADS"] = "1"
 sys.path[:0] = [sys.argv[4]]
 from pathlib import Path
-from suchus.gaits import GAITS
-from suchus.land import Run
-from suchus.optimise import Aim, Optimisation, optimise
-from suchus.progress import silent
-from suchus.robots import ROBOTS
-from suchus.study import Study, Vary, conduct
-from suchus.water.resolved import SwimSetting, resolved_swim
-from suchus.record import save
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run
+from suchus.experiments.optimise import Aim, Optimisation, optimise
+from suchus.core.progress import silent
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import Study, Vary, conduct
+from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.sim.record import save
 from tests.swims import crocodile_swim
 
 RUN = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])

@@ -3,19 +3,19 @@
 import grimp
 import pytest
 
-from suchus.jobs.made_by import FLOW, MADE_BY, deciding
-from suchus.optimise.conduct import ROOMS
-from suchus.record import code_digest
-from suchus.record.provenance import syntax_of
+from suchus.core.jobs.made_by import FLOW, MADE_BY, deciding
+from suchus.experiments.optimise.conduct import ROOMS
+from suchus.core.files import code_digest
+from suchus.core.files.provenance import syntax_of
 
 HARMLESS = (
-    "suchus.errors",
-    "suchus.large",
-    "suchus.machine",
-    "suchus.threads",
-    "suchus.progress",
-    "suchus.kernel_cache",
-    "suchus.writing",
+    "suchus.core.errors",
+    "suchus.core.large",
+    "suchus.core.machine",
+    "suchus.core.threads",
+    "suchus.core.progress",
+    "suchus.core.kernel_cache",
+    "suchus.core.writing",
 )
 """Words, what is too large to begin with, how this machine computes, how many threads, how far something is, and where
 and how things are kept."""
@@ -28,13 +28,13 @@ def graph():
 
 @pytest.mark.parametrize(
     ("begins", "places"),
-    [("suchus.study.chunk", MADE_BY), ("suchus.optimise.evaluate", ROOMS), ("suchus.water.resolved", FLOW)],
+    [("suchus.experiments.study.chunk", MADE_BY), ("suchus.experiments.optimise.evaluate", ROOMS), ("suchus.swim.water.resolved", FLOW)],
 )
 def test_all_code_that_makes_a_part_is_in_the_digest(graph, begins, places):
     used = {begins} | set(graph.find_upstream_modules(begins))
-    if begins == "suchus.optimise.evaluate":  # which takes two values from a room whose door imports all of it
-        used -= set(graph.find_upstream_modules("suchus.study")) | graph.find_descendants("suchus.study")
-        used |= {"suchus.study.measures"} | graph.find_upstream_modules("suchus.study.measures")
+    if begins == "suchus.experiments.optimise.evaluate":  # which takes two values from a room whose door imports all of it
+        used -= set(graph.find_upstream_modules("suchus.experiments.study")) | graph.find_descendants("suchus.experiments.study")
+        used |= {"suchus.experiments.study.measures"} | graph.find_upstream_modules("suchus.experiments.study.measures")
     rooms = tuple("suchus." + place.removesuffix(".py").replace("/", ".") for place in places)
     missing = [m for m in used if not any(m == r or m.startswith(f"{r}.") for r in (*rooms, *HARMLESS))]
     assert [m for m in missing if m.count(".") > 1 or not any(r.startswith(f"{m}.") for r in rooms)] == []

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from suchus.errors import Doubtful, OutsideLimits
-from suchus.jobs import Died
-from suchus.jobs.processes import Begun, Done, Far, dismiss, hire, side_by_side
+from suchus.core.errors import Doubtful, OutsideLimits
+from suchus.core.jobs import Died
+from suchus.core.jobs.processes import Begun, Done, Far, dismiss, hire, side_by_side
 
 
 def squared(item, tell):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign
-from suchus.jobs import ProcessDied, conduct_sweep
+from suchus.core.errors import InvalidDesign
+from suchus.core.jobs import ProcessDied, conduct_sweep
 
 
 def squared(item, progress):

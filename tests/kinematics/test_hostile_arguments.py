@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import layout
-from suchus.errors import InvalidDesign
-from suchus.kinematics import dh, leg, limb, printed, spine, tail, tree, wave
+from suchus.robot.design import layout
+from suchus.core.errors import InvalidDesign
+from suchus.robot.kinematics import dh, leg, limb, printed, spine, tail, tree, wave
 
 CAIMAN = suchus.ROBOTS["caiman"]
 ARM = layout(suchus.ROBOTS["strider"]).limbs[0].girdle.limb

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import Hinge, Limb, Link
-from suchus.errors import NotConverged, Unreachable
-from suchus.kinematics import leg, limb
-from suchus.robots import ROBOTS
+from suchus.robot.design import Hinge, Limb, Link
+from suchus.core.errors import NotConverged, Unreachable
+from suchus.robot.kinematics import leg, limb
+from suchus.robot.robots import ROBOTS
 
 CAIMAN, SALAMANDER, PLEUROBOT = ROBOTS["caiman"], ROBOTS["salamander"], ROBOTS["pleurobot"]
 LEG, ARM = CAIMAN.girdles[1].limb, SALAMANDER.girdles[0].limb

@@ -6,11 +6,11 @@ import pytest
 from tests.bodies import eight, six
 
 import suchus
-from suchus.design import crocodile, joint_names, layout
-from suchus.errors import InvalidDesign
-from suchus.kinematics import tree
-from suchus.model import compile_model, joint_addresses
-from suchus.motion.rising import cantilever_torque
+from suchus.robot.design import crocodile, joint_names, layout
+from suchus.core.errors import InvalidDesign
+from suchus.robot.kinematics import tree
+from suchus.sim.model import compile_model, joint_addresses
+from suchus.robot.motion.rising import cantilever_torque
 
 CAIMAN = suchus.ROBOTS["caiman"]
 LONG = crocodile(

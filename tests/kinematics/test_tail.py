@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.kinematics import tail
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.kinematics import tail
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from suchus.kinematics import leg, spine, tail, wave
+from suchus.robot.kinematics import leg, spine, tail, wave
 
 VECTORS = {c["id"]: c for c in json.loads((Path(__file__).parents[1] / "data/test-vectors.json").read_text())}
 HIND_LEG = SimpleNamespace(hip_offset=0.070, femur=0.086, tibia=0.089)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.kinematics import wave
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.kinematics import wave
 
 X = np.linspace(0, 1, 401)
 

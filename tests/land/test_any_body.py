@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus import blueprint
-from suchus.control import Coordinated
-from suchus.design import Robot, layout
-from suchus.design.scale import scaled
-from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.gaits import GAITS
-from suchus.land import WATER, Run, crawl, simulate
-from suchus.metrics import displacement, heading
-from suchus.motion import START
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.robot.control import Coordinated
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.scale import scaled
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import WATER, Run, crawl, simulate
+from suchus.sim.metrics import displacement, heading
+from suchus.robot.motion import START
+from suchus.robot.robots import ROBOTS
 
 GAIT_OF = {
     "salamander": "salamander_walk",

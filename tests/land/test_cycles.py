@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 import suchus
-from suchus.errors import InvalidDesign
-from suchus.metrics import displacement, speed
-from suchus.motion import START
+from suchus.core.errors import InvalidDesign
+from suchus.sim.metrics import displacement, speed
+from suchus.robot.motion import START
 
 GAIT = suchus.GAITS["belly_crawl"]
 FAST = replace(GAIT, period=GAIT.period / 2)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.control import Coordinated
-from suchus.land import Backlash, Ground, Limp, Locked, LostFoot, Offset, Push, Run, simulate
-from suchus.land.loop import Deduplication
+from suchus.robot.control import Coordinated
+from suchus.sim.land import Backlash, Ground, Limp, Locked, LostFoot, Offset, Push, Run, simulate
+from suchus.sim.land.loop import Deduplication
 
 COARSE = 0.01
 

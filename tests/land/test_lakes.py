@@ -9,18 +9,18 @@ import pytest
 from numba import cfunc, types
 from tests.swims import crocodile_swim
 
-from suchus import rotation
-from suchus.control import Swimming
-from suchus.design import crocodile
-from suchus.design.pieces import volumes
-from suchus.design.water import Water
-from suchus.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
-from suchus.experiments import EXPERIMENTS
-from suchus.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
-from suchus.land.afloat import check_floats
-from suchus.motion import LIMBS_UP, still
-from suchus.record import WATER
-from suchus.robots import ROBOTS
+from suchus.core import rotation
+from suchus.robot.control import Swimming
+from suchus.robot.design import crocodile
+from suchus.robot.design.pieces import volumes
+from suchus.robot.design.water import Water
+from suchus.core.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.sim.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
+from suchus.sim.land.afloat import check_floats
+from suchus.robot.motion import LIMBS_UP, still
+from suchus.sim.record import WATER
+from suchus.robot.robots import ROBOTS
 
 WAVE = crocodile_swim(yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1, limbs=LIMBS_UP)
 REST = still(ROBOTS["caiman"], limbs=LIMBS_UP)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.design import with_values
-from suchus.land import Backlash, Ground, Limp, Locked, Push, Run, simulate
-from suchus.land.batch import Beginning
-from suchus.land.loop import Loop
+from suchus.robot.design import with_values
+from suchus.sim.land import Backlash, Ground, Limp, Locked, Push, Run, simulate
+from suchus.sim.land.batch import Beginning
+from suchus.sim.land.loop import Loop
 
 COARSE = 0.005
 PUSH = Push(force=(0.0, 12.0, 0.0), at=0.05, duration=0.1)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from suchus import hydro
-from suchus.land.batch import Meter
+from suchus.robot.design import water_table as hydro
+from suchus.sim.land.batch import Meter
 
 
 def test_power_is_torque_times_the_mean_of_the_speeds_before_and_after():

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.design import crocodile, with_speed_line
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.metrics import between, displacement, heading_change, roll_peak_to_peak
+from suchus.robot.design import crocodile, with_speed_line
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import between, displacement, heading_change, roll_peak_to_peak
 
 NAMES = ("low_crawl", "semi_erect", "high_walk")
 

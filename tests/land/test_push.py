@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.land import CONTROL_PERIOD, Ground, Push, Run, simulate
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.sim.land import CONTROL_PERIOD, Ground, Push, Run, simulate
 
 
 @pytest.fixture(scope="module")

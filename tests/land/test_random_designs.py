@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.metres import with_metres
 
-from suchus.design import crocodile, servo_names
-from suchus.errors import SuchusError
-from suchus.land import Ground, Limp, Locked, Run, Weak, simulate
+from suchus.robot.design import crocodile, servo_names
+from suchus.core.errors import SuchusError
+from suchus.sim.land import Ground, Limp, Locked, Run, Weak, simulate
 
 
 def maybe_bad(low: float, high: float):

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from suchus.design.ground import Bumps, Step, Stone
-from suchus.gaits import GAITS
-from suchus.land import ARENAS, Ground, Run, simulate
-from suchus.metrics import between, displacement, tilt
+from suchus.robot.design.ground import Bumps, Step, Stone
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import ARENAS, Ground, Run, simulate
+from suchus.sim.metrics import between, displacement, tilt
 
 GRAVITY = 9.81
 

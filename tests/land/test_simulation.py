@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import crocodile
-from suchus.errors import Diverged, InvalidDesign, OutsideLimits
-from suchus.land import Ground, Run, crawl, simulate
-from suchus.metrics import between, displacement, heading_change
-from suchus.paper import CLAIMS
-from suchus.record import PER_RUN, VARIABLES
+from suchus.robot.design import crocodile
+from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits
+from suchus.sim.land import Ground, Run, crawl, simulate
+from suchus.sim.metrics import between, displacement, heading_change
+from suchus.article.paper import CLAIMS
+from suchus.sim.record import PER_RUN, VARIABLES
 
 GRAVITY = 9.81
 

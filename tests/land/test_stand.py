@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.design.servos import with_servos
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.land.stand import on_stand
+from suchus.robot.design.servos import with_servos
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.sim.land.stand import on_stand
 
 ONE_SECOND = 500
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from toys import broken, fell, stone
 
-from suchus.errors import InvalidDesign, NotConverged, UnknownName
+from suchus.core.errors import InvalidDesign, NotConverged, UnknownName
 from suchus.league import ContestantFamily, Interval, Predictor, SingleContestant, every, find, known
 from suchus.league.judging import WIDEST, judged
 from suchus.league.sealing import Measured, _answers, predicted

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from toys import failing, silent, stone
 
-from suchus.cli import main
+from suchus.apps.cli import main
 from suchus.contestants import CONTESTANTS, measured_file
-from suchus.errors import InvalidDesign, NotConverged, UnreadableFile
+from suchus.core.errors import InvalidDesign, NotConverged, UnreadableFile
 from suchus.league import Predictor, SingleContestant, every, find, sealing
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
 from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
-from suchus.record import package_digest
+from suchus.core.files import package_digest
 
 _TRUTH = {"speed": {"value": 4.4, "low": 4.3, "high": 4.5, "unit": "m/s", "source": "a gun"}}
 _OPENED: list[Path] = []
@@ -146,7 +146,7 @@ def test_a_page_of_whom_nothing_was_measured_warns_of_nothing(tmp_path):
 
 
 def test_the_command_predicts_seals_and_judges(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("suchus.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
+    monkeypatch.setattr("suchus.apps.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
     measured = _truth(tmp_path)
     assert main(["league", "stone", "--out", str(tmp_path / "l"), "--jobs", "1", "--measured", str(measured)]) == 0
     said = capsys.readouterr().out

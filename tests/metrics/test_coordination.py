@@ -6,8 +6,8 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.design import LEGS
-from suchus.metrics.coordination import cycles_until, phase_error
+from suchus.robot.design import LEGS
+from suchus.sim.metrics.coordination import cycles_until, phase_error
 
 
 def phases(values):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from suchus.metrics.decisive import border, rank_correlation
+from suchus.sim.metrics.decisive import border, rank_correlation
 
 RNG = np.random.default_rng(1)
 POINTS = RNG.random((400, 5))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
-from suchus.metrics import each_cycle, first_harmonic, mean_cycle
+from suchus.core.errors import IncompatibleRecord
+from suchus.sim.metrics import each_cycle, first_harmonic, mean_cycle
 
 
 def waved(end=5.0, dt=0.01):

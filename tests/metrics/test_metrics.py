@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
-from suchus.metrics import (
+from suchus.core.errors import IncompatibleRecord
+from suchus.sim.metrics import (
     between,
     cost_of_transport,
     diagonal_phase_error,
@@ -38,7 +38,7 @@ from suchus.metrics import (
     two_feet_share,
     work,
 )
-from suchus.motion import START
+from suchus.robot.motion import START
 
 TIME = np.arange(0, 901) * 0.01
 LEGS = ["LF", "RF", "LH", "RH"]

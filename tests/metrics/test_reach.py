@@ -6,11 +6,11 @@ import pytest
 import xarray as xr
 
 import suchus
-from suchus.control.standing import Standing
-from suchus.design import crocodile
-from suchus.land import Run, simulate
-from suchus.metrics import held, lead, reach, static_margin
-from suchus.model import compile_model
+from suchus.robot.control.standing import Standing
+from suchus.robot.design import crocodile
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import held, lead, reach, static_margin
+from suchus.sim.model import compile_model
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 

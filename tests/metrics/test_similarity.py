@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from suchus.design import GRAVITY
-from suchus.metrics import SIMILARITY, SwimNumbers, swim_numbers
+from suchus.robot.design import GRAVITY
+from suchus.sim.metrics import SIMILARITY, SwimNumbers, swim_numbers
 
 ASKED = {"speed": 0.5, "length": 0.2, "frequency": 2.0, "swing": 0.04, "viscosity": 1e-6}
 

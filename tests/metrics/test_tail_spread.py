@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.metrics import tail_joint_spread_max
+from suchus.sim.metrics import tail_joint_spread_max
 
 
 def test_the_spread_is_the_greatest_between_two_cable_joints_at_one_time():

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from hinge_trees import joint, link, pendulum, quadruped, shape, skewed, urdf
 
-from suchus import blueprint
-from suchus.cli import main
-from suchus.design import Robot, layout
-from suchus.gaits import GAITS
-from suchus.motion.movement import cycle_targets
-from suchus.robots import ROBOTS
+from suchus.robot import blueprint
+from suchus.apps.cli import main
+from suchus.robot.design import Robot, layout
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion.movement import cycle_targets
+from suchus.robot.robots import ROBOTS
 
 BALL = shape('<sphere radius="0.02"/>')
 ARM = joint("ab", "a", "b", (0.1, 0.0, 0.0), "0 0 1")

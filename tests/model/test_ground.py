@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
-from suchus.errors import InvalidDesign
-from suchus.model import compile_model
+from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
+from suchus.core.errors import InvalidDesign
+from suchus.sim.model import compile_model
 
 STEP = Step(at=0.7, height=0.03)
 STONE = Stone(at=0.75, aside=0.0, height=0.05, length=0.06, width=0.05)

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.gaits import GAITS
-from suchus.motion import Steer, intended, movement
-from suchus.robots import ROBOTS
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Steer, intended, movement
+from suchus.robot.robots import ROBOTS
 
 FROZEN = json.loads((Path(__file__).with_name("servo_targets.json")).read_text())
 """Times [s] and angles in open loop [rad]; phases, size, strokes, heights and bends that steer, and angles then."""
@@ -30,7 +30,7 @@ def test_the_targets_are_what_they_were(pair):
     robot, gait = frozen(pair)
     angles = intended(robot, gait, np.array(FROZEN[pair]["time"])).targets
     expected = np.array(FROZEN[pair]["open"])
-    assert angles == pytest.approx(expected, abs=4e-15)  # machines differ in the last bit, see suchus.machine
+    assert angles == pytest.approx(expected, abs=4e-15)  # machines differ in the last bit, see suchus.core.machine
 
 
 @pytest.mark.parametrize("pair", [pair for pair in FROZEN if "steered" in FROZEN[pair]])

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.control.pattern_posture import PatternPosture
-from suchus.design import layout, unit_at, value_at, with_values
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
-from suchus.gaits import GAITS, own_gait
-from suchus.motion import (
+from suchus.robot.control.pattern_posture import PatternPosture
+from suchus.robot.design import layout, unit_at, value_at, with_values
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import (
     NUMBERS,
     Bend,
     Curve,
@@ -25,7 +25,7 @@ from suchus.motion import (
     intended,
     middle_stance,
 )
-from suchus.robots import ROBOTS
+from suchus.robot.robots import ROBOTS
 
 BODIES = ("caiman", "pleurobot", "salamander", "salamandra", "strider", "swimmer")
 SALAMANDER, WALK, FILMED = ROBOTS["salamander"], GAITS["salamander_walk"], GAITS["animal_walk"]

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from tests.metres import with_metres
 
-from suchus.design import crocodile, layout
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.gaits import GAITS, own_gait
-from suchus.land import Run, simulate
-from suchus.metrics import displacement, vertical_bend
-from suchus.motion import (
+from suchus.robot.design import crocodile, layout
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement, vertical_bend
+from suchus.robot.motion import (
     START,
     Bend,
     Curve,
@@ -27,7 +27,7 @@ from suchus.motion import (
     shortest_period,
     suits,
 )
-from suchus.robots import ROBOTS
+from suchus.robot.robots import ROBOTS
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 WALKERS = ("caiman", "pleurobot", "salamander", "salamandra", "strider")

@@ -9,15 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.metres import with_metres
 
-from suchus.control import Coordinated, OpenLoop, Runs, Walking
-from suchus.control.limbs import LAWS
-from suchus.design import crocodile, layout, servo_names
-from suchus.design.scale import control_period
-from suchus.errors import OutsideLimits
-from suchus.gaits import GAITS, own_gait
-from suchus.kinematics import landmarks
-from suchus.kinematics import leg as leg_kinematics
-from suchus.motion import (
+from suchus.robot.control import Coordinated, OpenLoop, Runs, Walking
+from suchus.robot.control.limbs import LAWS
+from suchus.robot.design import crocodile, layout, servo_names
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import OutsideLimits
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.kinematics import landmarks
+from suchus.robot.kinematics import leg as leg_kinematics
+from suchus.robot.motion import (
     START,
     Batch,
     Bend,
@@ -33,9 +33,9 @@ from suchus.motion import (
     suits,
     trunk_amplitude,
 )
-from suchus.motion.axis import yaw_hinges
-from suchus.motion.limbs import foot_path
-from suchus.robots import ROBOTS
+from suchus.robot.motion.axis import yaw_hinges
+from suchus.robot.motion.limbs import foot_path
+from suchus.robot.robots import ROBOTS
 
 LEGS = ("LF", "RF", "LH", "RH")
 BODIES = ("caiman", "pleurobot", "salamander", "salamandra", "strider", "swimmer")

@@ -6,12 +6,12 @@ import pytest
 from tests.bodies import eight, hatchling, six
 
 import suchus
-from suchus.design import Spring, crocodile, layout
-from suchus.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.kinematics import leg as leg_kinematics
-from suchus.model import compile_model, joint_addresses
-from suchus.motion.posture import Keyed, hind_leg, plan
-from suchus.motion.rising import STRETCH, stand_up, stretched, tallest
+from suchus.robot.design import Spring, crocodile, layout
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.robot.kinematics import leg as leg_kinematics
+from suchus.sim.model import compile_model, joint_addresses
+from suchus.robot.motion.posture import Keyed, hind_leg, plan
+from suchus.robot.motion.rising import STRETCH, stand_up, stretched, tallest
 
 CAIMAN = suchus.ROBOTS["caiman"]
 RISE = stand_up(CAIMAN)

@@ -4,11 +4,11 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from suchus.design import layout, servo_names
-from suchus.gaits import GAITS, own_gait
-from suchus.motion import cycle_targets, servo_range
-from suchus.motion.transition import transition
-from suchus.robots import ROBOTS
+from suchus.robot.design import layout, servo_names
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import cycle_targets, servo_range
+from suchus.robot.motion.transition import transition
+from suchus.robot.robots import ROBOTS
 
 POSTURES = ("belly_crawl", "low_crawl", "semi_erect", "high_walk")
 

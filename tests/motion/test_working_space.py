@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from tests.bodies import six
 
-from suchus.design import LEGS, crocodile, joint_names
-from suchus.errors import UnsuitedRobot
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
-from suchus.gaits.belly_crawl import LIMBS
-from suchus.kinematics.tree import centre_of_mass, landmarks
-from suchus.motion import GaitInMetres
-from suchus.motion.working_space import extent, outline, over, reached
+from suchus.robot.design import LEGS, crocodile, joint_names
+from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
+from suchus.robot.gaits.belly_crawl import LIMBS
+from suchus.robot.kinematics.tree import centre_of_mass, landmarks
+from suchus.robot.motion import GaitInMetres
+from suchus.robot.motion.working_space import extent, outline, over, reached
 
 CRAWL = GAITS["belly_crawl"]
 METRES = GaitInMetres.near(CRAWL, LIMBS)

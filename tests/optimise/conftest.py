@@ -2,9 +2,9 @@
 
 import pytest
 
-from suchus.land import Run
-from suchus.optimise import Aim, Limit, Optimisation
-from suchus.study import Vary
+from suchus.sim.land import Run
+from suchus.experiments.optimise import Aim, Limit, Optimisation
+from suchus.experiments.study import Vary
 
 for library in ("cma", "comocma", "moarchiving"):
     pytest.importorskip(library, reason="not installed: pip install 'suchus[optimise]'")

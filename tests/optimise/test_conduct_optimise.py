@@ -13,22 +13,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus import blueprint
-from suchus.cli import main
-from suchus.control import Walking
-from suchus.design.scale import coarse_step
-from suchus.errors import IncompatibleRecord, NotConverged, Unwritable
-from suchus.gaits import GAITS, own_gait
-from suchus.jobs.store import unpacked
-from suchus.land import Run, simulate
-from suchus.metrics import displacement, slip
-from suchus.motion import Gait
-from suchus.optimise import Limit, evaluate, optimise, read_optimisation
-from suchus.optimise.aims import LIMITS
-from suchus.optimise.conduct import CONDITIONS, _under
-from suchus.record import load
-from suchus.robots import ROBOTS
-from suchus.study import Arm, Vary
+from suchus.robot import blueprint
+from suchus.apps.cli import main
+from suchus.robot.control import Walking
+from suchus.robot.design.scale import coarse_step
+from suchus.core.errors import IncompatibleRecord, NotConverged, Unwritable
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.core.jobs.store import unpacked
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement, slip
+from suchus.robot.motion import Gait
+from suchus.experiments.optimise import Limit, evaluate, optimise, read_optimisation
+from suchus.experiments.optimise.aims import LIMITS
+from suchus.experiments.optimise.conduct import CONDITIONS, _under
+from suchus.core.files import load
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import Arm, Vary
 
 PAGE = """
 name = "small"
@@ -55,7 +55,7 @@ name = "free"
 name = "straight"
 values = {"gait.trunk_bend" = 0.0}
 """
-ALONE = "import sys; from pathlib import Path; from suchus.optimise import optimise, read_optimisation; "
+ALONE = "import sys; from pathlib import Path; from suchus.experiments.optimise import optimise, read_optimisation; "
 ALONE += "optimise(read_optimisation(Path(sys.argv[1])), Path(sys.argv[2]))"
 
 

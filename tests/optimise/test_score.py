@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.design import servo_names
-from suchus.errors import OutsideLimits, SuchusError
-from suchus.gaits import own_gait
-from suchus.kinematics.tail import servo_angle
-from suchus.motion import excess
-from suchus.optimise import Aim, Limit
-from suchus.optimise import evaluate as evaluating
-from suchus.optimise.aims import AIMS, LIMITS
-from suchus.optimise.evaluate import allowed, evaluate, excesses, losses, score, units
-from suchus.optimise.search import SearchResult
-from suchus.robots import ROBOTS
+from suchus.robot.design import servo_names
+from suchus.core.errors import OutsideLimits, SuchusError
+from suchus.robot.gaits import own_gait
+from suchus.robot.kinematics.tail import servo_angle
+from suchus.robot.motion import excess
+from suchus.experiments.optimise import Aim, Limit
+from suchus.experiments.optimise import evaluate as evaluating
+from suchus.experiments.optimise.aims import AIMS, LIMITS
+from suchus.experiments.optimise.evaluate import allowed, evaluate, excesses, losses, score, units
+from suchus.experiments.optimise.search import SearchResult
+from suchus.robot.robots import ROBOTS
 
 
 def table(ways, clear, status=None, beyond=None):

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.optimise import Aim, NoOptimiser
-from suchus.optimise.search import search
+from suchus.experiments.optimise import Aim, NoOptimiser
+from suchus.experiments.optimise.search import search
 
 BEST = np.array([0.3, 0.7])
 

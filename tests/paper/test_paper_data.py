@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-import suchus.paper
-from suchus.paper import (
+import suchus.article.paper
+from suchus.article.paper import (
     CLAIMS,
     CRAWL_END,
     CYCLE_PERIOD,
@@ -20,9 +20,9 @@ from suchus.paper import (
     TABLE_II,
     Claim,
 )
-from suchus.paper.tables import COLUMNS
+from suchus.article.paper.tables import COLUMNS
 
-SOURCES = sorted(Path(suchus.paper.__file__).parent.glob("*.py"))
+SOURCES = sorted(Path(suchus.article.paper.__file__).parent.glob("*.py"))
 UNITS = {"-", "m", "s", "m/s", "rad", "N", "Pa"}
 
 
@@ -35,7 +35,7 @@ def test_paper_imports_the_standard_library_only(source):
         elif isinstance(node, ast.ImportFrom):
             names = [node.module or ""]
         for name in names:
-            assert name.split(".")[0] in sys.stdlib_module_names or name.startswith("suchus.paper")
+            assert name.split(".")[0] in sys.stdlib_module_names or name.startswith("suchus.article.paper")
 
 
 def test_tables_are_those_of_the_article():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from suchus.errors import IncompatibleRecord
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.record import check_land
-from suchus.robots import ROBOTS
+from suchus.core.errors import IncompatibleRecord
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.sim.record import check_land
+from suchus.robot.robots import ROBOTS
 
 NAMES = ("position", "orientation", "joint_angle", "snout", "tail_tip", "foot_position")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.record import check_writable, digest, load, new_folder, plain, provenance, save, sweep
-from suchus.writing import MANIFEST
+from suchus.core.errors import IncompatibleRecord, UnreadableFile, Unwritable
+from suchus.core.files import check_writable, digest, load, new_folder, plain, provenance, save, sweep
+from suchus.core.writing import MANIFEST
 
 
 @pytest.fixture
@@ -76,9 +76,9 @@ def test_what_is_no_record_of_ours_is_refused(record, tmp_path):
 
 
 def test_a_record_of_a_later_version_is_refused(record, tmp_path, monkeypatch):
-    monkeypatch.setattr("suchus.record.store._VERSION", 2)
+    monkeypatch.setattr("suchus.core.files.store._VERSION", 2)
     save(record, tmp_path / "r.nc")
-    monkeypatch.setattr("suchus.record.store._VERSION", 1)
+    monkeypatch.setattr("suchus.core.files.store._VERSION", 1)
     with pytest.raises(IncompatibleRecord, match="update suchus"):
         load(tmp_path / "r.nc")
 

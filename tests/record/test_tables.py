@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import Unwritable
-from suchus.land import Run, simulate
-from suchus.record import save, write_tables
-from suchus.record.tables import COLUMNS
-from suchus.writing import MANIFEST
+from suchus.core.errors import Unwritable
+from suchus.sim.land import Run, simulate
+from suchus.core.files import save, write_tables
+from suchus.core.files.tables import COLUMNS
+from suchus.core.writing import MANIFEST
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_what_is_missing_is_empty_and_orders_of_dimensions_do_not_split_a_file(t
 
 
 def test_more_rows_than_are_written_at_a_time(tmp_path, monkeypatch):
-    monkeypatch.setattr("suchus.record.tables._ROWS", 7)
+    monkeypatch.setattr("suchus.core.files.tables._ROWS", 7)
     record = xr.Dataset({"a": ("x", np.arange(100.0))}, coords={"x": np.arange(100) * 2})
     rows = read(write_tables(record, tmp_path / "csv") / "x.csv")
     assert [(int(row["x"]), float(row["a"])) for row in rows] == [(2 * i, float(i)) for i in range(100)]

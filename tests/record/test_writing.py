@@ -5,9 +5,9 @@ import subprocess
 import pytest
 from tests.failing import KINDS, each_failing
 
-from suchus import writing
-from suchus.errors import Unwritable
-from suchus.writing import MANIFEST, check_replaceable, keep, new_folder, replacing, write
+from suchus.core import writing
+from suchus.core.errors import Unwritable
+from suchus.core.writing import MANIFEST, check_replaceable, keep, new_folder, replacing, write
 
 
 def contents(folder):

@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.design import LEGS
-from suchus.design.ground import Bumps, Ground, Step, Stone, field
-from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments import EXPERIMENTS
-from suchus.gaits import GAITS
-from suchus.record import ground_text
-from suchus.replay import replay, save
-from suchus.replay.frames import MOST, frames
-from suchus.rotation import rotate
-from suchus.skin import ankles, footed, poses, skin
-from suchus.skin.ankles import NEAR, REACH
+from suchus.robot.design import LEGS
+from suchus.robot.design.ground import Bumps, Ground, Step, Stone, field
+from suchus.core.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.gaits import GAITS
+from suchus.sim.record import ground_text
+from suchus.visual.replay import replay, save
+from suchus.visual.replay.frames import MOST, frames
+from suchus.core.rotation import rotate
+from suchus.visual.skin import ankles, footed, poses, skin
+from suchus.visual.skin.ankles import NEAR, REACH
 
 
 def opened(page):

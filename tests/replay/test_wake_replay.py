@@ -9,9 +9,9 @@ import pytest
 from tests.replay.test_player import BROWSER, browser, fits_a_phone, until  # noqa: F401
 from tests.wakes import ringed
 
-from suchus.errors import IncompatibleRecord
-from suchus.figures import vortices
-from suchus.replay import page, save, wake_replay
+from suchus.core.errors import IncompatibleRecord
+from suchus.visual.figures import vortices
+from suchus.visual.replay import page, save, wake_replay
 
 
 def unpacked(page):

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from suchus.experiment import Experiment, Measure, Outcome, silent
-from suchus.figures import captioned, panels
-from suchus.paper import CLAIMS
-from suchus.report import Failure, load_result, render_outcome_page, render_page, save_outcome
-from suchus.verdict import Rule, Verdict
+from suchus.experiments.experiment import Experiment, Measure, Outcome, silent
+from suchus.visual.figures import captioned, panels
+from suchus.article.paper import CLAIMS
+from suchus.apps.report import Failure, load_result, render_outcome_page, render_page, save_outcome
+from suchus.article.verdict import Rule, Verdict
 
 AXE = Path(os.environ.get("SUCHUS_AXE", Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"))
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -79,7 +79,7 @@ def page(request, tmp_path_factory):
 
 
 def colours(scheme):
-    style = files("suchus.report").joinpath("templates/style.css").read_text()
+    style = files("suchus.apps.report").joinpath("templates/style.css").read_text()
     light, dark = re.findall(r":root \{(.*?)\}", style, re.S)[:2]
     return dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", light if scheme == "light" else dark))
 

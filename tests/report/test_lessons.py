@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from suchus.cli import main
-from suchus.report import lessons
-from suchus.report.lessons import Lesson, write_lessons
+from suchus.apps.cli import main
+from suchus.apps.report import lessons
+from suchus.apps.report.lessons import Lesson, write_lessons
 
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from suchus.report.page import metres
+from suchus.apps.report.page import metres
 
 
 def result(**measures):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.felt import felt
 
-from suchus.control import (
+from suchus.robot.control import (
     CONTROLLERS,
     LAWS,
     SENSED,
@@ -22,8 +22,8 @@ from suchus.control import (
     Swimming,
     needs,
 )
-from suchus.land import Run, simulate
-from suchus.sources import snake
+from suchus.sim.land import Run, simulate
+from suchus.core.sources import snake
 
 DEAF = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 SHORT = 1.3

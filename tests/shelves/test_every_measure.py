@@ -23,10 +23,10 @@ import pytest
 import xarray as xr
 from tests.experiments.test_swim_ladder import rung
 
-from suchus.experiment import Measure
-from suchus.experiments import EXPERIMENTS
-from suchus.experiments.swimming.rules import LADDER
-from suchus.motion import START
+from suchus.experiments.experiment import Measure
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swimming.rules import LADDER
+from suchus.robot.motion import START
 
 NAMES = [name for name, one in EXPERIMENTS.items() if one.rules()]
 SAME = 1e-6

@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 from evidence import store, tolerance
 
-from suchus.experiment import Measures
-from suchus.experiments import EXPERIMENTS
-from suchus.figures import caption
-from suchus.figures.data import field_of
-from suchus.figures.uncover import covering
-from suchus.paper import CLAIMS
-from suchus.sources import current
-from suchus.verdict import judge
+from suchus.experiments.experiment import Measures
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.visual.figures import caption
+from suchus.visual.figures.data import field_of
+from suchus.visual.figures.uncover import covering
+from suchus.article.paper import CLAIMS
+from suchus.core.sources import current
+from suchus.article.verdict import judge
 
 GOLDEN = Path(__file__).parent.parent / "golden"
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import InvalidDesign
-from suchus.land import Run, simulate
-from suchus.sources import snake
-from suchus.study.measures import MEASURES, _of_each_run, measured, unit_of
+from suchus.core.errors import InvalidDesign
+from suchus.sim.land import Run, simulate
+from suchus.core.sources import snake
+from suchus.experiments.study.measures import MEASURES, _of_each_run, measured, unit_of
 
 
 @pytest.fixture(params=list(MEASURES))

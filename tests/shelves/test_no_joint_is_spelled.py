@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from suchus.design import layout
-from suchus.robots import ROBOTS
+from suchus.robot.design import layout
+from suchus.robot.robots import ROBOTS
 
 SOURCES = Path(__file__).parents[2] / "src" / "suchus"
 HOME = ("design", "robots", "gaits", "faults")  # a fault's examples name a joint of the caiman

@@ -6,13 +6,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.design import GRAVITY, joint_names, layout, leg_joints, servo_names, spine_joints
-from suchus.design.physics import WATER_DENSITY
-from suchus.design.pieces import masses, volumes
-from suchus.design.scale import gravity_time, physics_step
-from suchus.gaits import own_gait, suits
-from suchus.model import build, compile_model, joint_addresses, sensor_names
-from suchus.robots import ROBOTS
+from suchus.robot.design import GRAVITY, joint_names, layout, leg_joints, servo_names, spine_joints
+from suchus.robot.design.physics import WATER_DENSITY
+from suchus.robot.design.pieces import masses, volumes
+from suchus.robot.design.scale import gravity_time, physics_step
+from suchus.robot.gaits import own_gait, suits
+from suchus.sim.model import build, compile_model, joint_addresses, sensor_names
+from suchus.robot.robots import ROBOTS
 
 FROM_THE_ARTICLE = {
     "hind_leg.hip_offset",

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 from tests.bodies import eight, hatchling, six
 
-from suchus.design import LEGS, crocodile, joint_names, layout
-from suchus.errors import InvalidDesign, SuchusError
-from suchus.model import compile_model, joint_addresses
-from suchus.robots import ROBOTS
-from suchus.skin import bone_names, poses, skin
-from suchus.skin.ankles import ankles, footed
-from suchus.skin.bones import Poses
-from suchus.skin.surface import _blended
+from suchus.robot.design import LEGS, crocodile, joint_names, layout
+from suchus.core.errors import InvalidDesign, SuchusError
+from suchus.sim.model import compile_model, joint_addresses
+from suchus.robot.robots import ROBOTS
+from suchus.visual.skin import bone_names, poses, skin
+from suchus.visual.skin.ankles import ankles, footed
+from suchus.visual.skin.bones import Poses
+from suchus.visual.skin.surface import _blended
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import Unwritable
-from suchus.land import Run
-from suchus.study import Arm, Claims, Plan, Study, Vary, conduct
-from suchus.study.answers import agreement, first_order, share_interval
+from suchus.core.errors import Unwritable
+from suchus.sim.land import Run
+from suchus.experiments.study import Arm, Claims, Plan, Study, Vary, conduct
+from suchus.experiments.study.answers import agreement, first_order, share_interval
 
 
 @pytest.fixture(scope="module")

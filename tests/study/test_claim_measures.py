@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import IncompatibleRecord
-from suchus.gaits import CONDITIONS, conditions_of
-from suchus.land import FAILED_JOINTS, Limp
-from suchus.paper import CLAIMS
-from suchus.robots import ROBOTS
-from suchus.study import Claims, Plan
-from suchus.study.claim_measures import RUNS, asked_rules, held, measures_of
-from suchus.verdict import RULES, Clause, Rule, examples_of
+from suchus.core.errors import IncompatibleRecord
+from suchus.robot.gaits import CONDITIONS, conditions_of
+from suchus.sim.land import FAILED_JOINTS, Limp
+from suchus.article.paper import CLAIMS
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import Claims, Plan
+from suchus.experiments.study.claim_measures import RUNS, asked_rules, held, measures_of
+from suchus.experiments.claims import RULES, examples_of
+from suchus.article.verdict import Clause, Rule
 
 LEAST = 0.05
 

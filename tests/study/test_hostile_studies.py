@@ -11,16 +11,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.cli import main
-from suchus.control import PatternGenerator
-from suchus.errors import IncompatibleRecord, InvalidDesign, SuchusError
-from suchus.jobs import NoCluster, connected
-from suchus.jobs.cluster import _check_versions, _reach
-from suchus.jobs.store import Store
-from suchus.land import Run, crawl
-from suchus.optimise import Optimisation
-from suchus.optimise.spec import Aim
-from suchus.study import MEASURES, Plan, Study, Vary, conduct, read_study, run_chunk
+from suchus.apps.cli import main
+from suchus.robot.control import PatternGenerator
+from suchus.core.errors import IncompatibleRecord, InvalidDesign, SuchusError
+from suchus.core.jobs import NoCluster, connected
+from suchus.core.jobs.cluster import _check_versions, _reach
+from suchus.core.jobs.store import Store
+from suchus.sim.land import Run, crawl
+from suchus.experiments.optimise import Optimisation
+from suchus.experiments.optimise.spec import Aim
+from suchus.experiments.study import MEASURES, Plan, Study, Vary, conduct, read_study, run_chunk
 
 PAGE = """
 name = "s"

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from suchus.paper import CLAIMS
-from suchus.verdict import RULES, Clause, Rule, counted, standings
-from suchus.verdict.judging import WORDS
+from suchus.article.paper import CLAIMS
+from suchus.experiments.claims import RULES, counted, standings
+from suchus.article.verdict import Clause, Rule
+from suchus.article.verdict.judging import WORDS
 
 MEASURED = Rule(claim="a", experiment="e", measure="x", holds=(Clause("x", ">", 0.0, "more is more"),), why="why")
 OTHER = replace(MEASURED, claim="b", holds=(Clause("x", ">", 1.0, "more is more"),))

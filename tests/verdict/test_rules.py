@@ -10,12 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import suchus.experiments
-from suchus.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiment import estimated
-from suchus.paper import CLAIMS
-from suchus.verdict import RULES, UNRULED, Clause, Share, TooFew, between, examples_of, judge, rules_of
-from suchus.verdict.judging import ROBUST, fragile
+import suchus.experiments.catalog
+from suchus.core.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments.experiment import estimated
+from suchus.article.paper import CLAIMS
+from suchus.experiments.claims import RULES, UNRULED, examples_of, rules_of
+from suchus.article.verdict import Clause, Share, TooFew, between, judge
+from suchus.article.verdict.judging import ROBUST, fragile
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
@@ -169,25 +170,25 @@ def test_what_was_built_in_or_fitted_is_not_fragile(claim, fragile):
 
 
 def test_rules_are_read_without_their_experiments():
-    code = "import sys; from suchus.verdict import RULES; [*RULES]; print({'numpy', 'mujoco'} & {*sys.modules})"
+    code = "import sys; from suchus.article.verdict import RULES; [*RULES]; print({'numpy', 'mujoco'} & {*sys.modules})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
 
 
 def test_a_rule_beside_another_experiment_is_refused(tmp_path, monkeypatch):
     """And one file can hold a question, its rules and their examples."""
-    text = "from suchus.verdict import Rule\nRULES = ({},)\n{}\n"
+    text = "from suchus.article.verdict import Rule\nRULES = ({},)\n{}\n"
     rule = 'Rule(claim="joint_pid", experiment={!r}, measure="x", why="because")'
     examples = "EXAMPLES = {'joint_pid': [({'x': 1.0}, 'reproduced')]}"
     (tmp_path / "strange.py").write_text(text.format(rule.format("displacement"), examples))
     (tmp_path / "whole.py").write_text(text.format(rule.format("whole"), examples))
-    monkeypatch.setattr(suchus.experiments, "__path__", [*suchus.experiments.__path__, str(tmp_path)])
+    monkeypatch.setattr(suchus.experiments.catalog, "__path__", [*suchus.experiments.catalog.__path__, str(tmp_path)])
     with pytest.raises(InvalidDesign, match=r"RULES of strange hold Rule.*no Rule of this experiment"):
         rules_of("strange")
     assert [rule.claim for rule in rules_of("whole")] == ["joint_pid"]
     assert examples_of("whole") == {"joint_pid": [({"x": 1.0}, "reproduced")]}
     for name in ("strange", "whole"):
-        monkeypatch.delitem(sys.modules, f"suchus.experiments.{name}")
+        monkeypatch.delitem(sys.modules, f"suchus.experiments.catalog.{name}")
 
 
 def test_every_statement_of_the_article_has_a_rule_or_a_reason_why_there_is_none():

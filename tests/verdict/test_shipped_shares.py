@@ -6,15 +6,16 @@ from importlib import resources
 
 import pytest
 
-from suchus.design import value_at
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
-from suchus.study.claim_measures import claims_varied
-from suchus.study.varied import LEAST
-from suchus.verdict import RULES, SHARES, TOO_FEW, Share, examples_of, judge
-from suchus.verdict.judging import digest
+from suchus.robot.design import value_at
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study.claim_measures import claims_varied
+from suchus.experiments.study.varied import LEAST
+from suchus.experiments.claims import RULES, examples_of
+from suchus.article.verdict import SHARES, TOO_FEW, Share, judge
+from suchus.article.verdict.judging import digest
 
-FILE = resources.files("suchus.verdict") / "claims.json"
+FILE = resources.files("suchus.article.verdict") / "claims.json"
 TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
 shipped = pytest.mark.skipif(not TOLD, reason="no table has been shipped yet")
 

@@ -6,15 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from suchus.capture import Camera, SyntheticAnimal, UnusableTracks, film_animal, write_table
-from suchus.cli.entry import main
-from suchus.design.ground import Ground
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.motion import START
-from suchus.record import save
-from suchus.robots import ROBOTS
-from suchus.viewer.replay import Take, beside, takes
+from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, film_animal, write_table
+from suchus.apps.cli.entry import main
+from suchus.robot.design.ground import Ground
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.robot.motion import START
+from suchus.core.files import save
+from suchus.robot.robots import ROBOTS
+from suchus.apps.viewer.replay import Take, beside, takes
 
 LIZARD = SyntheticAnimal(
     trunk=0.12, tail=0.20, period=0.8, duty_factor=0.7, limb_phases=(0.0, 0.5, 0.25, 0.75), stride=0.15, outward=0.06,
@@ -99,7 +99,7 @@ def test_the_command_refuses_a_file_without_tracks_in_one_sentence(walk, tmp_pat
 
 
 def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
-    drawn = pytest.importorskip("suchus.viewer.drawn", reason="the extra viewer is not installed")
+    drawn = pytest.importorskip("suchus.apps.viewer.drawn", reason="the extra viewer is not installed")
     made: dict[str, SimpleNamespace] = {}
 
     def node(name, *_, **settings):
@@ -114,7 +114,7 @@ def test_lines_and_feet_are_drawn_where_the_animal_is(take, tracks):
 
 
 def test_the_head_of_the_page_names_the_film_and_its_pace(take, tracks):
-    status_text = pytest.importorskip("suchus.viewer.replay_page").status_text
+    status_text = pytest.importorskip("suchus.apps.viewer.replay_page").status_text
     animal = beside(replace(tracks, source="<lizard>.csv"), take)
     text = status_text(take, None, 1.0, animal)
     assert "&lt;lizard&gt;.csv" in text
@@ -123,7 +123,7 @@ def test_the_head_of_the_page_names_the_film_and_its_pace(take, tracks):
 
 
 def test_a_table_of_tracks_is_read_by_the_command_line(walk, tracks, tmp_path, monkeypatch):
-    view = pytest.importorskip("suchus.cli.view")
+    view = pytest.importorskip("suchus.apps.cli.view")
     file = tmp_path / "lizard.csv"
     write_table(tracks, file)
     options = view.Replaying(record=walk, animal=file)

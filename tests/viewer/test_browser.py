@@ -14,18 +14,18 @@ import pytest
 import xarray as xr
 from tests.wakes import ringed
 
-from suchus.faults import Limp
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
-from suchus.record import save
-from suchus.robots import ROBOTS
-from suchus.viewer import Session
-from suchus.viewer.bodies import pieces
-from suchus.viewer.replay import takes
-from suchus.viewer.swim import films, vortex_film
+from suchus.sim.faults import Limp
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.core.files import save
+from suchus.robot.robots import ROBOTS
+from suchus.apps.viewer import Session
+from suchus.apps.viewer.bodies import pieces
+from suchus.apps.viewer.replay import takes
+from suchus.apps.viewer.swim import films, vortex_film
 
-pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
-_stand_back = pytest.importorskip("suchus.viewer.server")._stand_back
+pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
+_stand_back = pytest.importorskip("suchus.apps.viewer.server")._stand_back
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 BROWSER = next(

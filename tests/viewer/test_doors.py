@@ -5,14 +5,14 @@ from urllib.parse import urlsplit
 
 import pytest
 
-pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
 from websockets.asyncio import server  # noqa: E402
 from websockets.datastructures import Headers  # noqa: E402
 from websockets.exceptions import InvalidStatus  # noqa: E402
 from websockets.http11 import Request  # noqa: E402
 from websockets.sync.client import connect  # noqa: E402
 
-from suchus.viewer.server import Gate  # noqa: E402
+from suchus.apps.viewer.server import Gate  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("default")  # viser's threads outlive its server for a moment
 

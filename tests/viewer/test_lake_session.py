@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.control import DepthHold, Swimming
-from suchus.errors import InvalidDesign
-from suchus.gaits import GAITS
-from suchus.land import Lake, Live, Run, simulate
-from suchus.robots import ROBOTS
-from suchus.viewer import Session
-from suchus.viewer.live_page import status
+from suchus.robot.control import DepthHold, Swimming
+from suchus.core.errors import InvalidDesign
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, Live, Run, simulate
+from suchus.robot.robots import ROBOTS
+from suchus.apps.viewer import Session
+from suchus.apps.viewer.live_page import status
 
 ROBOT, CRAWL = ROBOTS["floating_caiman"], GAITS["belly_crawl"]
 WAVE = crocodile_swim()

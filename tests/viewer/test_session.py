@@ -8,22 +8,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.blueprint import read
-from suchus.design import crocodile, layout
-from suchus.design.scale import control_period, scaled
-from suchus.errors import OutsideLimits
-from suchus.faults import Limp, Locked
-from suchus.gaits import GAITS, own_gait
-from suchus.land import simulate
-from suchus.motion import Gait, check_limits, suits
-from suchus.robots import ROBOTS
-from suchus.viewer import Session
-from suchus.viewer.bodies import BodyPoses, pieces
-from suchus.viewer.history import columns
-from suchus.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
-from suchus.viewer.live_page import Controls, gait_file, robot_file, status
-from suchus.viewer.plots import gait_bars, plans
-from suchus.viewer.session import _PLAIN
+from suchus.robot.blueprint import read
+from suchus.robot.design import crocodile, layout
+from suchus.robot.design.scale import control_period, scaled
+from suchus.core.errors import OutsideLimits
+from suchus.sim.faults import Limp, Locked
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import simulate
+from suchus.robot.motion import Gait, check_limits, suits
+from suchus.robot.robots import ROBOTS
+from suchus.apps.viewer import Session
+from suchus.apps.viewer.bodies import BodyPoses, pieces
+from suchus.apps.viewer.history import columns
+from suchus.apps.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, force_on, knobs_of, shown, tuned
+from suchus.apps.viewer.live_page import Controls, gait_file, robot_file, status
+from suchus.apps.viewer.plots import gait_bars, plans
+from suchus.apps.viewer.session import _PLAIN
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 GAIT = replace(CRAWL, period=1.0)

@@ -3,7 +3,7 @@ import sys
 
 import pytest
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 
 @pytest.mark.parametrize(
@@ -33,9 +33,9 @@ def test_a_file_that_is_no_record_is_told_in_a_sentence(tmp_path, capsys):
 
 
 def test_without_the_extra_the_remedy_is_told(monkeypatch, capsys):
-    for name in [name for name in sys.modules if name.startswith("suchus.viewer.")]:
+    for name in [name for name in sys.modules if name.startswith("suchus.apps.viewer.")]:
         monkeypatch.delitem(sys.modules, name)
-    monkeypatch.delattr("suchus.viewer.pages", raising=False)
+    monkeypatch.delattr("suchus.apps.viewer.pages", raising=False)
     monkeypatch.setitem(sys.modules, "viser", None)
     assert main(["view"]) == 2
     assert "pip install 'suchus[viewer]'" in capsys.readouterr().err

@@ -4,22 +4,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.design import LEGS
-from suchus.design.ground import Bumps, Ground, heights, slope
-from suchus.errors import IncompatibleRecord, UnreadableFile
-from suchus.gaits import GAITS
-from suchus.land import Lake, Run, simulate
-from suchus.record import save
-from suchus.robots import ROBOTS
-from suchus.rotation import rotate
-from suchus.viewer.bodies import BodyPoses, pieces, support
-from suchus.viewer.history import columns
-from suchus.viewer.plots import gait_bars
-from suchus.viewer.replay import _NEEDED, Player, takes
-from suchus.viewer.stage import RodShape, rod, upright
-from suchus.viewer.swim import films
+from suchus.robot.design import LEGS
+from suchus.robot.design.ground import Bumps, Ground, heights, slope
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, Run, simulate
+from suchus.core.files import save
+from suchus.robot.robots import ROBOTS
+from suchus.core.rotation import rotate
+from suchus.apps.viewer.bodies import BodyPoses, pieces, support
+from suchus.apps.viewer.history import columns
+from suchus.apps.viewer.plots import gait_bars
+from suchus.apps.viewer.replay import _NEEDED, Player, takes
+from suchus.apps.viewer.stage import RodShape, rod, upright
+from suchus.apps.viewer.swim import films
 
-stage = pytest.importorskip("suchus.viewer.stage", reason="the extra viewer is not installed")
+stage = pytest.importorskip("suchus.apps.viewer.stage", reason="the extra viewer is not installed")
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +57,7 @@ def test_a_take_knows_the_ground_it_was_walked_on(tmp_path):
     record = simulate(runs, duration=0.05, timestep=0.01)
     assert [take.ground for take in takes(save(record, tmp_path / "new.nc"))] == [ground, Ground()]
     sloped, level = takes(tmp_path / "new.nc")
-    told = pytest.importorskip("suchus.viewer.replay_page").status_text
+    told = pytest.importorskip("suchus.apps.viewer.replay_page").status_text
     assert "other ground" in told(sloped, level, 0.0)
     assert "other ground" not in told(level, level, 0.0)
     old = save(record.isel(run=1).drop_vars("stands_on"), tmp_path / "old.nc")

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from tests.wakes import CORE, RADIUS, ringed
 
-from suchus.cli import main
-from suchus.errors import IncompatibleRecord
-from suchus.record import save
-from suchus.viewer import swim
-from suchus.viewer.swim import VortexFilm, vortex_film
+from suchus.apps.cli import main
+from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import save
+from suchus.apps.viewer import swim
+from suchus.apps.viewer.swim import VortexFilm, vortex_film
 
 
 @pytest.mark.parametrize(("level", "lower"), [(2.0, False), (4.0, True), (6.0, False)])
@@ -117,7 +117,7 @@ def test_the_command_refuses_it_in_a_sentence(tmp_path, capsys):
 @pytest.fixture
 def page():
     """The page of a browser that takes everything and shows nothing."""
-    pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+    pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
     gui = MagicMock()
     gui.add_slider.side_effect = lambda *words, **_: SimpleNamespace(value=words[4], on_update=lambda act: None)
     gui.add_checkbox.side_effect = lambda _, initial_value: SimpleNamespace(value=initial_value)

@@ -5,11 +5,11 @@ from urllib.request import urlopen
 
 import pytest
 
-from suchus.emulator import EmulatedBody
-from suchus.gaits import GAITS
-from suchus.robots import ROBOTS
+from suchus.hardware.emulator import EmulatedBody
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
-pages = pytest.importorskip("suchus.viewer.pages", reason="the extra viewer is not installed")
+pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
 ROBOT = ROBOTS["caiman"]
 
 

@@ -3,14 +3,14 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.design import cable_joints, layout
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.kinematics import landmarks
-from suchus.kinematics import tail as tail_kinematics
-from suchus.model import compile_model
-from suchus.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
-from suchus.robots import ROBOTS
-from suchus.water import Outline, silhouette, swim, undulation
+from suchus.robot.design import cable_joints, layout
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.kinematics import landmarks
+from suchus.robot.kinematics import tail as tail_kinematics
+from suchus.sim.model import compile_model
+from suchus.robot.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Outline, silhouette, swim, undulation
 
 TIME = np.linspace(0.0, 1.25, 41)
 SWAY, TURN = 0.05 + 0.02j, 0.3 - 0.1j

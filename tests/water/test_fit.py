@@ -3,10 +3,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from suchus.design import layout
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
-from suchus.motion import cycle_targets, lateral_servos, movement
-from suchus.water import BodyWave, EelWave, Outline, fit, printed_wave
+from suchus.robot.design import layout
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.robot.motion import cycle_targets, lateral_servos, movement
+from suchus.swim.water import BodyWave, EelWave, Outline, fit, printed_wave
 
 
 def bends(robot, gait):

@@ -2,9 +2,9 @@ import numpy as np
 
 from suchus import flow
 from suchus.flow import swimmer
-from suchus.water import Outline, fit, printed_wave
-from suchus.water.immersed import immersed
-from suchus.water.resolved import SwimSetting
+from suchus.swim.water import Outline, fit, printed_wave
+from suchus.swim.water.immersed import immersed
+from suchus.swim.water.resolved import SwimSetting
 
 
 def _books(robot):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.design import crocodile, with_values
-from suchus.motion import still
-from suchus.robots import ROBOTS
-from suchus.water import Outline, fit, printed_wave, sprung, undulation
+from suchus.robot.design import crocodile, with_values
+from suchus.robot.motion import still
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Outline, fit, printed_wave, sprung, undulation
 
 STILL = still(ROBOTS["caiman"])
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.motion import still
-from suchus.progress import silent
-from suchus.robots import ROBOTS
-from suchus.water import Outline, Water, fit, printed_wave, recoil
-from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.motion import still
+from suchus.core.progress import silent
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Outline, Water, fit, printed_wave, recoil
+from suchus.swim.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
 
 ROBOT = ROBOTS["caiman"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait

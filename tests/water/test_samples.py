@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.errors import UnreadableFile
-from suchus.progress import silent
-from suchus.record.store import sealed
-from suchus.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
-from suchus.water.samples import Samples
+from suchus.core.errors import UnreadableFile
+from suchus.core.progress import silent
+from suchus.core.files.store import sealed
+from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
+from suchus.swim.water.samples import Samples
 
 MOTION = crocodile_swim(yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail_lag=-0.1)
 SETTING = SwimSetting(cells=32, viscosity=1e-3, cycles=1, frames=6)

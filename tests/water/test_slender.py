@@ -5,10 +5,10 @@ import pytest
 from tests.swims import crocodile_swim
 
 import suchus
-from suchus.errors import InvalidDesign, OutsideLimits
-from suchus.motion import still
-from suchus.robots import ROBOTS
-from suchus.water import (
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.motion import still
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import (
     Outline,
     Water,
     cruise,

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.errors import OutsideLimits
-from suchus.motion import check_limits, check_speeds
-from suchus.water import (
+from suchus.core.errors import OutsideLimits
+from suchus.robot.motion import check_limits, check_speeds
+from suchus.swim.water import (
     Quarters,
     Sway,
     Swum,

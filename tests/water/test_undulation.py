@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.errors import InvalidDesign
-from suchus.motion import as_table
-from suchus.robots import ROBOTS
-from suchus.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
+from suchus.core.errors import InvalidDesign
+from suchus.robot.motion import as_table
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
 
 TIME = np.linspace(0.0, 1.0, 17)
 WAVES = {

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from pages.stated import keep, kept
-from suchus.robots import ROBOTS
-from suchus.water import Swum, fit, printed_wave
-from suchus.water.resolved import TETHERED, SwimSetting, resolved_swim
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Swum, fit, printed_wave
+from suchus.swim.water.resolved import TETHERED, SwimSetting, resolved_swim
 
 pytestmark = pytest.mark.validate
 

@@ -7,9 +7,9 @@ from typing import Any
 from pages.code import PaperReference, papers
 from pages.references import named
 from pages.stated import page
-from suchus.experiment import Experiment
-from suchus.experiments import EXPERIMENTS
-from suchus.paper import CLAIMS, ERRATA, Claim
+from suchus.experiments.experiment import Experiment
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.article.paper import CLAIMS, ERRATA, Claim
 
 EQUATIONS = {
     1: "transform between neighbouring links",

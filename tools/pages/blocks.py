@@ -21,7 +21,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from suchus.cli import main
+from suchus.apps.cli import main
 
 _FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.S | re.M)
 _SETUP = ("git", "cd", "make", "python3", ".venv/bin/python", "pip", "uvx", "source", "export")

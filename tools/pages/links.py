@@ -1,6 +1,6 @@
 """Links of the pages: in the repository they lead to what stands there, in the built site to the pages made of it.
 
-A page links to ``../results/verdicts.json#claim``, ``../examples/04_kinematics.py`` or ``../src/suchus/metrics``.
+A page links to ``../results/verdicts.json#claim``, ``../examples/04_kinematics.py`` or ``../src/suchus/sim/metrics``.
 A reader of the unbuilt page can open them all; the site has a page made of each.
 """
 
@@ -8,10 +8,10 @@ import re
 
 MADE = {
     "../results/verdicts.json": "verdicts.md",
-    "../src/suchus/experiments": "questions.md",
-    "../src/suchus/paper": "paper_map.md",
-    "../src/suchus/paper/claims.py": "paper_map.md#statements",
-    "../src/suchus/paper/errata.py": "misprints.md",
+    "../src/suchus/experiments/catalog": "questions.md",
+    "../src/suchus/article/paper": "paper_map.md",
+    "../src/suchus/article/paper/claims.py": "paper_map.md#statements",
+    "../src/suchus/article/paper/errata.py": "misprints.md",
     "../examples": "examples/index.md",
     "../src/suchus": "api/index.md",
 }

@@ -5,7 +5,7 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
 from suchus.atlas.marching import march, middles
-from suchus.progress import Progress
+from suchus.core.progress import Progress
 
 _CODE = ("aerofoil.py", "marching.py")
 _PIVOT = 0.25  # [m]; place of the axis behind the nose

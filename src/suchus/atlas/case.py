@@ -9,8 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.errors import UnreadableFile
-from suchus.progress import Progress
+from suchus.core.errors import UnreadableFile
+from suchus.core.progress import Progress
 
 Curves = Mapping[str, np.ndarray]
 """Results of a flow by name: a curve of shape (2, point), abscissa and ordinate, or a number of shape ()."""

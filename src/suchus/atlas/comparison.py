@@ -7,7 +7,7 @@ import numpy as np
 
 from suchus.atlas.case import AtlasRow, Curves, PublishedCurves, bound, published
 from suchus.atlas.source_error import digits_error, half_a_digit, reading_error, stated_error
-from suchus.errors import IncompatibleRecord
+from suchus.core.errors import IncompatibleRecord
 
 LEAST_SHARE = 0.5
 """Share of the published points that our curve must reach for a comparison [-]."""

@@ -21,7 +21,7 @@ from suchus.atlas.marching import (
     shedding,
 )
 from suchus.atlas.skin import WallValues, read_skin
-from suchus.progress import Progress, staged
+from suchus.core.progress import Progress, staged
 
 _CODE = ("cylinders.py", "marching.py", "skin.py", "case.py")
 _PERIODS = 5  # of shedding, over which the wake at Re 100 is averaged

@@ -7,12 +7,12 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from suchus import flow
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.signals import last_periods
 from suchus.flow.simulation import Watcher
 from suchus.flow.water import Fluid
-from suchus.progress import Progress
+from suchus.core.progress import Progress
 
 _REPORTS = 200  # times per run that the progress is reported
 

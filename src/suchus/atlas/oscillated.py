@@ -18,7 +18,7 @@ from suchus.atlas.marching import (
     shedding,
 )
 from suchus.atlas.skin import WallValues, read_skin
-from suchus.progress import Progress, staged
+from suchus.core.progress import Progress, staged
 
 RATIOS = (0.8, 0.9, 1.0, 1.1, 1.12, 1.2)
 """Frequencies of the motion over the natural one [-]."""

@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 from suchus.atlas import aerofoil, cylinders, oscillated, snake, spheres, still, walls
 from suchus.atlas.case import AtlasRow, Case
-from suchus.errors import UnknownName
+from suchus.core.errors import UnknownName
 
 _ANGLE = "angle from the front, over the upper side [deg]"
 _MISPRINT = (

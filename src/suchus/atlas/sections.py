@@ -11,7 +11,7 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
 from suchus.atlas.marching import march, middles
-from suchus.progress import Progress
+from suchus.core.progress import Progress
 
 STOKES = 20.0
 """Number beta of Stokes, frequency times height squared over viscosity: the Reynolds number over that of Keulegan [-].

@@ -5,7 +5,7 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import Case, Curves, RunEffort, grids
 from suchus.atlas.marching import march, middles, nested
-from suchus.progress import Progress
+from suchus.core.progress import Progress
 
 _CODE = ("spheres.py", "marching.py")
 _SIDES = flow.Sides(bottom=flow.Mirror(), low=flow.Mirror())

@@ -8,7 +8,7 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import LONG_STEP, Case, Curves, RunEffort, grids
 from suchus.atlas.marching import formed, march, middles, refined
-from suchus.progress import Progress, staged
+from suchus.core.progress import Progress, staged
 
 _CODE = ("still.py", "marching.py", "case.py")
 _KEULEGAN = 5.0  # [-]; largest speed over frequency and diameter

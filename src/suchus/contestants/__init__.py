@@ -6,7 +6,7 @@ What was measured of them stands in ``measured``; nothing but ``league.sealing``
 from operator import attrgetter
 from pathlib import Path
 
-from suchus.catalog import Catalog
+from suchus.core.catalog import Catalog
 from suchus.league import Entrant
 
 CONTESTANTS: Catalog[Entrant] = Catalog(

@@ -6,16 +6,16 @@ from math import radians
 
 import numpy as np
 
-from suchus.design import GRAVITY, Robot, with_values
-from suchus.design.ground import Ground
-from suchus.design.scale import scaled
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
+from suchus.robot.design import GRAVITY, Robot, with_values
+from suchus.robot.design.ground import Ground
+from suchus.robot.design.scale import scaled
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
 from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
-from suchus.metrics import between, speed
-from suchus.motion import START
-from suchus.progress import Progress, portion
-from suchus.robots import ROBOTS
+from suchus.sim.metrics import between, speed
+from suchus.robot.motion import START
+from suchus.core.progress import Progress, portion
+from suchus.robot.robots import ROBOTS
 
 _SLOPE = radians(15.0)
 _CYCLES = 4

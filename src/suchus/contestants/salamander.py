@@ -7,15 +7,15 @@ from functools import lru_cache, partial
 import numpy as np
 
 from suchus.contestants._water import fresh
-from suchus.errors import NotConverged
-from suchus.gaits import ANIMAL_SWIM
+from suchus.core.errors import NotConverged
+from suchus.robot.gaits import ANIMAL_SWIM
 from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, sections, theory, waters
-from suchus.motion import Curve, Gait, servo_parts
-from suchus.progress import Progress
-from suchus.robots._animals import pleurodeles
-from suchus.water import resistive
-from suchus.water.slender import Model
+from suchus.robot.motion import Curve, Gait, servo_parts
+from suchus.core.progress import Progress
+from suchus.robot.robots._animals import pleurodeles
+from suchus.swim.water import resistive
+from suchus.swim.water.slender import Model
 
 FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
 """At which the animal was filmed [Hz]."""

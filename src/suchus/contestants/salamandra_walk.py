@@ -6,14 +6,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.design import Robot, with_values
-from suchus.gaits import GAITS
-from suchus.land import Run, simulate
+from suchus.robot.design import Robot, with_values
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
 from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
-from suchus.metrics import speed
-from suchus.motion import START
-from suchus.progress import Progress, portion
-from suchus.robots import ROBOTS
+from suchus.sim.metrics import speed
+from suchus.robot.motion import START
+from suchus.core.progress import Progress, portion
+from suchus.robot.robots import ROBOTS
 
 FREQUENCIES = (0.4, 0.67, 1.0)
 """Of the walk [Hz]."""

@@ -7,17 +7,17 @@ from math import pi
 
 import numpy as np
 
-from suchus.design import Robot
-from suchus.design.needs import lacking
-from suchus.design.water import Water
-from suchus.errors import SuchusError
-from suchus.gaits import own_gait
+from suchus.robot.design import Robot
+from suchus.robot.design.needs import lacking
+from suchus.robot.design.water import Water
+from suchus.core.errors import SuchusError
+from suchus.robot.gaits import own_gait
 from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
-from suchus.motion import Gait
-from suchus.progress import Progress
-from suchus.robots import ROBOTS
-from suchus.water import Outline, cruise, cycle, reactive, resistive, swim_of
-from suchus.water.slender import Model
+from suchus.robot.motion import Gait
+from suchus.core.progress import Progress
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import Outline, cruise, cycle, reactive, resistive, swim_of
+from suchus.swim.water.slender import Model
 
 _STATIONS = 65
 _FREQUENCIES = (0.5, 1.0, 2.0)

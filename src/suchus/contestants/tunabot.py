@@ -4,12 +4,12 @@ from functools import lru_cache
 from itertools import pairwise
 
 from suchus.contestants._water import fresh
-from suchus.design import Robot
-from suchus.design.drawing import Drawing
-from suchus.design.scale import swim_servo_for
+from suchus.robot.design import Robot
+from suchus.robot.design.drawing import Drawing
+from suchus.robot.design.scale import swim_servo_for
 from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
-from suchus.water import FilmedWave, fit
+from suchus.swim.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"
 _JOINTS = (0.62, 0.76, 0.88)

@@ -1,20 +1,8 @@
-"""The shelf of experiments: one folder or one file, one question.
+"""Questions and their answers: experiments, studies of many designs, searches.
 
-A folder holds ``experiment.py``, which declares ``experiment``, and beside it what belongs to the question alone: its
-``rules``, its ``figure``, the words of what decided in ``explanation.md``, tables that it needs. Importing the shelf
-imports none of them.
+``experiments.experiment`` is the contract of an experiment and its outcome, ``experiments.catalog`` holds one folder for each
+question, ``experiments.claims`` the rules of all of them by claim, ``experiments.study`` varies designs, and
+``experiments.optimise`` searches better ones. Nothing here knows the command line or reports.
+
+Start reading with ``experiments.experiment``, then ``experiments.catalog.displacement``.
 """
-
-from operator import methodcaller
-from typing import TYPE_CHECKING
-
-from suchus.catalog import Catalog
-
-if TYPE_CHECKING:
-    from suchus.experiment import Experiment
-
-EXPERIMENTS: "Catalog[Experiment]" = Catalog(
-    "experiment", "suchus.experiments", "suchus.experiment:Experiment", named=methodcaller("name")
-)
-
-__all__ = ["EXPERIMENTS"]

@@ -32,7 +32,7 @@ from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
-from suchus.isosurface import IsoSurface, isosurface
+from suchus.core.isosurface import IsoSurface, isosurface
 
 __all__ = [
     "ALONG_THE_SKIN",

@@ -11,7 +11,7 @@ from contextlib import suppress
 import numba
 import numpy as np
 
-from suchus import threads
+from suchus.core import threads
 from suchus.flow import compiled, poisson
 from suchus.flow.body import Body
 from suchus.flow.grid import Grid

@@ -15,7 +15,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, SpaceMass, of_outline
 from suchus.flow.mesh import TriangleMesh, mass_of_mesh, middles_of, paint_mesh, pseudo_normals

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid

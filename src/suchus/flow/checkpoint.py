@@ -11,10 +11,10 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from suchus.errors import UnreadableFile
-from suchus.fingerprint import fingerprint
-from suchus.reading import check_file
-from suchus.writing import keep
+from suchus.core.errors import UnreadableFile
+from suchus.core.fingerprint import fingerprint
+from suchus.core.reading import check_file
+from suchus.core.writing import keep
 
 VERSION = 11
 """Layout of the file; rises with every change of it."""

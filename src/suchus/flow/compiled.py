@@ -20,7 +20,7 @@ import numpy as np
 from numba.core import event
 from numba.extending import models, register_model
 
-from suchus import kernel_cache
+from suchus.core import kernel_cache
 from suchus.flow import linking
 
 P = ParamSpec("P")
@@ -115,7 +115,7 @@ def _compile(function: Callable[P, R], parallel: bool, kept: bool = True) -> Cal
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile ``function``; keep the code on disk (see ``suchus.kernel_cache``)."""
+    """Compile ``function``; keep the code on disk (see ``suchus.core.kernel_cache``)."""
     return _compile(function, parallel=False)
 
 

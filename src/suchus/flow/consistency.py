@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from suchus import rotation
-from suchus.errors import InvalidDesign
+from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
 from suchus.flow.linked import LinkStates
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose

@@ -11,7 +11,7 @@ from math import isfinite
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 from suchus.flow.markers import Markers
 

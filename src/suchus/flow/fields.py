@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 from suchus.flow.log import Log
 from suchus.flow.rake import Sample, read

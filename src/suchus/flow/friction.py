@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 
 SLOWEST = 2e4
 """Reynolds number below which no layer is turbulent; the friction of the turbulent end is laminar up to there [-]."""

@@ -16,7 +16,7 @@ from math import isfinite
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 
 ROUNDING = 1e-9

@@ -8,8 +8,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus import rotation
-from suchus.errors import InvalidDesign
+from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
 from suchus.flow.limbed import around_rod
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from suchus.errors import Diverged
+from suchus.core.errors import Diverged
 from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.markers import Markers

@@ -8,7 +8,7 @@ from math import isfinite
 import numpy as np
 from scipy.spatial import KDTree
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, sections

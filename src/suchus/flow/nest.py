@@ -19,7 +19,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.body import AnyBody
 from suchus.flow.compiled import PAD, UNIT, compiled, unsigned
 from suchus.flow.grid import RATIOS, Grid

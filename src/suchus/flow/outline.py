@@ -8,7 +8,7 @@ from typing import overload
 
 import numpy as np
 
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.flow.mesh import TriangleMesh, mesh_of_sdf
 from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose

@@ -14,9 +14,9 @@ from re import findall
 import numpy as np
 import xarray as xr
 
-from suchus.errors import InvalidDesign, UnreadableFile
+from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.flow.fields import Fields
-from suchus.writing import new_file
+from suchus.core.writing import new_file
 
 _UNITS = {"velocity": "m s-1", "pressure": "Pa", "vorticity": "s-1", "fluid_share": "1"}
 _NAMES = {

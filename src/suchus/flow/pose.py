@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from suchus import rotation
-from suchus.errors import InvalidDesign
-from suchus.kinds import show
+from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 
 TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 """For each axis of turning of a grid with so many axes, the first and the second axis that lie across it."""
@@ -46,7 +46,7 @@ class Pose:
     """Position, attitude and their rates of a body's own frame.
 
     In space the three angles are yaw, pitch and roll, which follow each other about the body's own axes
-    (``suchus.rotation``), and the three spins the angular velocity about the axes of the world.
+    (``suchus.core.rotation``), and the three spins the angular velocity about the axes of the world.
     """
 
     position: tuple[float, ...] = (0.0, 0.0)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.force import interpolate, padded, steps_of
 from suchus.flow.grid import Grid
 from suchus.flow.water import Fluid

@@ -5,8 +5,8 @@ from math import isfinite
 
 import numpy as np
 
-from suchus import rotation
-from suchus.errors import OutsideLimits, UnknownName
+from suchus.core import rotation
+from suchus.core.errors import OutsideLimits, UnknownName
 
 COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",

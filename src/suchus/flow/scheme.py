@@ -14,10 +14,10 @@ from typing import Any
 import numba
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import part
 from suchus.flow.grid import check_kinds
-from suchus.kinds import show
+from suchus.core.kinds import show
 
 TRIED = -1.0, 0.0, 3.0
 """Uniform velocities that a scheme has to carry on as they are [m/s]."""

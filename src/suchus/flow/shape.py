@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.ellipsoid import measure_ellipse
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_outline

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
-from suchus.kinds import show
+from suchus.core.kinds import show
 
 
 class Side:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from suchus.errors import NotConverged
+from suchus.core.errors import NotConverged
 
 
 def mean(time: np.ndarray, value: np.ndarray) -> float:

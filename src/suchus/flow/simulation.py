@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from suchus import threads
-from suchus.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.core import threads
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, symmetric

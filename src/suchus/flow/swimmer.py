@@ -17,12 +17,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from suchus import rotation
-from suchus.errors import Diverged, InvalidDesign
+from suchus.core import rotation
+from suchus.core.errors import Diverged, InvalidDesign
 from suchus.flow.free import FreeBody
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, turned
-from suchus.kinds import show
+from suchus.core.kinds import show
 
 
 def spread(given: Sequence[float], axes: int) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from suchus.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, of_trunk
 from suchus.flow.midline import MidlineState, check_cuts

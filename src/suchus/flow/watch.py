@@ -5,7 +5,7 @@ from warnings import warn
 
 import numpy as np
 
-from suchus.errors import Doubtful
+from suchus.core.errors import Doubtful
 from suchus.flow.compiled import PAD
 from suchus.flow.setup import Setup
 from suchus.flow.sides import Stream

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from suchus.errors import NotConverged
+from suchus.core.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance_by
 from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, rows_of, unite, window_of

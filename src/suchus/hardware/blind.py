@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from suchus.bus import Bus, ServoPlace
-from suchus.bus.pca9685 import Pulses
-from suchus.control import Sensed
-from suchus.design import Robot, layout
+from suchus.hardware.bus import Bus, ServoPlace
+from suchus.hardware.bus.pca9685 import Pulses
+from suchus.robot.control import Sensed
+from suchus.robot.design import Robot, layout
 from suchus.hardware.rig import RigReading
 from suchus.hardware.servo_map import ServoMap
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.design import Crank, Robot, layout
-from suchus.design.checks import require
-from suchus.errors import OutsideLimits
+from suchus.robot.design import Crank, Robot, layout
+from suchus.core.checks import require
+from suchus.core.errors import OutsideLimits
 from suchus.hardware.servo_map import ServoLine, ServoMap
-from suchus.kinematics.tail import bend_of_servo
-from suchus.motion import START, Gait, check_limits, intended
+from suchus.robot.kinematics.tail import bend_of_servo
+from suchus.robot.motion import START, Gait, check_limits, intended
 
 
 class Commands(NamedTuple):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from suchus.design.checks import Checks
+from suchus.core.checks import Checks
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.rig import JUMPS, Rig, RigReading
 

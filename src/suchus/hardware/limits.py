@@ -5,12 +5,12 @@ from math import isnan
 
 import numpy as np
 
-from suchus.design import Robot, layout
-from suchus.errors import OutsideLimits
+from suchus.robot.design import Robot, layout
+from suchus.core.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.loads import AT_LIMIT, ServoLoad
 from suchus.hardware.servo_map import ServoMap
-from suchus.motion import Gait
+from suchus.robot.motion import Gait
 
 TRACKING = 0.35
 """How far a servo at its limit may be from its commanded angle for all but 2 % of a walk [rad], 20 degrees.

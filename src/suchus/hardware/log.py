@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.design import Robot, layout
-from suchus.kinematics.tail import bend_of_servo
-from suchus.motion import Gait
-from suchus.record import DRIVEN, VARIABLES, dataset
-from suchus.skin import poses
+from suchus.robot.design import Robot, layout
+from suchus.robot.kinematics.tail import bend_of_servo
+from suchus.robot.motion import Gait
+from suchus.sim.record import DRIVEN, VARIABLES, dataset
+from suchus.visual.skin import poses
 
 
 class DriveLog:

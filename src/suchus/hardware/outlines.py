@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from suchus.errors import SuchusError
+from suchus.core.errors import SuchusError
 from suchus.hardware.parts import BodyPart, Sheet, TailPlate
-from suchus.kinematics.tree import frames
+from suchus.robot.kinematics.tree import frames
 
 CORD_HOLE = 0.002
 """Diameter of a hole for a cord [m]: a braided line of 1 mm runs freely."""

@@ -6,15 +6,15 @@ from math import nan, pi
 
 import numpy as np
 
-from suchus.design import Cable, Motor, Robot, Rod, Servo, layout
-from suchus.design.body import servos_of
-from suchus.design.checks import require
-from suchus.design.measures import leg_of, spine_of, tail_of
-from suchus.design.physics import WATER_DENSITY
-from suchus.design.pieces import foam_centres, volumes
-from suchus.kinematics.tail import bend_limit, cable_changes, servo_angle
-from suchus.kinematics.tree import body_masses, centre_of_mass, frames
-from suchus.motors import motors as shipped
+from suchus.robot.design import Cable, Motor, Robot, Rod, Servo, layout
+from suchus.robot.design.body import servos_of
+from suchus.core.checks import require
+from suchus.robot.design.measures import leg_of, spine_of, tail_of
+from suchus.robot.design.physics import WATER_DENSITY
+from suchus.robot.design.pieces import foam_centres, volumes
+from suchus.robot.kinematics.tail import bend_limit, cable_changes, servo_angle
+from suchus.robot.kinematics.tree import body_masses, centre_of_mass, frames
+from suchus.robot.motors import motors as shipped
 
 PLASTIC = 1240.0
 """Density of printed plastic (PLA) [kg/m3]."""

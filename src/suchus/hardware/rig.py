@@ -7,7 +7,7 @@ from time import monotonic
 
 import numpy as np
 
-from suchus.bus import (
+from suchus.hardware.bus import (
     FRAMINGS,
     STEPS,
     WAIT,
@@ -22,10 +22,10 @@ from suchus.bus import (
     latency_timer,
     open_port,
 )
-from suchus.control import Sensed
-from suchus.design import Robot, layout
-from suchus.design.scale import control_period
-from suchus.errors import BusFailure, InvalidDesign, SuchusError
+from suchus.robot.control import Sensed
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import BusFailure, InvalidDesign, SuchusError
 from suchus.hardware.wiring import wiring_text
 
 BITS = 10

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from suchus.design import Robot, layout
-from suchus.errors import UnsuitedRobot
-from suchus.model.export.urdf import urdf
+from suchus.robot.design import Robot, layout
+from suchus.core.errors import UnsuitedRobot
+from suchus.sim.model.export.urdf import urdf
 
 PLUGIN = "dynamixel_hardware_interface/DynamixelHardware"
 """The plugin that ROBOTIS writes for its servos; for others its name is to be replaced."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import NamedTuple
 
-from suchus.errors import InvalidDesign, UnknownName
-from suchus.progress import Progress
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.progress import Progress
 
 Numbers = Mapping[str, float]
 """One choice of all the numbers that a prediction rests on, by their names in ``Contestant.given``."""

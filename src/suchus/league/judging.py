@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.league.contestant import Interval
 from suchus.league.sealing import Measured, Prediction
-from suchus.verdict import Clause
+from suchus.article.verdict import Clause
 
 Word = Literal["within", "within, wide", "missed"]
 """``within``: what was measured, in its own interval, meets that of the prediction. ``within, wide``: so, but the

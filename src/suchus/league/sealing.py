@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.errors import InvalidDesign, NotConverged, SuchusError, UnreadableFile
-from suchus.jobs import conduct_sweep
+from suchus.core.errors import InvalidDesign, NotConverged, SuchusError, UnreadableFile
+from suchus.core.jobs import conduct_sweep
 from suchus.league.contestant import Contestant, Found, Interval, Quantity, Value
 from suchus.league.spread import drawn, of_answers, of_draws, widest
-from suchus.progress import Progress, silent
-from suchus.record import check_replaceable, package_digest, read_json, there, versions, write
-from suchus.record.provenance import plain
+from suchus.core.progress import Progress, silent
+from suchus.core.files import check_replaceable, package_digest, read_json, there, versions, write
+from suchus.core.files.provenance import plain
 
 PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
 """Files of a contestant's folder."""

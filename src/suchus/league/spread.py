@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import qmc
 
-from suchus.errors import NotConverged
+from suchus.core.errors import NotConverged
 from suchus.league.contestant import Contestant, Found, Interval, Numbers, Value
 
 COVERED = 0.95

@@ -11,21 +11,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suchus import rotation
-from suchus.control import Swimming
-from suchus.design import WATER_DENSITY, Robot, layout
-from suchus.design.scale import control_period
-from suchus.design.water import Water
-from suchus.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.core import rotation
+from suchus.robot.control import Swimming
+from suchus.robot.design import WATER_DENSITY, Robot, layout
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.water import Water
+from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.flow.setup import LAYER_CELLS
-from suchus.land import Lake, Run, simulate
+from suchus.sim.land import Lake, Run, simulate
 from suchus.league.contestant import Found, Numbers, Predictor
-from suchus.motion import Curve, Gait, cycle_targets, servo_parts
-from suchus.progress import Progress, portion
-from suchus.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
-from suchus.water.resolved import SwimSetting, resolved_swim
-from suchus.water.slender import Effort, Model
-from suchus.water.undulation import still
+from suchus.robot.motion import Curve, Gait, cycle_targets, servo_parts
+from suchus.core.progress import Progress, portion
+from suchus.swim.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
+from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.swim.water.slender import Effort, Model
+from suchus.swim.water.undulation import still
 
 STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""

@@ -1,0 +1,139 @@
+"""A made-up animal whose every angle is known: what the extraction must find on a body that is not our robot."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from suchus.animals.capture.film import Camera, tracked
+from suchus.animals.capture.tracks import Tracks
+from suchus.robot.design import LEGS
+from suchus.core.checks import Checks
+
+Swing = Literal["cosine", "jerk_free", "ramp", "hasty"]
+"""How far a foot has gone over the time of its swing: half a cosine, with the least jerk, at a constant speed that is
+reached in a quarter of the time, or fast at first."""
+_JOINTS = 3  # bends of the trunk, evenly along it
+_TAIL = 6  # segments of the tail
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SyntheticAnimal:
+    """A lizard-like body that walks straight on with feet that never slip."""
+
+    trunk: float
+    """Length from hip to shoulder [m]."""
+    tail: float
+    """Length of the tail [m]."""
+    period: float
+    """Period of one cycle [s]."""
+    duty_factor: float
+    """Share of the cycle in which a foot stands [-]."""
+    limb_phases: tuple[float, float, float, float]
+    """Phase of LF, RF, LH, RH at time zero; a limb swings first, then stands [cycle]."""
+    stride: float
+    """Distance that the body moves in one cycle [m]."""
+    outward: float
+    """Distance by which feet stand from the midline [m]."""
+    lift: float
+    """Height to which feet are lifted [m]."""
+    spine_bend: float
+    """Amplitude of the trunk's lateral angle, right positive [rad]."""
+    spine_rightmost: float
+    """Phase at which the trunk is bent farthest to the right [cycle]."""
+    tail_bend: float
+    """Amplitude of the tail's lateral angle at its tip, right positive [rad]."""
+    tail_lag: float
+    """Phase lag of the tail's root behind the trunk [cycle]."""
+    tail_wave: float
+    """Phase lag of the tip behind the root [cycle]; 0: a standing wave."""
+    swing: Swing = "cosine"
+    """Course of a foot in swing."""
+
+    def __post_init__(self) -> None:
+        with Checks("animal", self) as check:
+            for field in ("trunk", "tail", "stride", "outward"):
+                check.number(field, 0.001, 10.0, "m")
+            check.number("lift", 0.0, 1.0, "m")
+            check.number("period", 0.01, 60.0, "s")
+            check.number("duty_factor", 0.05, 0.95, "")
+            for field in ("spine_bend", "tail_bend"):
+                check.number(field, 0.0, 3.0, "rad")
+            for field in ("spine_rightmost", "tail_lag", "tail_wave"):
+                check.number(field, -2.0, 2.0, "cycle")
+            check.that(
+                self.swing in get_args(Swing),
+                f"animal.swing is {self.swing!r}; {', '.join(get_args(Swing))} are allowed",
+            )
+
+
+def film_animal(animal: SyntheticAnimal, camera: Camera, *, cycles: float, pace: ArrayLike = (1.0,)) -> Tracks:
+    """Return the tracks of an animal.
+
+    Args:
+        animal: who walks.
+        camera: how it is seen.
+        cycles: how many are filmed [-].
+        pace: how long one cycle after another lasts, in periods of the animal; the last one's pace goes on.
+    """
+    lasts = np.asarray(pace, dtype=float)
+    lasts = animal.period * np.pad(lasts, (0, int(cycles) + 2), mode="edge")[: int(cycles) + 2]
+    ends = np.concatenate([[0.0], np.cumsum(lasts)])
+    time = np.arange(0.0, np.interp(cycles, np.arange(len(ends)), ends) + 1e-9, 1.0 / camera.rate)
+    clock = animal.period * np.interp(time, ends, np.arange(len(ends)))
+    points = _midline(animal, clock) | {leg: _foot(animal, leg, clock) for leg in LEGS}
+    return tracked(points, time, camera, source="the film of an animal")
+
+
+def _midline(animal: SyntheticAnimal, time: np.ndarray) -> dict[str, np.ndarray]:
+    """Points from neck to tail tip: a chain whose bends are shared evenly among its joints."""
+    phase = time / animal.period
+    spine = animal.spine_bend * np.cos(2 * np.pi * (phase - animal.spine_rightmost))
+    pelvis = spine / 2  # the girdles counter-rotate, so that the trunk looks straight on
+    link, height = animal.trunk / (_JOINTS + 1), np.full_like(time, animal.lift)
+    hip = np.stack([animal.stride * phase, np.zeros_like(time), height], axis=1)
+    points, at = {"hip": hip}, hip
+    for i in range(1, _JOINTS + 2):
+        at = at + link * _direction(pelvis - spine * (i - 1) / _JOINTS)
+        points["shoulder" if i > _JOINTS else f"spine_{i}"] = at
+    points["neck"] = at + link * _direction(pelvis - spine)
+    points["tail_base"] = at = hip - link * _direction(pelvis)
+    for i in range(1, _TAIL + 1):
+        bend = np.zeros_like(time)
+        for j in range(i):
+            lag = animal.spine_rightmost + animal.tail_lag + animal.tail_wave * j / (_TAIL - 1)
+            bend += animal.tail_bend / _TAIL * np.cos(2 * np.pi * (phase - lag))
+        at = at - animal.tail / _TAIL * _direction(pelvis + bend)
+        points["tail_tip" if i == _TAIL else f"tail_{i}"] = at
+    return points
+
+
+def _foot(animal: SyntheticAnimal, leg: str, time: np.ndarray) -> np.ndarray:
+    """A foot that stands still, then goes on by a stride, without a jerk at either end."""
+    phase = time / animal.period + animal.limb_phases[LEGS.index(leg)]
+    number, within = np.floor(phase), np.mod(phase, 1.0)
+    swing = np.clip(within / (1.0 - animal.duty_factor), 0.0, 1.0)
+    # in the middle of its stance a foot is beside its girdle
+    middle = number - animal.duty_factor / 2 - animal.limb_phases[LEGS.index(leg)]
+    girdle = animal.trunk if leg.endswith("F") else 0.0
+    x = girdle + animal.stride * (middle + _gone(animal.swing, swing))
+    y = np.full_like(time, animal.outward if leg.startswith("L") else -animal.outward)
+    return np.stack([x, y, animal.lift * np.sin(np.pi * swing) ** 2], axis=1)
+
+
+def _gone(swing: Swing, share: np.ndarray) -> np.ndarray:
+    """Share of its path that a foot has covered after a share of its swing."""
+    if swing == "cosine":
+        return np.asarray((1 - np.cos(np.pi * share)) / 2)
+    if swing == "jerk_free":
+        return np.asarray(share**3 * (10 - 15 * share + 6 * share**2))
+    if swing == "hasty":
+        return np.asarray(share**2 * (6 - 8 * share + 3 * share**2))
+    edge, top = 0.25, 1 / 0.75
+    start, end = np.minimum(share, edge), np.maximum(share - (1 - edge), 0.0)
+    return np.asarray(top * (start**2 / (2 * edge) + np.maximum(share - edge, 0.0) - end**2 / (2 * edge)))
+
+
+def _direction(azimuth: np.ndarray) -> np.ndarray:
+    return np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)], axis=1)

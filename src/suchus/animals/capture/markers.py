@@ -1,0 +1,113 @@
+"""Marker files of motion capture: TRC, a text, and C3D, which the ``c3d`` library reads, an optional extra.
+
+Both hold places in three dimensions, a unit and a rate, and do not say which axis is up: it is the one along which the
+trunk lies farthest from the feet.
+"""
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
+from suchus.robot.design import LEGS
+from suchus.core.errors import UnreadableFile
+from suchus.core.reading import read_text
+
+SUFFIXES = (".trc", ".c3d")
+"""How the names of marker files end."""
+_HEADER = 5  # lines of a TRC file before its frames
+_INSTALL = 'pip install "suchus[capture]"'
+_TRUNK = ("shoulder", "hip", "neck", "tail_base")
+
+
+def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
+    """Read a TRC or C3D file.
+
+    Args:
+        path: the file.
+        names: our name of a keypoint by the file's, where they differ.
+
+    Raises:
+        UnreadableFile: the file is broken, its unit is not known, or the library that reads it is not installed.
+        UnusableTracks: it holds no frames, or it cannot be seen which axis is up.
+    """
+    points, place, rate, unit = _trc(path) if path.suffix.lower() == ".trc" else _c3d(path)
+    if unit not in UNITS or unit == "px":
+        raise UnreadableFile(f"{path.name} has lengths in {unit!r}; m, cm and mm are known.")
+    if not len(place):
+        raise UnusableTracks(f"{path.name} holds no frame; at least one cycle is needed.")
+    if not 0.0 < rate < np.inf:
+        raise UnreadableFile(f"{path.name} says that it has {rate:g} frames a second; more than 0 are needed.")
+    ours = renamed(points, names, path.name)
+    return Tracks(
+        time=np.arange(len(place)) / rate,
+        points=ours,
+        position=UNITS[unit] * upright(place, ours, path.name),
+        unit="m",
+        source=path.name,
+    )
+
+
+def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
+    """Return the places with the axis that is up last, right-handed."""
+    trunk = [points.index(point) for point in _TRUNK if point in points]
+    feet = [points.index(leg) for leg in LEGS if leg in points]
+    if not trunk or not feet:
+        return place
+    seen = np.ma.masked_invalid(place)
+    middles = seen[:, trunk].mean(axis=1) - seen[:, feet].mean(axis=1)  # frame by frame: the animal goes on
+    above = np.nanmedian(middles.filled(np.nan), axis=0)
+    up = 1 if abs(above[1]) > abs(above[2]) else 2
+    if not above[up] > 0.0:
+        raise UnusableTracks(
+            f"in {name} the feet lie above the trunk along y and along z: the up axis must be y or z; turn the axes."
+        )
+    return place if up == 2 else place[..., [2, 0, 1]]
+
+
+def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    lines = read_text(path).splitlines()
+    if len(lines) < _HEADER or not lines[0].startswith("PathFileType"):
+        raise UnreadableFile(f"{path} is no TRC file: its first line is not 'PathFileType 4 (X/Y/Z) ...'.")
+    about = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
+    points = tuple(cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip())
+    try:
+        rate, unit = float(about["DataRate"]), about["Units"].strip()
+        rows = [line.split("\t") for line in lines[_HEADER:] if line.strip()]
+        cells = [[float(cell) if cell.strip() else np.nan for cell in row[2 : 2 + 3 * len(points)]] for row in rows]
+        wide = [row + [np.nan] * (3 * len(points) - len(row)) for row in cells]
+        place = np.array(wide, dtype=float).reshape(len(wide), len(points), 3)
+    except (KeyError, ValueError) as error:
+        raise UnreadableFile(
+            f"{path} cannot be read as a TRC file: its second line is to name DataRate and Units, the line below is to "
+            f"give both, and what stands from line {_HEADER + 1} on is to be numbers."
+        ) from error
+    if not points:
+        raise UnreadableFile(f"{path} names no marker in its fourth line.")
+    place[~np.isfinite(place).all(axis=-1)] = np.nan
+    return points, place, rate, unit
+
+
+def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str]:
+    try:
+        import c3d  # noqa: PLC0415  an optional extra
+    except ImportError as error:
+        raise UnreadableFile(
+            f"{path.name} is a C3D file, which the c3d library reads; install it: {_INSTALL}."
+        ) from error
+    try:
+        with path.open("rb") as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # such as that there are no analog channels
+            reader: Any = c3d.Reader(file)
+            points = tuple(str(label).strip() for label in reader.point_labels)
+            frames = [points_of for _, points_of, _ in reader.read_frames(copy=True)]
+            rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
+    except Exception as error:
+        raise UnreadableFile(f"{path} cannot be read as a C3D file: {' '.join(str(error).split())}.") from error
+    seen = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
+    place = seen[..., :3].copy()
+    place[seen[..., 3] < 0.0] = np.nan
+    return points, place, rate, unit

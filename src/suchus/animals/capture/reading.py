@@ -1,0 +1,249 @@
+"""A file of tracks in, whatever wrote it; a gait as a file out.
+
+Files of DeepLabCut, SLEAP and LightningPose are read by the ``movement`` library, an optional extra.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from suchus.robot import blueprint
+from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
+from suchus.animals.capture.retarget import Captured
+from suchus.animals.capture.table import is_table, read_table
+from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, renamed
+from suchus.animals.capture.walk import Walk
+from suchus.robot.design import LEGS
+from suchus.core.errors import UnknownName, UnreadableFile
+from suchus.core.files import check_file, write
+
+SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
+"""Software whose files can be read."""
+
+_INSTALL = 'pip install "suchus[capture]"'
+
+
+class MissingExtra(UnreadableFile):
+    """A file that only an optional library can read."""
+
+
+def read_poses(
+    path: Path,
+    *,
+    software: str | None,
+    rate: float | None,
+    individual: str | None,
+    names: Mapping[str, str],
+    confidence: float,
+    y_down: bool | None,
+) -> Tracks:
+    """Read the file of a pose estimator; positions are in pixels with y to the right of x, as in images.
+
+    Args:
+        path: the file.
+        software: one of ``SOFTWARE``; guessed from the file if None.
+        rate: frames per second, which most of these files do not hold [1/s].
+        individual: whose tracks, where the file holds several.
+        names: our name of a keypoint by the file's, where they differ.
+        confidence: points with less are lost.
+        y_down: whether y points to the right of x, seen from above; None: it does, unless there are three axes.
+
+    Raises:
+        MissingExtra: the ``movement`` library is not installed.
+        UnreadableFile: the file is broken or of another kind.
+        UnusableTracks: no frame rate, or several individuals to choose from.
+    """
+    data = _load(path, software or _guess(path), rate)
+    if "time_unit" not in data.attrs or data.attrs["time_unit"] != "seconds":
+        raise UnusableTracks(f"{path.name} does not give its frame rate; give it, as in --fps 50.")
+    data = _one(data, individual, path.name)
+    dims = [d for d in data.position.dims if d not in ("time", "space")]
+    position = data.position.transpose("time", *dims, "space").values.astype(float)
+    if "confidence" in data:
+        sure = data.confidence.transpose("time", *dims).values
+        position[~(np.isnan(sure) | (sure >= confidence))] = np.nan
+    position[np.isnan(position).any(axis=-1)] = np.nan
+    if position.shape[-1] == 2 if y_down is None else y_down:
+        position[..., 1] *= -1
+    points = renamed(tuple(str(name) for name in data[dims[0]].values), names, path.name)
+    return Tracks(
+        time=data.time.values.astype(float),
+        points=points,
+        position=upright(position, points, path.name) if position.shape[-1] == 3 else position,
+        unit="px",
+        source=path.name,
+    )
+
+
+def _load(path: Path, software: str, rate: float | None) -> Any:
+    try:
+        from movement.io import load_dataset  # noqa: PLC0415  an optional extra
+    except ImportError as error:
+        raise MissingExtra(
+            f"{path.name} is a file of {software}, which the movement library reads; install it: {_INSTALL}."
+        ) from error
+    try:
+        return load_dataset(path, source_software=software, fps=rate)
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        TypeError,
+        IndexError,
+        AttributeError,
+    ) as error:  # what it raises on bad files
+        text = " ".join(str(error).split()).rstrip(".")
+        raise UnreadableFile(f"{path} cannot be read as a file of {software}: {text}.") from error
+
+
+def _guess(path: Path) -> str:
+    suffix = path.suffix.lower()
+    if suffix == ".slp":
+        return "SLEAP"
+    if suffix == ".nwb":
+        return "NWB"
+    if suffix in (".h5", ".hdf5") and h5py.is_hdf5(path):
+        with h5py.File(path) as file:
+            return "SLEAP" if "tracks" in file else "DeepLabCut"
+    if suffix == ".csv":
+        return "Anipose" if _is_anipose(path) else "DeepLabCut"
+    raise UnreadableFile(
+        f"{path} is neither a CSV table nor a file that a pose estimator is known by; say whose it is with --software "
+        f"({', '.join(SOFTWARE)})."
+    )
+
+
+def _is_anipose(path: Path) -> bool:
+    """Return whether a CSV table is one of Anipose: a column for each axis, error and score, and the frame's number."""
+    with path.open("rb") as file:
+        cells = file.readline(2**16).decode(errors="replace").strip().split(",")
+    return "fnum" in cells and any(cell.endswith("_ncams") for cell in cells)
+
+
+def _one(data: Any, individual: str | None, name: str) -> Any:
+    dim = next((d for d in data.position.dims if str(d).startswith("individual")), None)
+    if dim is None:
+        return data
+    names = [str(one) for one in data[dim].values]
+    if individual is None and len(names) > 1:
+        raise UnusableTracks(
+            f"{name} holds {len(names)} individuals; choose one with --individual: {', '.join(names)}."
+        )
+    if individual is not None and individual not in names:
+        raise UnusableTracks(f"{name} holds no individual {individual!r}; it holds {', '.join(names)}.")
+    return data.isel({dim: names.index(individual) if individual else 0})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReadingOptions:
+    """Options with which a file of tracks is read."""
+
+    names: Mapping[str, str] = field(default_factory=dict)
+    """Our name of a keypoint by the file's, where they differ."""
+    rate: float | None = None
+    """Frames per second, for files that do not hold it [1/s]."""
+    software: str | None = None
+    """What wrote the file, of ``SOFTWARE``; guessed if None."""
+    individual: str | None = None
+    """Whose tracks, where the file holds several."""
+    confidence: float = 0.6
+    """Points with less are lost [-]; what DeepLabCut and movement use."""
+    y_down: bool | None = None
+    """Whether y points to the right of x, seen from above; None: as the file's kind has it."""
+    view: View = "top"
+    """Where the camera stood; from the side, y is up."""
+    unit: str | None = None
+    """Unit of lengths in files that do not say it, as those of pose estimators: m, cm or mm; px is of unknown size."""
+
+
+def read_tracks(path: str | Path, how: ReadingOptions | None = None) -> Tracks:
+    """Read tracks from a CSV table, a TRC or C3D file, or one of DeepLabCut, SLEAP, LightningPose or Anipose.
+
+    Args:
+        path: the file.
+        how: how to read it.
+
+    Raises:
+        UnreadableFile: there is no such file, it is empty or broken, or the library that reads it is not installed.
+        UnusableTracks: it holds not what is needed.
+    """
+    how, path = how or ReadingOptions(), Path(path)
+    if how.software is not None and how.software not in SOFTWARE:
+        raise UnknownName("software", how.software, SOFTWARE)
+    check_file(path)
+    if path.stat().st_size == 0:
+        raise UnreadableFile(f"{path} is empty; a header and one row per frame are needed.")
+    if how.unit is not None and how.unit not in UNITS:
+        raise UnknownName("unit", how.unit, tuple(UNITS))
+    if how.rate is not None and not 0.0 < how.rate < np.inf:
+        raise UnusableTracks(f"the frame rate is {how.rate:g}; a number above 0 is needed, in frames per second.")
+    tracks = _read(path, how)
+    if how.view == "side" and tracks.upright:
+        raise UnusableTracks(f"{path.name} holds heights, so that it needs no view from the side; leave --view out.")
+    return replace(tracks, view=how.view)
+
+
+def _read(path: Path, how: ReadingOptions) -> Tracks:
+    if how.software is None and path.suffix.lower() in SUFFIXES:
+        return read_markers(path, names=how.names)
+    if how.software is None and is_table(path):
+        return read_table(path, names=how.names, confidence=how.confidence, y_down=how.y_down, rate=how.rate)
+    tracks = read_poses(
+        path,
+        software=how.software,
+        rate=how.rate,
+        individual=how.individual,
+        names=how.names,
+        confidence=how.confidence,
+        y_down=how.y_down,
+    )
+    if how.unit in (None, "px"):
+        return tracks
+    return replace(tracks, unit="m", position=UNITS[str(how.unit)] * tracks.position)
+
+
+def write_gait(captured: Captured, walk: Walk, path: str | Path) -> Path:
+    """Write a captured gait as TOML, with what was seen and what got lost as comments, and return the path.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    head = [f"A gait read from {walk.source}.", *summary(walk), *(f"Note: {note}." for note in captured.notes)]
+    text = "".join(f"# {' '.join(line.split())}\n" for line in head) + "\n" + blueprint.render(captured.gait)
+    return write(path, text)
+
+
+def summary(walk: Walk) -> list[str]:
+    """Return what was seen, in lines that people read."""
+
+    def one(name: str, digits: int = 2, scale: float = 1.0) -> str:
+        if name not in walk.numbers:
+            return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
+        value, _, error, _ = walk.numbers[name]
+        apart = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
+        return f"{scale * value:.{digits}f}{apart}"
+
+    turn = degrees(1.0)
+    legs = [leg for leg in LEGS if f"duty_{leg}" in walk.numbers]
+    feet = [
+        "stance share: " + ", ".join(f"{leg} {one(f'duty_{leg}')}" for leg in legs),
+        "limb phase [cycle]: " + ", ".join(f"{leg} {one(f'phase_{leg}', 3)}" for leg in legs),
+    ]
+    gone = f"{one('stride')} trunk lengths"
+    if "stride" not in walk.numbers and "stride_length" in walk.numbers:
+        gone = f"{one('stride_length', 3)} {walk.numbers['stride_length'].unit}"
+    return [
+        f"{walk.cycles:.1f} cycles of {walk.value('period'):.3f} s; {gone} per cycle",
+        *(feet if legs else ()),
+        f"spine: {one('spine_lateral', 1, turn)} degrees to either side, farthest right at phase "
+        f"{one('spine_rightmost', 3)}",
+        f"tail: {one('tail_lateral', 1, turn)} degrees to either side at {walk.tail_share:.2f} of its length, "
+        f"{one('tail_lag', 3)} cycles behind the spine",
+        f"standing index (1 standing, 0 travelling): trunk {one('standing_trunk')}, tail {one('standing_tail')}, "
+        f"body {one('standing_body')}",
+    ]

@@ -1,0 +1,512 @@
+"""What was seen of a walk: its mean cycle, its numbers with their spread, and what kind of wave it is."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from suchus.animals.capture.angles import azimuth, bend_angles, joint_bends, standing_index, wrapped
+from suchus.animals.capture.cycle import PeriodicFit, find_period, fit, harmonics_for
+from suchus.animals.capture.feet import GRID, FootContact, FootSweep, contact, continuous, forward_path, steps, sweep
+from suchus.animals.capture.late import late
+from suchus.animals.capture.screen import screened
+from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
+from suchus.animals.capture.swings import Clock, paced
+from suchus.animals.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking
+from suchus.robot.design import LEGS
+from suchus.core.checks import require
+
+UNSURE = 0.1
+"""Half the width of the interval of a duty factor from which on a foot does not count for the gait's [-]."""
+_BLIND = 0.25  # the same from which on a walk is refused, if no foot is better
+_STRAIGHT = 1e-6  # [rad]; what bends less has no phase
+_BINS = 20  # of phase, for the spread
+_SHARP = 3.0  # a joint bends if its amplitude exceeds so many of its standard errors
+_TOGETHER = 0.25  # least share of frames in which all points of a signal are seen
+_LATE, _ALIKE = 0.015, 0.35  # [cycle], share; a foot that is later, and by about as much behind, was seen late
+_PLACED = 0.005  # share of a step by which the unknown shape of the swing may move the places of a foot
+_PLACES = 0.7  # share of the frames of a cycle in which a point must be seen to tell how far it comes in it
+_ADVANCE = 0.3  # share of the distance that feet sweep below which the body does not advance
+
+
+class Seen(NamedTuple):
+    """A number that was seen."""
+
+    value: float
+    """Over all cycles."""
+    spread: float
+    """Standard deviation from cycle to cycle; NaN if fewer than two were seen."""
+    error: float
+    """Half the width of the interval about the value that holds the truth in 95 of 100 walks; NaN if fewer than two
+    cycles were seen."""
+    unit: str
+    """SI unit, ``-`` for none, ``cycle``, or ``trunk`` for lengths of the trunk from hip to shoulder."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Walk:
+    """A walk as it was seen; nothing in it knows of a robot.
+
+    Bends are what the body did, not what was commanded: on film a robot's trunk bends by the angle that its
+    servos reached.
+    """
+
+    source: str
+    """File that the tracks are from."""
+    cycles: float
+    """Number of cycles that were seen [-]."""
+    upright: bool
+    """Whether heights were seen."""
+    tail_share: float
+    """Where along the tail its lateral angle was taken, 1 at the tip [-]."""
+    numbers: Mapping[str, Seen]
+    """Every number by name; see ``docs/capture.md``."""
+    bends: Mapping[str, complex]
+    """First harmonic of each of the four angles: the angle is its steady part and the real part of this times
+    ``exp(2 pi i phase)`` [rad]."""
+    wrong: tuple[str, ...]
+    """Keypoints that were tracked and are not to be trusted; ``notes`` say why."""
+    lacks: tuple[str, ...]
+    """Keypoints that a gait is read from and that were not tracked, or not to be trusted."""
+    notes: tuple[str, ...]
+    """What is wrong with keypoints, and what the tracks do not show, a sentence each."""
+    strides: xr.Dataset
+    """Every stride by itself, over ``stride`` and ``leg``, with intervals: see ``strides.per_stride``."""
+    phases: xr.Dataset
+    """Angles and curvature over ``phase``, ``leg`` and ``place``, with intervals: see ``strides.over_phase``."""
+    cycle: xr.Dataset
+    """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
+    Phase 0 is where a gait of this footfall begins: LF starts to swing."""
+
+    def value(self, name: str) -> float:
+        """Return a number without its spread."""
+        return self.numbers[name].value
+
+
+class _Reading(NamedTuple):
+    """Quantities read from one stretch of time."""
+
+    angles: dict[str, PeriodicFit]
+    sweeps: dict[str, FootSweep]
+    advance: float  # of the body in one cycle [m or px]
+    trunk: float  # [m or px]
+    period: float
+    tail_share: float
+
+
+def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
+    """Read a walk from tracks.
+
+    Args:
+        tracks: of one body that walks with a steady gait.
+        tail_share: where along the tail its lateral angle is taken, 1 at the tip [-]; for a robot whose tail's end is
+            passive, the share that its servo bends.
+
+    Raises:
+        InvalidDesign: ``tail_share`` is no share.
+        UnusableTracks: too few keypoints are there or can be trusted, some are exchanged, units are wrong, the animal
+            stands, nothing repeats, less than one cycle was seen, noise hides the steps, or the camera goes along.
+    """
+    require("observe", "tail_share", tail_share, 0.05, 1.0, "")
+    check_tracks(tracks)
+    seen = screened(tracks)
+    wrong = dict(seen.wrong)
+    last = tracks.tail_chain[-2:]
+    while True:
+        if len(last) == 2 and last[0] in wrong and tail_share > 0.5 and "tail_tip" not in wrong:
+            wrong["tail_tip"] = f"does not show how the tail bends without {last[0]}"
+        filmed = seen.tracks.without(wrong)
+        tracks, clock, period = _timed(filmed)
+        runs_late = late(tracks, clock, filmed.time)
+        if not runs_late:
+            break
+        wrong |= runs_late
+        if len(seen.tracks.without(wrong).trunk_chain) < 2:
+            names = ", ".join(f"{name} {why}" for name, why in runs_late.items())
+            raise UnusableTracks(f"in {tracks.source} frames of one keypoint are not those of others: {names}.")
+    whole = _read(tracks, period, tail_share)
+    feet: dict[str, FootContact] = {}
+    for leg in tracks.legs:
+        found = contact(tracks, leg, period)
+        if found is None:
+            wrong[leg] = (
+                "makes no step that can be seen from one stance to the next: film more cycles, or track it again"
+            )
+        else:
+            feet[leg] = found
+    tracks = tracks.without(wrong)
+    count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
+    each = [_read(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
+    gone = [one.advance for one in each if np.isfinite(one.advance)] or [whole.advance]
+    whole = whole._replace(advance=float(np.mean(gone)))  # along a path that may be curved
+    _check_advance(whole, tracks.source)
+    _check_feet(feet, tracks.source)
+    zero = _zero(feet)
+    strides = per_stride(tracks, clock, feet, zero)
+    numbers = _seen(whole, each, feet, zero, clock, tracks.time[0])
+    if np.isfinite(whole.trunk):
+        lengths = np.array([one.trunk for one in each if np.isfinite(one.trunk)])
+        spread = float(np.std(lengths, ddof=1)) if len(lengths) > 1 else float("nan")
+        numbers["trunk_length"] = Seen(whole.trunk, spread, float(half_width(whole.trunk, lengths, 0.0)), tracks.unit)
+    numbers |= _paced(strides, numbers["period"], whole, tracks.unit)
+    unsure = 0.0  # of where the cycle begins
+    if feet:
+        lead = feet.get("LF") or next(iter(feet.values()))
+        duties = float(np.mean([foot.duty_error for foot in feet.values()])) / 2
+        unsure = float(np.hypot(lead.middle_error, duties))
+    unlike = _unlike(numbers)
+    for name, chain in _chains(tracks).items():
+        numbers[f"standing_{name}"] = Seen(_index(tracks, chain, period), float("nan"), float("nan"), "-")
+    return Walk(
+        source=tracks.source,
+        cycles=float((tracks.time[-1] - tracks.time[0]) / period),
+        upright=tracks.upright,
+        tail_share=tail_share,
+        numbers=numbers,
+        bends={name: complex(_first(whole.angles[name], zero)) for name in whole.angles},
+        wrong=tuple(wrong),
+        lacks=lacking(tracks.points),
+        notes=(
+            *(f"{name} {why}" for name, why in wrong.items()),
+            *_unseen(tracks),
+            *seen.notes,
+            *unlike,
+            *_unknown(feet, (tracks.time[-1] - tracks.time[0]) / period),
+        ),
+        strides=strides,
+        phases=over_phase(
+            tracks, whole.angles, whole.sweeps, [(one.angles, one.sweeps) for one in each], period, zero, unsure
+        ),
+        cycle=_mean_cycle(tracks, whole, feet, zero),
+    )
+
+
+def _timed(tracks: Tracks) -> tuple[Tracks, Clock, float]:
+    """Return the tracks by a clock on which strides last equally long, that clock, and the period [s]."""
+    check_size(tracks)
+    tracks = tracks.ahead()
+    signals = _swinging(tracks)
+    rough = find_period(tracks.time, np.array(list(signals.values())), tracks.source)
+    clock = paced({leg: steps(tracks, leg, rough) for leg in tracks.legs}, rough)
+    return replace(tracks, time=clock.read(tracks.time)), clock, clock.period
+
+
+_SHOWN = {
+    "the spine's bend": ("neck or snout", "shoulder", "hip", "tail_base"),
+    "the tail's bend": ("hip", "tail_base", "tail_tip"),
+    "the trunk's length, and lengths in trunk lengths": ("shoulder", "hip"),
+    "phases, which count from LF": ("LF",),
+}
+
+
+def _unseen(tracks: Tracks) -> list[str]:
+    """Say what keypoints that are not there leave unknown."""
+    missing = set(lacking(tracks.points))
+    missing |= {"neck or snout"} if "neck (or snout)" in missing else set()
+    notes, footless = [], not tracks.legs
+    for what, points in _SHOWN.items():
+        gone = [name for name in points if name in missing]
+        if gone and not (footless and gone == ["LF"]):
+            notes.append(f"without {' and '.join(gone)}, unknown: {what}")
+    if footless:
+        notes.append(
+            "no foot is tracked, as of a body without limbs or one that swims: phases count from the film's beginning"
+        )
+    for leg in LEGS:
+        if leg in missing and not footless:
+            notes.append(f"without {leg}, unknown: when it stands, its duty factor and its phase")
+    if tracks.view == "side":
+        notes.append("seen from the side, unknown: bends to the sides, and how far the body turns")
+    return notes
+
+
+def _seen(
+    whole: _Reading,
+    each: Sequence[_Reading],
+    feet: Mapping[str, FootContact],
+    zero: float,
+    clock: Clock,
+    start: float,
+) -> dict[str, Seen]:
+    """Return every number with its spread and its interval."""
+    count, ones, numbers = len(each), [_numbers(one, zero) for one in each], {}
+    for name, value in _numbers(whole, zero).items():
+        apart = _apart(name, value, ones)
+        spread = float(np.std(apart, ddof=1)) if len(apart) > 1 else float("nan")
+        error = float(half_width(0.0, apart, 0.0))
+        if name == "spine_rightmost":  # its phase counts from a foot
+            if "LF" not in feet:
+                continue
+            duties = np.mean([foot.duty_error for foot in feet.values()]) / 2
+            error = float(np.linalg.norm(np.array([error, feet["LF"].middle_error, duties], dtype=float)))
+        numbers[name] = Seen(value, spread, error, _unit(name))
+    for leg, foot in feet.items():
+        numbers[f"duty_{leg}"] = Seen(foot.duty, foot.scatter, foot.duty_error, "-")
+        if "LF" not in feet:
+            continue
+        first = feet["LF"]
+        error = float(np.hypot(first.middle_error, foot.middle_error)) if leg != "LF" else 0.0
+        numbers[f"phase_{leg}"] = Seen((first.middle - foot.middle) % 1.0, float("nan"), error, "cycle")
+    lasts = np.diff(clock.seconds(start / whole.period + np.arange(count + 1)))
+    spread = float(np.std(lasts, ddof=1)) if count >= 2 else float("nan")
+    error = times(count) * spread / np.sqrt(count) if count >= 2 else float("nan")
+    numbers["period"] = Seen(whole.period, spread, error, "s")
+    return numbers
+
+
+def _unlike(numbers: dict[str, Seen]) -> list[str]:
+    """Widen the phases of feet that step late and lie as far behind their partners, and say so.
+
+    A foot whose frames come late does both at once: the body has gone on by as much of a stride.
+    """
+    notes = []
+    for left, right in (LEGS[:2], LEGS[2:]):
+        phases, ahead = [f"phase_{leg}" for leg in (left, right)], [f"ahead_{leg}" for leg in (left, right)]
+        if not {*phases, *ahead, "stride"} <= set(numbers):
+            continue
+        early = (numbers[phases[1]].value - numbers[phases[0]].value) % 1.0 - 0.5
+        error = max(numbers[name].error for name in phases)
+        forward = (numbers[ahead[1]].value - numbers[ahead[0]].value) / max(numbers["stride"].value, 1e-9)
+        if abs(early) > max(_LATE, 3 * error) and abs(early - forward) < _ALIKE * abs(early) + error:
+            slow, other = (right, left) if early < 0 else (left, right)
+            notes.append(
+                f"{slow} steps {abs(early):.3f} cycles after half a cycle from {other} and lies as far behind it as "
+                f"the body goes on in that time: either it limps, or the frames of {slow} or {other} are not those of "
+                "the other keypoints; phases are that uncertain"
+            )
+            touched = (*(f"phase_{leg}" for leg in LEGS[1:]), "spine_rightmost") if "LF" in (left, right) else phases
+            for name in touched:
+                if name in numbers:
+                    numbers[name] = numbers[name]._replace(error=float(numbers[name].error + 1.2 * abs(early)))
+    return notes
+
+
+def _paced(strides: xr.Dataset, period: Seen, whole: _Reading, unit: str) -> dict[str, Seen]:
+    """Return how far and how fast the body goes, and how it turns: means over all cycles, intervals over strides."""
+    numbers = {}
+    for name, size in (("stride_length", unit), ("speed", f"{unit}/s"), ("turning", "rad")):
+        if name in strides:
+            ones = strides[name].values
+            ones = ones[np.isfinite(ones)]
+            mean = float(np.mean(ones))
+            value = {"stride_length": whole.advance, "speed": whole.advance / period.value}.get(name, mean)
+            spread = float(np.std(ones, ddof=1)) if len(ones) > 1 else float("nan")
+            error = float(half_width(value, ones, 0.0))
+            if name == "speed":  # the mean of the speeds of strides is not the mean speed
+                error = float(np.hypot(error, value * period.error / period.value))
+            numbers[name] = Seen(value, spread, error, size)
+    for leg in strides.leg.values if "step_length" in strides else ():
+        ones = strides.step_length.sel(leg=leg).values
+        ones = ones[np.isfinite(ones)]
+        if len(ones):
+            error = float(np.hypot(half_width(float(np.mean(ones)), ones, 0.0), _PLACED * np.mean(ones)))
+            spread = float(np.std(ones, ddof=1)) if len(ones) > 1 else float("nan")
+            numbers[f"step_length_{leg}"] = Seen(float(np.mean(ones)), spread, error, unit)
+    return numbers
+
+
+def _check_feet(feet: Mapping[str, FootContact], source: str) -> None:
+    """Refuse feet of which it cannot be seen whether they stand or swing."""
+    known = {leg: foot.duty_error for leg, foot in feet.items() if np.isfinite(foot.duty_error)}
+    if known and min(known.values()) > _BLIND:
+        leg = min(known, key=lambda name: known[name])
+        raise UnusableTracks(
+            f"in {source} noise hides the steps: even the duty factor of {leg} is known to ±{known[leg]:.2f} only, at "
+            f"most ±{_BLIND:g} may be; film more cycles, faster, or nearer."
+        )
+
+
+def _unknown(feet: Mapping[str, FootContact], cycles: float) -> tuple[str, ...]:
+    """Say of which feet too little is seen, and how many more cycles would show enough."""
+    notes = []
+    alone = [leg for leg, foot in feet.items() if not np.isfinite(foot.duty_error)]
+    if alone:
+        named = " and ".join(alone)
+        notes.append(
+            f"one step of {named} was filmed from stance to stance, which has no interval: film one more cycle"
+        )
+    for leg, foot in feet.items():
+        if foot.duty_error > UNSURE:
+            why = f"is hidden in {100 * foot.hidden:.0f} % of every cycle" if foot.hidden > 0.1 else "is seen too badly"
+            unsure = f"±{foot.duty_error:.2f} of the cycle"
+            more = int(np.ceil(cycles * ((foot.duty_error / UNSURE) ** 2 - 1)))
+            more_said = "" if foot.hidden > 0.1 else f"; about {more} more cycles would make that ±{UNSURE:g}"
+            notes.append(f"{leg} {why}: when it lifts off and touches down is known to {unsure} only{more_said}")
+    return tuple(notes)
+
+
+def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
+    """Return signals that swing once a cycle: bends of trunk and tail, and the path of each foot along the body.
+
+    Points that are lost in turns may leave no frame in which a bend can be seen.
+    """
+    angles = bend_angles(tracks)
+    aside = tracks.view == "top"
+    signals = {
+        "the spine's bend": angles.spine_lateral if aside else angles.spine_vertical,
+        "the tail's bend": angles.tail_lateral if aside else angles.tail_vertical,
+        **{f"the path of {leg}": forward_path(tracks, leg) for leg in tracks.legs},
+    }
+    shown = {
+        "the spine's bend": tracks.thorax and tracks.pelvis,
+        "the tail's bend": tracks.pelvis and tracks.has("tail_tip"),
+    }
+    found = {}
+    for name, series in signals.items():
+        seen = np.isfinite(series).mean()
+        if seen >= _TOGETHER:
+            found[name] = series
+        elif shown.get(name, True):
+            raise UnusableTracks(
+                f"in {tracks.source} {name} can be seen in {100 * seen:.0f} % of the frames, at least "
+                f"{100 * _TOGETHER:.0f} % are needed: its points are lost in turns; track them again."
+            )
+    if not found:  # a midline without girdles and feet: it sways
+        front, rear = tracks.line
+        found["the trunk's direction"] = continuous(azimuth(tracks, front, rear))
+    return found
+
+
+def _read(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+    angles = bend_angles(tracks, tail_share)._asdict()
+    fits = {}
+    for name, series in angles.items():
+        seen = int(np.isfinite(series).sum())
+        if seen:
+            fits[name] = fit(tracks.time, series, period, harmonics=harmonics_for(seen, tracks.rate * period, most=6))
+    place, advance = tracks.at(tracks.line[1]), float("nan")
+    if np.isfinite(place[:, 0]).mean() >= _PLACES:
+        advanced = [fit(tracks.time, place[:, i], period, harmonics=2, drift=1).drift[0] for i in (0, 1)]
+        advance = float(np.hypot(*advanced)) * period
+    sweeps = {leg: sweep(tracks, leg, period) for leg in tracks.legs}
+    return _Reading(
+        fits,
+        {leg: one for leg, one in sweeps.items() if one is not None},
+        advance,
+        tracks.trunk_length(),
+        period,
+        tail_share,
+    )
+
+
+def _numbers(reading: _Reading, zero: float) -> dict[str, float]:
+    bends = {name: _first(reading.angles[name], zero) for name in reading.angles}
+    spine, tail = (bends.get(name, 0j) for name in ("spine_lateral", "tail_lateral"))
+    numbers = {"stride": reading.advance / reading.trunk}
+    for leg, path in reading.sweeps.items():
+        numbers |= {
+            f"retraction_{leg}": path.retraction,
+            f"stroke_{leg}": path.stroke / reading.trunk,
+            f"outward_{leg}": path.outward / reading.trunk,
+            f"ahead_{leg}": float(path.forward.mean()) / reading.trunk,
+            f"lift_{leg}": path.lift / reading.trunk,
+        }
+    for name, angle in reading.angles.items():
+        numbers |= {name: float(abs(angle.harmonics[0])), f"{name}_steady": angle.mean}
+        numbers[f"{name}_overtones"] = float(np.linalg.norm(angle.harmonics[1:]) / max(abs(angle.harmonics[0]), 1e-12))
+    if abs(spine) > _STRAIGHT:
+        numbers["spine_rightmost"] = float(-np.angle(spine) / (2 * np.pi)) % 1.0
+        if abs(tail) > _STRAIGHT:
+            numbers["tail_lag"] = float(np.angle(spine / tail) / (2 * np.pi)) % 1.0
+    return {name: value for name, value in numbers.items() if np.isfinite(value)}
+
+
+def _zero(feet: Mapping[str, FootContact]) -> float:
+    """Phase of the tracks' clock at which the gait begins: LF's mid-stance, back by swing and half of stance.
+
+    Without LF it is the same of the first foot that there is; without feet it is where the clock begins.
+    """
+    if not feet:
+        return 0.0
+    duty = float(np.mean([foot.duty for foot in feet.values()]))
+    first = feet.get("LF") or next(iter(feet.values()))
+    return first.touch_down + first.duty / 2 - (1.0 - duty / 2)
+
+
+def _first(one: PeriodicFit, zero: float) -> complex:
+    return complex(one.harmonics[0] * np.exp(2j * np.pi * zero))
+
+
+def _cycle(tracks: Tracks, number: int, period: float) -> Tracks:
+    start = tracks.time[0] + number * period
+    return tracks.between(start, start + period)
+
+
+def _apart(name: str, value: float, each: Sequence[Mapping[str, float]]) -> np.ndarray:
+    """Return how far a number of each cycle is from that of all, around the cycle where it is a phase."""
+    apart = np.array([numbers[name] for numbers in each if name in numbers]) - value
+    return wrapped(2 * np.pi * apart) / (2 * np.pi) if _unit(name) == "cycle" else apart
+
+
+def _unit(name: str) -> str:
+    stem = name.partition("_")[0]
+    if stem in ("phase",) or name in ("spine_rightmost", "tail_lag"):
+        return "cycle"
+    if stem in ("stroke", "outward", "ahead", "lift", "stride"):
+        return "trunk"
+    return "-" if stem in ("duty", "retraction") or name.endswith("overtones") else "rad"
+
+
+def _chains(tracks: Tracks) -> dict[str, tuple[str, ...]]:
+    trunk, tail = tracks.trunk_chain, tracks.tail_chain
+    return {"trunk": trunk, "tail": tail, "body": tuple(dict.fromkeys((*trunk, *tail)))}
+
+
+def _index(tracks: Tracks, chain: tuple[str, ...], period: float) -> float:
+    """Standing index of a chain, over the joints whose bend stands out of the noise; NaN with fewer than two."""
+    amplitude, phase = [], []
+    for series in joint_bends(tracks, chain):
+        bend = fit(tracks.time, series, period, harmonics=3)
+        if abs(bend.harmonics[0]) > _SHARP * bend.error:
+            amplitude.append(abs(bend.harmonics[0]))
+            phase.append(np.angle(bend.harmonics[0]))
+    return standing_index(amplitude, phase) if len(amplitude) > 1 else float("nan")
+
+
+def _check_advance(reading: _Reading, source: str) -> None:
+    """On ground at rest the body goes farther in a cycle than a foot sweeps back."""
+    if not reading.sweeps:
+        return
+    swept = 2 * float(np.mean([path.stroke for path in reading.sweeps.values()]))
+    if reading.advance < _ADVANCE * swept:
+        raise UnusableTracks(
+            f"in {source} the body advances by {reading.advance / reading.trunk:.2f} of its trunk's length in a cycle "
+            f"while its feet sweep {swept / reading.trunk:.2f} of it: it walks on a belt, on the spot, or the camera "
+            "goes along; standing feet can only be recognised over ground that rests in the picture."
+        )
+
+
+def _mean_cycle(tracks: Tracks, reading: _Reading, feet: Mapping[str, FootContact], zero: float) -> xr.Dataset:
+    phase = np.arange(GRID) / GRID
+    time = (phase + zero) * reading.period
+    data = xr.Dataset(coords={"phase": ("phase", phase, {"units": "1"}), "leg": list(feet)})
+    for name, angle in reading.angles.items():
+        attrs = {"units": "rad", "long_name": f"{name.replace('_', ' ')}, {_positive(name)} positive"}
+        data[name] = ("phase", angle.mean + angle.swing(time), attrs)
+        data[f"{name}_spread"] = (
+            "phase",
+            _left_over(tracks, angle, phase, zero),
+            {"units": "rad", "long_name": "standard deviation of the frames about the mean, camera noise included"},
+        )
+    back = -round(zero * GRID)
+    for name, field, unit in (("foot_speed", "speed", f"{tracks.unit}/s"), ("stance", "stance", "1")):
+        rows = [np.roll(getattr(feet[leg], field), back) for leg in feet]
+        data[name] = (("leg", "phase"), np.array(rows).reshape(-1, GRID), {"units": unit})
+    return data
+
+
+def _positive(name: str) -> str:
+    return "right" if name.endswith("lateral") else "down"
+
+
+def _left_over(tracks: Tracks, one: PeriodicFit, phase: np.ndarray, zero: float) -> np.ndarray:
+    """Standard deviation of the frames about the mean cycle, in bins of phase, drawn through [rad]."""
+    phases = np.mod(tracks.time / one.period - zero, 1.0)
+    bins = np.minimum((phases * _BINS).astype(int), _BINS - 1)
+    use = np.isfinite(one.residual)
+    count = np.bincount(bins[use], minlength=_BINS)
+    power = np.bincount(bins[use], weights=one.residual[use] ** 2, minlength=_BINS)
+    spread = np.where(count > 1, np.sqrt(power / np.maximum(count, 1)), one.noise)
+    return np.asarray(np.interp(phase, (np.arange(_BINS) + 0.5) / _BINS, spread, period=1.0))

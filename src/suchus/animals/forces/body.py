@@ -1,0 +1,263 @@
+"""The animal's body, what of it and of its world a film does not show, and choices of all that is not known."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+import xarray as xr
+from scipy.stats import norm, qmc
+
+from suchus.animals.capture import Seen, UnusableTracks, Walk
+from suchus.robot.design import Robot, Rod, Segment, Shell
+from suchus.core.checks import Checks
+from suchus.robot.design.pieces import volumes
+from suchus.robot.design.scale import scaled
+
+Rung = Literal["sections", "slice", "space"]
+"""Models of the water: forces section by section, a plane flow as deep as the body, the flow around the body."""
+RUNGS: tuple[Rung, ...] = get_args(Rung)
+"""All of them."""
+DRAWS = 39
+"""Choices beside the most likely one [-]: whatever their distribution, a fortieth answer lies between the least and the
+greatest of 39 in 95 of 100 cases."""
+_SURE = float(norm.ppf(0.975))  # standard errors in half a 95 % interval
+_POSITIVE = ("stride", "stride_length", "period", "trunk_length", "lift", "stroke", "spine_lateral", "tail_lateral")
+_SHARES = ("duty", "retraction")
+_ASKED, _ASKED_OF_FEET = ("period", "speed"), ("duty", "phase")  # numbers that must have an interval
+_SEED = 35
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unknown:
+    """What a film does not show, each as the ends of its range; a choice is drawn evenly from it."""
+
+    mass: tuple[float, float] | None = None
+    """Of the animal [kg]; None: 0.7 to 1.4 times what the named body weighs at the animal's length."""
+    friction: tuple[float, float] = (0.4, 1.0)
+    """Between feet and ground [-]: rubber or claws on wood, stone and soil; a film whose feet do not slip says only
+    that there was enough of it."""
+    lift: tuple[float, float] = (0.5, 1.5)
+    """How high feet are lifted where no heights were seen, over what the gait does that lends it [-]."""
+    height: tuple[float, float] = (0.95, 1.05)
+    """Height of the hips over what that gait has [-]: markers lie on the skin."""
+    cross_drag: tuple[float, float] = (0.8, 1.8)
+    """Drag coefficient of a section that moves sideways [-]: ellipses across, and what fins and oscillation add
+    (Hoerner 1965; docs/amphibious.md)."""
+    thickening: tuple[float, float] = (1.0, 3.0)
+    """Friction over that of a flat plate [-]: 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001)."""
+    added_mass: tuple[float, float] = (0.7, 1.3)
+    """Added mass of sections over that of ideal water [-]."""
+    shedding: tuple[float, float] = (0.3, 1.2)
+    """Share of Lighthill's momentum that is shed at the end of the tail [-]."""
+    viscosity: tuple[float, float] = (0.9e-6, 1.15e-6)
+    """Of fresh water at 15 to 25 C [m2/s]."""
+    draws: int = DRAWS
+    """Choices beside the most likely one [-]; see ``DRAWS``."""
+
+    def __post_init__(self) -> None:
+        with Checks("unknown", self) as check:
+            check.whole("draws", 3, 10_000)
+            for name, low, high in (
+                ("mass", 1e-6, 1e5), ("friction", 0.01, 5.0), ("lift", 0.0, 5.0), ("height", 0.2, 3.0),
+                ("cross_drag", 0.0, 10.0), ("thickening", 0.0, 100.0), ("added_mass", 0.0, 10.0),
+                ("shedding", 0.0, 10.0), ("viscosity", 1e-9, 1.0),
+            ):  # fmt: skip
+                ends = getattr(self, name)
+                check.that(
+                    ends is None or (len(ends) == 2 and low <= ends[0] <= ends[1] <= high),
+                    f"unknown.{name} is {ends}; a range is two numbers from {low:g} to {high:g}, the lower one first",
+                )
+
+    def masses(self, body: Robot) -> tuple[float, float]:
+        """Return the range of the mass of an animal, the named body at its length [kg]."""
+        return self.mass or (0.7 * body.mass, 1.4 * body.mass)
+
+
+def middle(ends: tuple[float, float]) -> float:
+    """Return the most likely value of a range."""
+    return 0.5 * (ends[0] + ends[1])
+
+
+def even(ends: tuple[float, float], share: float) -> float:
+    """Return the value at a share of a range, 0 to 1."""
+    return float(ends[0] + share * (ends[1] - ends[0]))
+
+
+def choices(names: Sequence[str], count: int) -> list[dict[str, float]]:
+    """Return choices of what is not known, each number a share of its distribution, by a Latin hypercube.
+
+    Args:
+        names: of what is not known.
+        count: choices.
+    """
+    shares = qmc.LatinHypercube(d=len(names), rng=np.random.default_rng(_SEED)).random(count)
+    return [{name: float(share) for name, share in zip(names, row, strict=True)} for row in shares]
+
+
+def errors(share: float) -> float:
+    """Return how many half widths of a 95 % interval a number is off at a share of its normal distribution [-]."""
+    return float(norm.ppf(np.clip(share, 1e-6, 1 - 1e-6))) / _SURE
+
+
+def unsure(walk: Walk) -> tuple[str, ...]:
+    """Return the numbers of a walk that have an interval.
+
+    Raises:
+        UnusableTracks: one that forces rest on has none, since too few cycles were seen.
+    """
+    names = tuple(name for name, seen in walk.numbers.items() if np.isfinite(seen.error))
+    asked = [name for name in walk.numbers if name in _ASKED or name.partition("_")[0] in _ASKED_OF_FEET]
+    lacking = [name for name in asked if name not in names]
+    if lacking:
+        raise UnusableTracks(
+            f"{walk.source} shows {walk.cycles:.1f} cycles, by which {' and '.join(lacking)} "
+            f"ha{'ve' if len(lacking) > 1 else 's'} no interval, and so no force has one: film one more cycle."
+        )
+    return names
+
+
+def drawn(walk: Walk, shares: Mapping[str, float]) -> Walk:
+    """Return a walk as it may have been: each number somewhere in its interval.
+
+    Args:
+        walk: the measured one.
+        shares: of the distribution of each of ``unsure(walk)``.
+    """
+    numbers = dict(walk.numbers)
+    for name, seen in walk.numbers.items():
+        if name in shares and np.isfinite(seen.error):
+            numbers[name] = seen._replace(value=_allowed(name, seen, errors(shares[name])))
+    bends = dict(walk.bends)
+    for part in ("spine", "tail"):
+        name = f"{part}_lateral"
+        if name in bends and name in numbers and abs(bends[name]) > 0.0:
+            turn = bends[name] / abs(bends[name])
+            turn *= np.exp(-2j * np.pi * _moved(walk, numbers, "spine_rightmost"))
+            turn *= np.exp(-2j * np.pi * _moved(walk, numbers, "tail_lag")) if part == "tail" else 1.0
+            bends[name] = complex(numbers[name].value * turn)
+    return replace(walk, numbers=numbers, bends=bends)
+
+
+def _moved(walk: Walk, numbers: Mapping[str, Seen], name: str) -> float:
+    return numbers[name].value - walk.numbers[name].value if name in numbers else 0.0
+
+
+def _allowed(name: str, seen: Seen, off: float) -> float:
+    value, stem = seen.value + off * seen.error, name.partition("_")[0]
+    if stem in _SHARES:
+        return float(np.clip(value, 0.05, 0.95))
+    if stem in _POSITIVE or name in _POSITIVE:
+        return float(max(value, 0.02 * seen.value))
+    return float(value)
+
+
+def sized(robot: Robot, length: float, mass: float | None = None) -> Robot:
+    """Return a body so many times as long, everything else in proportion, and as heavy as is asked for.
+
+    Args:
+        robot: the body.
+        length: factor on its lengths [-].
+        mass: of the whole body [kg]; in proportion to the cube of the length if None.
+    """
+    alike = abs(length - 1.0) < 1e-12 and mass is None
+    return robot if alike else scaled(robot, length_factor=length, mass_factor=mass and mass / robot.mass)
+
+
+def widened(robot: Robot, volume: float) -> Robot:
+    """Return a body whose axis is so much wider and higher that it has a volume, its length as it is.
+
+    Args:
+        robot: the body.
+        volume: of the whole body [m3].
+    """
+    for _ in range(30):
+        now = sum(volumes(robot).values())
+        if abs(now / volume - 1.0) < 1e-9:
+            break
+        factor = (volume / now) ** 0.5
+        robot = replace(robot, axis=tuple(_wider(segment, factor) for segment in robot.axis))
+    return robot
+
+
+def _wider(segment: Segment, factor: float) -> Segment:
+    def across(place: tuple[float, float, float]) -> tuple[float, float, float]:
+        return place[0], factor * place[1], factor * place[2]
+
+    shapes: list[Rod | Shell] = []
+    for shape in segment.shapes:
+        if isinstance(shape, Shell):
+            half = shape.half[0], factor * shape.half[1], factor * shape.half[2]
+            shapes.append(replace(shape, at=across(shape.at), half=half))
+        else:
+            shapes.append(
+                replace(shape, start=across(shape.start), end=across(shape.end), radius=factor * shape.radius)
+            )
+    return replace(segment, shapes=tuple(shapes))
+
+
+def put(
+    data: xr.Dataset,
+    name: str,
+    dims: tuple[str, ...],
+    answers: np.ndarray,
+    about: tuple[str, str],
+) -> None:
+    """Put the first of some answers into a dataset, and the least and the greatest of all as ends of its interval.
+
+    Args:
+        data: the dataset.
+        name: of the variable.
+        dims: of a value.
+        answers: each as ``dims`` say, the most likely one first.
+        about: its unit and what it is.
+    """
+    unit, meaning = about
+    ends = {"": answers[0], "_low": np.min(answers, axis=0), "_high": np.max(answers, axis=0)}
+    ending = {"": "", "_low": ", lower end of the 95 % interval", "_high": ", upper end of the 95 % interval"}
+    for end, value in ends.items():
+        data[f"{name}{end}"] = (dims, value, {"units": unit, "long_name": f"{meaning}{ending[end]}"})
+
+
+class Quantities:
+    """Quantities with their intervals, a row each."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[str, float, float, float, str, str, float, float, str]] = []
+
+    def add(
+        self, name: str, answers: Sequence[float], unit: str, meaning: str,
+        published: tuple[float, float, str] = (np.nan, np.nan, ""),
+    ) -> None:  # fmt: skip
+        """Add a quantity.
+
+        Args:
+            name: of it.
+            answers: the most likely one first.
+            unit: of it.
+            meaning: what it is.
+            published: of animals, its standard deviation over trials, and the source.
+        """
+        known = np.asarray(answers, dtype=float)
+        known = known if np.isfinite(known).any() else np.zeros(1) * np.nan
+        low, high = (float(np.nanmin(known)), float(np.nanmax(known))) if np.isfinite(known).any() else (np.nan,) * 2
+        self._rows.append((name, float(known[0]), low, high, unit, meaning, *published))
+
+    def dataset(self) -> xr.Dataset:
+        """Return the rows, over ``quantity``."""
+        columns = list(zip(*self._rows, strict=True))
+        data = xr.Dataset(coords={"quantity": ("quantity", list(columns[0]))})
+        about = {
+            "value": "with the most likely numbers",
+            "low": "lower end of the 95 % interval",
+            "high": "upper end of the 95 % interval",
+            "unit": "unit of the quantity",
+            "meaning": "what it is",
+            "animals": "the same of animals, as published",
+            "animals_spread": "its standard deviation over trials",
+            "source": "where that is published",
+        }
+        for (name, meaning), column in zip(about.items(), columns[1:], strict=True):
+            values = list(column) if isinstance(column[0], str) else np.array(column, dtype=float)
+            data[name] = ("quantity", values, {"long_name": meaning})
+        return data

@@ -1,0 +1,392 @@
+"""Forces under single feet of a walk that was filmed: the animal's body walks as it was seen, in every choice.
+
+The film gives when and where feet stand and how the body bends; the body's own weight, the ground and the stiffness of
+joints decide which of the feet that stand carries how much. So the body walks, and the forces are read from its feet.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from suchus.animals.capture import AngleCycle, UnusableTracks, Walk, to_curves, to_gait
+from suchus.animals.capture.retarget import NEEDED, Duty, mean_of
+from suchus.animals.capture.strides import PHASES
+from suchus.robot.design import GRAVITY, LEGS, Girdle, Robot, Servo, check_needs, hips_ahead, layout
+from suchus.robot.design.ground import Ground
+from suchus.robot.design.scale import scaled
+from suchus.robot.design.servos import with_full_torque, with_servos
+from suchus.core.errors import OutsideLimits
+from suchus.animals.forces.body import Quantities, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
+from suchus.robot.gaits import own_gait
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import mean_cycle, whole
+from suchus.sim.metrics.foot_forces import PARTS, FootStep, Window, advance, stance_forces, step, weight
+from suchus.robot.motion import START, Curve, Gait, suits
+from suchus.article.paper.walking_salamanders import ANIMAL
+from suchus.core.progress import Progress, silent
+
+SETTLE, CYCLES = 1, 3
+"""Cycles that are walked before anything is measured, and that are [-]."""
+LOADED = 0.15
+"""Vertical force from which a foot counts as standing [body weight], as in ``suchus run salamander``."""
+_CALLED = {"vertical": "up", "sideways": "toward the midline of the course", "foreaft": "forward along the course"}
+_FEW = 0.8  # share of the choices that must be possible
+_HELD = 0.05  # [cycle]; a force that lasts as long is no strike
+_STRONGER = 4.0  # times a robot's torque and speed that the animal's joints have: the film shows what they do
+_LONGER = tuple(1.0 + 0.1 * step for step in range(16))  # times as long limbs that are tried
+_REACHED = 0.005  # [trunk]; as near a foot is to where it was seen
+_HALVES = (1.0, 0.5, 0.25, 0.0)  # shares of a change that are tried where limbs do not follow all of it
+
+
+class _Try(NamedTuple):
+    """One choice of all that is not known."""
+
+    gait: Gait
+    friction: float  # [-]
+    mass: float  # [kg]
+    behind: float  # of the gait's clock behind that of the tables [cycle]
+
+
+class _Felt(NamedTuple):
+    """What the ground did in one choice; forces in body weights."""
+
+    feet: Float[np.ndarray, "leg part phase"]
+    belly: Float[np.ndarray, " phase"]
+    tail: Float[np.ndarray, " phase"]
+    steps: tuple[FootStep, ...]
+    speed: float  # [m/s]
+    missed: float  # [rad]
+
+
+def walked_forces(
+    walk: Walk,
+    robot: Robot,
+    base: Gait | None = None,
+    *,
+    unknown: Unknown | None = None,
+    duty: Duty = "retraction",
+    trunk: float | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Return the forces of the ground on an animal that walks as it was filmed, with intervals.
+
+    The body is a robot's in the animal's size, from hip to shoulder; its gait is read from the walk. Each choice draws
+    every measured number from its interval, the duty factor from between the share in which feet go back and that in
+    which they rest, and what the film does not show from its range.
+
+    Args:
+        walk: the measured walk, with all keypoints.
+        robot: whose body it is, four limbs with feet that can be put on a path.
+        base: gait from which what was not measured is taken; the robot's own if None.
+        unknown: the ranges of what the film does not show.
+        duty: which share of the cycle is the duty factor of the most likely choice.
+        trunk: the animal's length from hip to shoulder, where the film does not show it [m].
+        progress: told the share that is done.
+
+    Returns:
+        Over ``leg`` and ``phase``, the phase of the walk's own tables: ``vertical``, ``sideways`` toward the midline of
+        the course and ``foreaft`` along it [N], the same as ``vertical_bw`` ... [body weight],
+        ``belly_bw`` and ``tail_bw`` [body weight], each with ``_low`` and ``_high``; over ``quantity`` what stands out,
+        beside published numbers.
+
+    Raises:
+        UnsuitedRobot: the robot lacks four limbs with foot paths.
+        UnusableTracks: keypoints are lacking, too few cycles were seen, the size is unknown, or hardly any choice can
+            be walked.
+        OutsideLimits: the body cannot follow.
+    """
+    check_needs(robot, NEEDED, "forces of a filmed walk")
+    names, unknown = unsure(walk), unknown or Unknown()
+    long = trunk if trunk is not None else _trunk(walk)
+    body = sized(robot, long / hips_ahead(robot, 0))
+    lent = base or own_gait(robot)
+    body, notes = _able(sized(body, 1.0, middle(unknown.masses(body))), walk, lent, long)
+    rest = 0.0 if duty == "retraction" else 1.0
+    likely = dict.fromkeys((*names, "friction", "mass", "lift", "height"), 0.5) | {"rests": rest}
+    made: list[_Try] = []
+    for i, shares in enumerate([likely, *choices(list(likely), unknown.draws)]):
+        progress("reading gaits", 0.1 * i / (unknown.draws + 1))
+        try:
+            made.append(_try(walk, body, lent, unknown, shares, long))
+        except OutsideLimits:
+            if i == 0:
+                raise
+    if len(made) < _FEW * (unknown.draws + 1):
+        raise UnusableTracks(
+            f"only {len(made)} of {unknown.draws + 1} choices of what {walk.source} leaves open can be walked by the "
+            f"body of {robot.name}: film more cycles, or name another body with --robot."
+        )
+    felt = _walked(body, made, lambda stage, share: progress(stage, 0.1 + 0.9 * share))
+    film = walk.numbers.get("speed")
+    scale = 1.0 if film is None or film.unit == "m/s" else long / walk.value("trunk_length")
+    seen = () if film is None else tuple(scale * (film.value + off) for off in (0.0, -film.error, film.error))
+    data = _told(body, [one.mass for one in made], felt, seen)
+    return data.assign_attrs(
+        title=f"forces of the ground on the animal of {walk.source}", medium="land", body=robot.name,
+        notes="\n".join([*notes, *_left_open(walk, unknown)]),
+    )  # fmt: skip
+
+
+def _trunk(walk: Walk) -> float:
+    long = walk.numbers.get("trunk_length")
+    if long is None or long.unit != "m":
+        raise UnusableTracks(
+            f"{walk.source} is in pixels, which do not show how long the animal is, and forces grow with the cube of "
+            "it: give its length from hip to shoulder, as in --trunk 0.12."
+        )
+    return long.value
+
+
+def _able(body: Robot, walk: Walk, base: Gait, trunk: float) -> tuple[Robot, list[str]]:
+    """Return the body with limbs as long and joints as strong and fast as what it was seen to do asks, and notes.
+
+    A robot's limbs and servos are those of its own task. An animal's do what is on the film.
+    """
+    strong = with_servos(body, _stronger)
+    for longer in _LONGER:
+        able = strong if longer == 1.0 else replace(strong, girdles=tuple(_long(one, longer) for one in strong.girdles))
+        captured = to_gait(walk, able, base, name="filmed", girdles="apart", time="own", trunk=trunk)
+        if _reaches(able, walk, captured.gait, trunk):
+            told = (
+                [] if longer == 1.0 else [f"limbs are {longer:.2g} times as long as {body.name}'s, so that feet reach"]
+            )
+            return able, told
+    return strong, [note for note in captured.notes if note not in walk.notes]
+
+
+def _stronger(servo: Servo) -> Servo:
+    return replace(with_full_torque(servo), torque=_STRONGER * servo.torque, speed=_STRONGER * servo.speed)
+
+
+def _long(girdle: Girdle, factor: float) -> Girdle:
+    return replace(girdle, limb=scaled(girdle.limb, length_factor=factor, mass_factor=1.0))
+
+
+def _reaches(body: Robot, walk: Walk, gait: Gait, trunk: float) -> bool:
+    """Return whether feet go where they were seen to go."""
+    for girdle, limb, legs in zip(body.girdles, gait.limbs, (LEGS[:2], LEGS[2:]), strict=True):
+        seen = {"stroke": mean_of(walk, "stroke", legs), "outward": mean_of(walk, "outward", legs)}
+        asked = {"stroke": trunk * seen["stroke"], "outward": trunk * seen["outward"] - girdle.aside}
+        made = {name: getattr(limb, name) * girdle.limb.reach for name in asked}
+        if any(abs(made[name] - asked[name]) > _REACHED * trunk for name in asked):
+            return False
+    return True
+
+
+def _try(walk: Walk, body: Robot, base: Gait, unknown: Unknown, shares: Mapping[str, float], trunk: float) -> _Try:
+    """Return the choice at shares of the distributions of all that is not known."""
+    one = drawn(walk, shares)
+    numbers = dict(one.numbers)
+    for leg in (str(leg) for leg in walk.cycle.leg.values):
+        back, rest = numbers[f"retraction_{leg}"], numbers[f"duty_{leg}"].value
+        numbers[f"retraction_{leg}"] = back._replace(value=even((back.value, rest), shares["rests"]))
+    one = replace(one, numbers=numbers)
+    gait = to_gait(one, body, base, name="filmed", girdles="apart", time="own", trunk=trunk).gait
+    if not walk.upright:
+        gait = _changed(body, gait, "lift", even(unknown.lift, shares["lift"]))
+    gait = _changed(body, gait, "height", even(unknown.height, shares["height"]))
+    behind = (gait.duty_factor - mean_of(walk, "duty")) / 2  # both have LF's mid-stance in common
+    mass = even(unknown.masses(body), shares["mass"])
+    return _Try(gait, even(unknown.friction, shares["friction"]), mass, behind)
+
+
+def _changed(body: Robot, gait: Gait, name: str, factor: float) -> Gait:
+    """Return a gait one of whose numbers is a multiple of what it is, as far as the limbs follow."""
+    now = gait.number(name)
+    for share in _HALVES if now else ():
+        other = gait.with_numbers(**{name: now * (1.0 + share * (factor - 1.0))})
+        if suits(body, other):
+            return other
+    return gait
+
+
+def played_forces(
+    cycle: AngleCycle,
+    robot: Robot,
+    *,
+    period: float,
+    unknown: Unknown | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Return the same of a walk of which a table gives the joint angles, played on a robot.
+
+    The table shows neither size nor time: the body has the robot's own size, and each joint is uncertain by what the
+    harmonics leave of its angles.
+
+    Args:
+        cycle: the table.
+        robot: whose joints it is of.
+        period: of the cycle [s].
+        unknown: the ranges of what the table does not show.
+        progress: told the share that is done.
+
+    Raises:
+        UnsuitedRobot: the robot has no two pairs of limbs.
+        UnknownName: a column belongs to no servo of the robot.
+        OutsideLimits: the body cannot follow.
+    """
+    check_needs(robot, ("four_limbs",), "forces of a filmed walk")
+    unknown = unknown or Unknown()
+    gait = to_curves(cycle, robot, name="filmed", period=period)
+    body = sized(robot, 1.0, middle(unknown.masses(robot)))
+    waves = [f"{part} {curve.servo}" for curve in gait.curves for part in ("cosine", "sine")]
+    likely = dict.fromkeys((*waves, "friction", "mass"), 0.5)
+    left = {curve.servo: float(size) for curve, size in zip(gait.curves, cycle.residual, strict=True)}
+    made = []
+    for shares in [likely, *choices(list(likely), unknown.draws)]:
+        curves = tuple(_waved(curve, left[curve.servo], shares) for curve in gait.curves)
+        mass = even(unknown.masses(robot), shares["mass"])
+        made.append(_Try(replace(gait, curves=curves), even(unknown.friction, shares["friction"]), mass, 0.0))
+    felt = _walked(body, made, progress)
+    notes = [
+        f"the table shows no size: the body is {robot.name}'s, {body.length:.3g} m long",
+        *_ALWAYS,
+        f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}",
+    ]
+    data = _told(body, [one.mass for one in made], felt, ())
+    return data.assign_attrs(
+        title=f"forces of the ground on the animal of {cycle.source}", medium="land", body=robot.name,
+        notes="\n".join(notes),
+    )  # fmt: skip
+
+
+def _waved(curve: Curve, size: float, shares: Mapping[str, float]) -> Curve:
+    """Return a curve with a first harmonic added that is as large as what the table's harmonics leave of it [rad]."""
+    turn = 2 * np.pi * np.arange(len(curve.angles)) / len(curve.angles)
+    parts = [2.0 * size * errors(shares[f"{part} {curve.servo}"]) for part in ("cosine", "sine")]
+    off = parts[0] * np.cos(turn) + parts[1] * np.sin(turn)
+    return replace(curve, angles=tuple(float(angle) for angle in curve.angles + off))
+
+
+def _walked(body: Robot, made: Sequence[_Try], progress: Progress) -> list[_Felt]:
+    """Let the body walk every choice, and return what the ground did."""
+    own = body.contact.foot_friction
+    runs = [Run(robot=body, gait=one.gait, ground=Ground(friction_scale=one.friction / own)) for one in made]
+    longest = max(one.gait.period for one in made)
+    record = whole(simulate(runs, duration=START + (SETTLE + CYCLES) * longest + 0.1 * longest, progress=progress))
+    return [_felt(record.isel(run=i), one) for i, one in enumerate(made)]
+
+
+def _felt(record: xr.Dataset, one: _Try) -> _Felt:
+    period = one.gait.period
+    when = Window(START + SETTLE * period, period, CYCLES)
+    force = stance_forces(record, when)
+    clock = np.arange(PHASES) / PHASES - one.behind
+
+    def at(values: np.ndarray) -> np.ndarray:
+        grid = np.arange(values.shape[-1]) / values.shape[-1]
+        rows = values.reshape(-1, values.shape[-1])
+        return np.array([np.interp(clock, grid, row, period=1.0) for row in rows]).reshape(*values.shape[:-1], PHASES)
+
+    carried = {
+        "belly": mean_cycle(record.belly_force.sel(xyz="z").sum("segment"), *when),
+        "tail": mean_cycle(record.tail_force.sel(xyz="z"), *when),
+    }
+    servos = [str(name) for name in record.servo.values if name in record.joint.values]
+    missed = record.joint_angle.sel(joint=servos).values - record.servo_target.sel(servo=servos).values
+    part = record.time.values > when.start
+    return _Felt(
+        feet=at(force.transpose("leg", "part", "phase").values),
+        belly=at(carried["belly"].values / weight(record)),
+        tail=at(carried["tail"].values / weight(record)),
+        steps=tuple(step(force.sel(leg=leg), LOADED) for leg in force.leg.values),
+        speed=float(np.hypot(*advance(record, when))) / period,
+        missed=float(np.sqrt(np.mean(missed[part] ** 2))),
+    )
+
+
+def _told(body: Robot, masses: Sequence[float], felt: Sequence[_Felt], film: tuple[float, ...]) -> xr.Dataset:
+    """Return forces and quantities of all choices as one dataset."""
+    place = layout(body)
+    legs = [limb.name for limb in place.limbs]
+    data = xr.Dataset(
+        coords={"phase": ("phase", np.arange(PHASES) / PHASES, {"units": "1"}), "leg": ("leg", legs)},
+    )
+    feet = np.array([one.feet for one in felt])
+    newtons = GRAVITY * np.array(masses)[:, None, None]
+    for i, part in enumerate(PARTS):
+        meaning = f"force of the ground on the foot, {_CALLED[part]}"
+        put(data, part, ("leg", "phase"), newtons * feet[:, :, i], ("N", meaning))
+        put(data, f"{part}_bw", ("leg", "phase"), feet[:, :, i], ("body weight", meaning))
+    for name in ("belly", "tail"):
+        carried = np.array([getattr(one, name) for one in felt])
+        put(data, f"{name}_bw", ("phase",), carried, ("body weight", f"force of the ground on the {name}, up"))
+    table = Quantities()
+    table.add("mass", masses, "kg", "of the animal")
+    table.add("length", [body.length], "m", "of the whole body")
+    if film:
+        table.add("speed_filmed", film, "m/s", "of the trunk on the film")
+        table.add("speed_to_filmed", [one.speed / film[0] for one in felt], "-", "speed of the body over that filmed")
+    table.add("speed", [one.speed for one in felt], "m/s", "of the body that walks as was filmed")
+    table.add("angle_missed", [one.missed for one in felt], "rad", "root mean square by which joints miss the film's")
+    _peaks(table, body, felt)
+    for j, leg in enumerate(legs):
+        mean = feet[:, j, PARTS.index("vertical")].mean(axis=-1)
+        table.add(f"carried_{leg}", list(mean), "body weight", f"mean vertical force on {leg} over the cycle")
+    for name in ("belly", "tail"):
+        table.add(f"carried_{name}", [float(getattr(one, name).mean()) for one in felt], "body weight",
+                  f"mean vertical force on the {name} over the cycle")  # fmt: skip
+    return data.merge(table.dataset())
+
+
+def _peaks(table: Quantities, body: Robot, felt: Sequence[_Felt]) -> None:
+    """Add what stands out in the forces on fore and hind feet, the mean of left and right, beside the salamanders'."""
+    limbs = layout(body).limbs
+    for pair, number in (("fore", 0), ("hind", limbs[-1].number)):
+        mine = [i for i, limb in enumerate(limbs) if limb.number == number]
+        steps = [[one.steps[i] for i in mine] for one in felt]
+        rows: dict[str, tuple[list[float], str, str]] = {
+            "net": ([_mean(step.net for step in one) for one in steps], "body weight", "greatest net force"),
+            "time": ([_mean(step.time for step in one) for one in steps], "stance", "when, as a share of stance, net"),
+        }
+        called = {"vertical": "peak", "sideways": "sideways", "foreaft": "foreaft"}
+        for part in PARTS:
+            values = [_mean(step.parts[part] for step in one) for one in steps]
+            rows[called[part]] = values, "body weight", f"force at that instant, {_CALLED[part]},"
+        for name, (values, unit, meaning) in rows.items():
+            animal = ANIMAL[f"foot_force_{name}_{pair}"]
+            table.add(f"foot_force_{name}_{pair}", values, unit, f"{meaning} of a {pair} foot",
+                      (animal.value, animal.spread, animal.source))  # fmt: skip
+        held = [[_held(one.feet[i]) for i in mine] for one in felt]
+        net = ANIMAL[f"foot_force_net_{pair}"]
+        table.add(f"foot_force_held_{pair}", [_mean(one) for one in held], "body weight",
+                  f"greatest net force on a {pair} foot that lasts {_HELD:g} cycles, longer than a strike",
+                  (net.value, net.spread, net.source))  # fmt: skip
+        loaded = [one.feet[mine, PARTS.index("vertical")] > LOADED for one in felt]
+        standing = [float(np.mean(one)) for one in loaded]
+        table.add(f"stance_share_{pair}", standing, "cycle", f"in which a {pair} foot carries {LOADED:g} body weights")
+
+
+def _held(foot: Float[np.ndarray, "part phase"]) -> float:
+    """Return the greatest net force on a foot that lasts for ``_HELD`` of the cycle [body weight]."""
+    net = np.linalg.norm(foot, axis=0)
+    return float(np.min([np.roll(net, -i) for i in range(round(_HELD * len(net)))], axis=0).max())
+
+
+def _mean(values: Any) -> float:
+    return float(np.mean(list(values)))
+
+
+_ALWAYS = (
+    "how feet that stand share the weight follows from the stiffness of the body's joints, not of the animal's muscles",
+    "how the mass is spread along the body is that of the named body",
+)
+
+
+def _left_open(walk: Walk, unknown: Unknown) -> list[str]:
+    """Say what cannot be known from the film, and what was taken instead."""
+    notes = list(_ALWAYS)
+    notes.append(f"friction is somewhere from {unknown.friction[0]:g} to {unknown.friction[1]:g}")
+    if unknown.mass is None:
+        notes.append("mass: 0.7 to 1.4 times the named body's at this length; forces in body weights do not need it")
+    if not walk.upright:
+        (least, most), (low, high) = unknown.lift, unknown.height
+        notes.append(
+            f"heights were not seen: feet are lifted {least:g} to {most:g} times as high, and hips are {low:g} to "
+            f"{high:g} times as high, as in the gait that lends them"
+        )
+    return notes

@@ -1,0 +1,163 @@
+"""The skeleton and the contacts of the feet, drawn on the frames of the film that the keypoints are from."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from PIL import Image, ImageSequence, UnidentifiedImageError
+
+from suchus.animals.capture import Tracks, UnusableTracks
+from suchus.core.errors import UnreadableFile
+from suchus.visual.figures.film import film
+from suchus.visual.figures.style import COLOURS
+from suchus.core.reading import check_file
+
+_PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp")
+_MOVING = (".gif", ".webp", ".tif", ".tiff", ".png")
+_MOST = 120  # frames that are drawn
+_WIDE = 720  # [px]; of the film that is drawn
+_INSTALL = 'pip install "suchus[capture]"'
+
+
+def overlay(tracks: Tracks, strides: xr.Dataset, wrong: Sequence[str], video: Path) -> bytes:
+    """Return the film with what was tracked drawn on it, as the bytes of a GIF.
+
+    The midline is a line through its keypoints. A foot is full while it stands, hollow while it swings, and grey where
+    that is not known. A keypoint that is not to be trusted is a red cross.
+
+    Args:
+        tracks: as they were read, in pixels.
+        strides: of the walk, with ``lift_off`` and ``touch_down``.
+        wrong: keypoints that are not to be trusted.
+        video: a video, a GIF, or a folder of pictures in the order of their names; a frame for every row of the tracks.
+
+    Raises:
+        UnusableTracks: the tracks are not in pixels, or have another number of frames than the video.
+        UnreadableFile: the video cannot be read.
+    """
+    if tracks.unit != "px":
+        raise UnusableTracks(
+            f"{tracks.source} is in metres, so that it is not known where in the picture its points are; --video needs "
+            "keypoints in pixels."
+        )
+    count, drawn = len(tracks.time), []
+    step = -(-count // _MOST)
+    frames = 0
+    for i, picture in enumerate(_frames(video)):
+        frames = i + 1
+        if i < count and i % step == 0:
+            drawn.append(picture.convert("RGB"))
+    if frames != count:
+        raise UnusableTracks(
+            f"{video} has {frames} frames and {tracks.source} {count}; they must be of the same film, frame by frame."
+        )
+    scale = min(1.0, _WIDE / drawn[0].width)
+    size = (round(scale * drawn[0].width), round(scale * drawn[0].height))
+    pictures = [np.asarray(picture.resize(size)) for picture in drawn]
+    place = tracks.position[::step, :, :2] * np.array([1.0, -1.0]) * scale
+    figure, show = _drawing(tracks, pictures, place, _stands(tracks.time[::step], tracks.legs, strides), wrong)
+    seconds = float(tracks.time[-1] - tracks.time[0])
+    said = f"{tracks.source} on {video.name}: full feet stand, hollow feet swing, crosses are not to be trusted"
+    return film(figure, show, len(pictures), seconds=seconds, caption=said)
+
+
+def _drawing(
+    tracks: Tracks, pictures: list[np.ndarray], place: np.ndarray, stands: dict[str, np.ndarray], wrong: Sequence[str]
+) -> tuple[Figure, Any]:
+    high, wide = pictures[0].shape[:2]
+    figure = Figure(figsize=(wide / 100, high / 100), dpi=100)
+    ax = figure.add_axes((0, 0, 1, 1))
+    ax.axis("off")
+    ax.set_autoscale_on(False)
+    ax.set_xlim(-0.5, wide - 0.5)
+    ax.set_ylim(high - 0.5, -0.5)
+    under = ax.imshow(pictures[0], aspect="auto")
+    chain = [tracks.points.index(name) for name in tracks.midline if name not in wrong]
+    bad = [tracks.points.index(name) for name in tracks.points if name in wrong]
+    key: dict[str, Any]
+    edge: dict[str, Any] = {"markeredgewidth": 1.2, "markersize": 4}
+    (spine,) = ax.plot([], [], color="white", linewidth=3.2)
+    (line,) = ax.plot([], [], color=COLOURS["spine"], linewidth=1.8, marker="o", markeredgecolor="white", **edge)
+    (crosses,) = ax.plot([], [], color=COLOURS["alarm"], linestyle="none", marker="x", markersize=8, markeredgewidth=2)
+    feet = {
+        leg: ax.plot([], [], linestyle="none", marker="o", markersize=10, markeredgewidth=2.2)[0]
+        for leg in tracks.legs
+        if leg not in wrong
+    }
+
+    key = {"transform": ax.transAxes, "marker": "o", "markersize": 8, "markeredgewidth": 2.2, "clip_on": False}
+    for j, leg in enumerate(feet):  # also puts their colours into the palette, which the first frame makes
+        ax.plot(0.03 + 0.08 * j, 0.04, color=COLOURS[leg], **key)
+        ax.text(0.045 + 0.08 * j, 0.04, leg, transform=ax.transAxes, va="center", color=COLOURS[leg], weight="bold")
+    if bad:
+        ax.plot(0.03 + 0.08 * len(feet), 0.04, color=COLOURS["alarm"], **(key | {"marker": "x"}))
+
+    def show(i: int) -> None:
+        under.set_data(pictures[i])
+        for artist in (spine, line):
+            artist.set_data(place[i, chain, 0], place[i, chain, 1])
+        crosses.set_data(place[i, bad, 0], place[i, bad, 1])
+        for leg, mark in feet.items():
+            at = tracks.points.index(leg)
+            mark.set_data([place[i, at, 0]], [place[i, at, 1]])
+            known = stands[leg][i]
+            colour = COLOURS[leg] if np.isfinite(known) else COLOURS["neutral"]
+            mark.set_markeredgecolor(colour)
+            mark.set_markerfacecolor(colour if known == 1 else "none")
+
+    return figure, show
+
+
+def _stands(time: np.ndarray, legs: Sequence[str], strides: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return whether each foot stands in each frame: 1, 0, or NaN where it is not known."""
+    found = {leg: np.full(len(time), np.nan) for leg in legs}
+    for leg in legs:
+        if "lift_off" not in strides or leg not in strides.leg.values:
+            continue
+        off, on = (strides[name].sel(leg=leg).values for name in ("lift_off", "touch_down"))
+        seen = np.isfinite(off) & np.isfinite(on)
+        off, on = off[seen], on[seen]
+        if len(off):
+            found[leg][(time >= off[0]) & (time <= on[-1])] = 1.0
+            for start, end in zip(off, on, strict=True):
+                found[leg][(time >= start) & (time < end)] = 0.0
+    return found
+
+
+def _frames(video: Path) -> Iterator[Image.Image]:
+    """Yield the frames of a video."""
+    if video.is_dir():
+        files = sorted(file for file in video.iterdir() if file.suffix.lower() in _PICTURES)
+        if not files:
+            raise UnreadableFile(f"{video} holds no pictures ({', '.join(_PICTURES)}).")
+        for file in files:
+            yield _opened(file)
+        return
+    check_file(video)
+    if video.suffix.lower() in _MOVING:
+        for frame in ImageSequence.Iterator(_opened(video)):
+            yield frame.copy()
+        return
+    try:
+        import av  # noqa: PLC0415  an optional extra
+    except ImportError as error:
+        raise UnreadableFile(
+            f"{video.name} is a video, which the av library reads; install it: {_INSTALL}; or give a folder of "
+            "pictures."
+        ) from error
+    try:
+        with av.open(str(video)) as container:
+            for frame in container.decode(video=0):
+                yield frame.to_image()
+    except (OSError, ValueError, IndexError) as error:
+        raise UnreadableFile(f"{video} cannot be read as a video: {' '.join(str(error).split())}.") from error
+
+
+def _opened(file: Path) -> Image.Image:
+    try:
+        return Image.open(file)
+    except (UnidentifiedImageError, OSError) as error:
+        raise UnreadableFile(f"{file} cannot be read as a picture.") from error

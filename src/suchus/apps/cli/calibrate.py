@@ -1,0 +1,135 @@
+"""``suchus calibrate wiring | zero | log``: what a robot that was built says of itself, into new files."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import tyro
+from rich.console import Console
+from rich.table import Table
+
+from suchus.hardware.bus import TABLES, BusPlace, Wiring, straight
+from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.options import parse
+from suchus.robot.design import Robot, layout
+from suchus.core.errors import UnknownName
+from suchus.robot.gaits import gait_of
+from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
+from suchus.hardware.calibrate import find_wiring, find_zeros, fit_log, fits_text
+from suchus.robot.motion import intended
+from suchus.core.files import check_replaceable, check_writable, load, write
+from suchus.robot.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrateOptions:
+    """Options of ``suchus calibrate``."""
+
+    what: Annotated[Literal["wiring", "zero", "log"], tyro.conf.Positional]
+    """wiring: each servo moves alone by 5 degrees, and you say what moved; zero: hold the robot in a posture, and where
+    the servos are then is that posture; log: stiffness, play and friction by a log of suchus drive."""
+    record: Annotated[Path | None, tyro.conf.Positional] = None
+    """The record.nc of a drive, for log."""
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot."""
+    hardware: Path = Path("hardware.toml")
+    """Where its servos hang, as far as is known; for wiring it may be missing if --port is given."""
+    port: str | None = None
+    """Port of its only bus."""
+    model: str = "XM430-W350"
+    """Model of its servos, where there is no file."""
+    baud: int = 1_000_000
+    """Bit rate of the bus, where there is no file [1/s]."""
+    posture: str | None = None
+    """Gait in whose first posture the robot is held, for zero; all joints at zero if it is left out."""
+    clock: Literal["wall", "bus"] = "wall"
+    """wall: this computer's time; bus: an emulator is told the time."""
+    out: Path | None = None
+    """The new file; by default hardware_wired.toml, hardware_zeroed.toml or servos_measured.csv."""
+
+
+_NEW = {"wiring": "hardware_wired.toml", "zero": "hardware_zeroed.toml", "log": "servos_measured.csv"}
+
+
+def calibrate(words: Sequence[str]) -> int:
+    """Calibrate, write the new file, say what is in it, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the place is taken.
+        BusFailure: a servo does not answer.
+    """
+    about = "Find out how a robot is wired, where its zeros are and how stiff its servos are; files are never changed."
+    options = parse(CalibrateOptions, "suchus calibrate", words, about)
+    out = options.out or Path(_NEW[options.what])
+    check_writable(out.parent)
+    check_replaceable(out)
+    if options.what == "log":
+        return _log(options, out)
+    rig = Rig(options.robot, _known(options), clocked=options.clock == "bus")
+    try:
+        if options.what == "wiring":
+            clock = BusClock(rig) if options.clock == "bus" else WallClock(rig.period)
+            write_wiring(find_wiring(rig, clock, lambda bus, number: _ask(options.robot, bus, number)), out)
+        else:
+            posture = np.zeros(len(rig.servos))
+            if options.posture is not None:
+                posture = intended(options.robot, gait_of(options.robot, options.posture), np.zeros(1)).targets[0]
+            wiring, off = find_zeros(rig, posture)
+            for name, angle in zip(rig.names, np.degrees(off), strict=True):
+                print(f"{name}: its zero moves by {angle:.1f} degrees")
+            write_wiring(wiring, out)
+    finally:
+        rig.close()
+    print(f"written: {out}; try it with suchus drive --hardware {out} --dry-run")
+    return 0
+
+
+def _known(options: CalibrateOptions) -> Wiring:
+    """Return the wiring as far as it is known."""
+    if options.hardware.exists():
+        wiring = read_wiring(options.hardware, options.robot)
+        if options.port is not None:
+            wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
+        return wiring
+    if options.port is None:
+        raise BadCommand(f"there is no {options.hardware}: say --port PORT and --model MODEL of the servos instead.")
+    if options.model not in TABLES:
+        raise UnknownName("model", options.model, TABLES)
+    place = BusPlace(port=options.port, baud=options.baud, protocol=TABLES[options.model].protocol)
+    return straight(options.robot, [place], options.model)
+
+
+def _ask(robot: Robot, bus: int, number: int) -> tuple[str, int]:
+    """Ask a person what moved, until the answer makes sense."""
+    names = layout(robot).servos
+    print(f"Number {number} on bus {bus} has turned by 5 degrees to more steps. Which joint moved, and in its positive")
+    print(f"sense (+) or the other (-)? One of {', '.join(names)}, as {names[0]} +")
+    while True:
+        print("> ", end="", flush=True)
+        line = sys.stdin.readline()
+        if not line:
+            raise BadCommand("the answers ended before all servos had moved; nothing is written.")
+        words = line.split()
+        if len(words) == 2 and words[0] in names and words[1] in ("+", "-"):
+            return words[0], 1 if words[1] == "+" else -1
+        print("Say the joint and + or -.")
+
+
+def _log(options: CalibrateOptions, out: Path) -> int:
+    if options.record is None:
+        raise BadCommand("suchus calibrate log needs the record.nc of a drive, as out/drive_belly_crawl/record.nc.")
+    record = load(options.record)
+    fits = fit_log(record.isel(run=0) if "run" in record.dims else record)
+    table = Table("servo", "stiffness [N m/rad]", "play [degrees]", "friction [N m]", "zero off [degrees]", box=None)
+    for name, fit in fits.items():
+        degrees = (f"{np.degrees(one.value):.2f} +- {np.degrees(one.half):.2f}" for one in (fit.play, fit.offset))
+        play, offset = degrees
+        table.add_row(name, str(fit.stiffness), play, str(fit.friction), offset)
+    Console(highlight=False).print(table)
+    print(
+        f"written: {write(out, fits_text(fits))}; intervals hold 95 % of what scatters, not what the model leaves out"
+    )
+    return 0

@@ -1,0 +1,337 @@
+"""``suchus doctor``: whether suchus can run here, and what is missing, on one page.
+
+Trials run in processes of their own, so that a library that dies takes nobody along: ``python -m suchus.apps.cli.doctor
+NAME`` prints what a trial found as JSON.
+"""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+import webbrowser
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, distribution, version
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+from suchus.core import machine, threads
+from suchus.apps.cli.entry import BadCommand
+from suchus.core.errors import SuchusError
+
+_USAGE = """usage: suchus doctor
+
+Say on one page whether suchus can run here: versions, threads, a short walk, the cache of compiled code, OpenGL,
+browser, extras. The exit code is 0 when it can run, and 2 when it cannot."""
+_EXTRAS = {
+    "viewer": "suchus view, and suchus demo live",
+    "optimise": "suchus optimise",
+    "capture": "tracks of DeepLabCut, SLEAP, LightningPose, Anipose, C3D; films",
+    "gym": "Gymnasium tasks",
+    "usd": "suchus export --format usd",
+    "hardware": "suchus drive and suchus calibrate, with real servos",
+    "meshes": "suchus import of a robot with meshes",
+    "cluster": "studies on many machines",
+}
+"""What each extra is good for; those that only developers need are left out."""
+_PATIENCE = 300.0  # [s]; a cold disk and a slow machine
+_WIDE = 110  # columns
+
+
+class UnfitMachine(SuchusError):
+    """Surroundings in which suchus cannot run."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """Result of one check."""
+
+    heading: str
+    """Name of the thing that was checked."""
+    lines: tuple[str, ...]
+    """Lines that describe what there is."""
+    wrong: str = ""
+    """What keeps suchus from running, and the remedy; empty if nothing does."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trial:
+    """Result of a trial in a process of its own."""
+
+    found: Mapping[str, Any] | None
+    """Output of the trial; None if it failed."""
+    failure: str = ""
+    """Why it failed, in a line."""
+
+
+def doctor(words: Sequence[str]) -> int:
+    """Print the page and return 0.
+
+    Raises:
+        UnfitMachine: suchus cannot run here.
+        BadCommand: there were more words.
+    """
+    if any(word in ("-h", "--help") for word in words):
+        print(_USAGE)
+        return 0
+    if words:
+        raise BadCommand(f"suchus doctor takes no {words[0]!r}.")
+    walk, swim, draw = tried("walk", "swim", "draw")
+    findings = [
+        packages(),
+        cores(),
+        bits(),
+        walking(walk),
+        compiled(swim),
+        places(),
+        opengl(draw),
+        browsing(),
+        extras(),
+    ]
+    print(page(findings))
+    if wrong := [finding.wrong for finding in findings if finding.wrong]:
+        raise UnfitMachine(f"suchus cannot run here: {'; '.join(wrong)}.")
+    print("suchus can run here.")
+    return 0
+
+
+def page(findings: Iterable[Finding]) -> str:
+    """Return what was found as text."""
+    head = f"suchus {installed('suchus') or '(not installed)'}, Python {platform.python_version()}, "
+    lines = [head + f"{platform.system()} {platform.machine()}", ""]
+    for finding in findings:
+        for number, text in enumerate(finding.lines):
+            label = finding.heading if number == 0 else ""
+            lines.append(fill(text, _WIDE, initial_indent=f"{label:<10} ", subsequent_indent=" " * 11))
+    return "\n".join([*lines, ""])
+
+
+def packages(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+    """Compare the packages that are there with those that suchus needs.
+
+    Args:
+        requires: what suchus needs, as its metadata say it; by default those of the installed package.
+        at: gives the version of a package, None where it is not there.
+    """
+    listed, wrong = [], []
+    for need in _needs(requires, ""):
+        present = (at or installed)(need.name)
+        listed.append(f"{need.name} {present or 'missing'}")
+        if present is None or not need.specifier.contains(present, prereleases=True):
+            wrong.append(f"{need.name} is {present or 'missing'}, and {need.specifier or 'any version'} is needed")
+    remedy = f"{', '.join(wrong)}: pip install --upgrade suchus" if wrong else ""
+    return Finding(heading="packages", lines=(", ".join(listed) or "unknown: suchus is not installed",), wrong=remedy)
+
+
+def extras(requires: Iterable[str] | None = None, at: Callable[[str], str | None] | None = None) -> Finding:
+    """Tell which extras are there, and how to get the others; the arguments are those of ``packages``."""
+    lines = []
+    for extra, use in _EXTRAS.items():
+        needs = _needs(requires, extra)
+        present = [(at or installed)(need.name) for need in needs]
+        fits = all(p and n.specifier.contains(p, prereleases=True) for n, p in zip(needs, present, strict=True))
+        have = ", ".join(f"{need.name} {p}" for need, p in zip(needs, present, strict=True) if p)
+        state = f"yes, {have}" if needs and fits else f"no: pip install 'suchus[{extra}]'"
+        lines.append(f"{extra:<9} {state} ({use})")
+    return Finding(heading="extras", lines=tuple(lines))
+
+
+def cores() -> Finding:
+    """Tell how many threads are used."""
+    setting = os.environ.get("SUCHUS_THREADS")
+    said = "SUCHUS_THREADS is not set" if setting is None else f"SUCHUS_THREADS={setting}"
+    try:
+        return Finding(heading="threads", lines=(f"{threads.count()} of {os.cpu_count()} cores ({said})",))
+    except SuchusError as error:
+        return Finding(heading="threads", lines=(said,), wrong=str(error).rstrip("."))
+
+
+def bits() -> Finding:
+    """Tell what decides the last bits of numbers on this machine."""
+    told = machine.described()
+    names = ("processor", "vector instructions", "linear algebra", "C library")
+    digests = ", ".join(f"{part} {digest}" for part, digest in machine.arithmetic().items())
+    portable = f"portable ({machine.WANTED}): {told['portable']}"
+    return Finding(heading="last bits", lines=("; ".join(told[name] for name in names), f"{digests}; {portable}"))
+
+
+def walking(trial: Trial) -> Finding:
+    """Judge the trial walk."""
+    if trial.found is None:
+        return Finding(heading="walking", lines=("failed",), wrong=f"a short walk failed ({trial.failure})")
+    if not trial.found["finite"]:
+        return Finding(heading="walking", lines=("not a number",), wrong="a short walk gave what is no number")
+    return Finding(heading="walking", lines=(f"0.2 s of a crawl in {trial.found['seconds']:.1f} s",))
+
+
+def compiled(trial: Trial) -> Finding:
+    """Judge how the flow solver is compiled, and whether the code can be kept."""
+    if trial.found is None:
+        return Finding(heading="swimming", lines=("failed",), wrong=f"a kernel cannot be compiled ({trial.failure})")
+    lines = [f"numba compiles; its threads are those of {trial.found['layer']}"]
+    if trial.found["layer"] == "workqueue":
+        lines.append("workqueue serves one flow at a time: install libgomp (the package libgomp1) for several")
+    if trial.found["missing"]:
+        lines.append(f"this numba lacks {', '.join(trial.found['missing'])}: first runs may differ in their last bits")
+    if trial.found["folder"] is None:
+        lines.append("compiled code cannot be kept, so every swim compiles for minutes: set NUMBA_CACHE_DIR")
+    else:
+        state = "there" if trial.found["compiled"] else "not there yet, the first swim takes a minute or two longer"
+        lines.append(f"compiled code is kept in {trial.found['folder']} ({state})")
+    return Finding(heading="swimming", lines=tuple(lines))
+
+
+def places() -> Finding:
+    """Return whether results can be written here."""
+    try:
+        with tempfile.TemporaryDirectory(dir=Path.cwd(), prefix=".suchus-"):
+            return Finding(heading="results", lines=("this folder can be written to",))
+    except OSError as error:
+        return Finding(heading="results", lines=(f"not into this folder ({error.strerror}): say --out DIR",))
+
+
+def opengl(trial: Trial) -> Finding:
+    """Tell of OpenGL, which suchus does without."""
+    offscreen = f"off-screen by {trial.found['by']}" if trial.found else "none off-screen"
+    return Finding(heading="OpenGL", lines=(f"{offscreen}; suchus needs none, browsers draw with WebGL 2",))
+
+
+def browsing() -> Finding:
+    """Tell which browser opens."""
+    opener = browser()
+    line = "none with a window: suchus demo writes a page" if opener is None else called(opener)
+    return Finding(heading="browser", lines=(line,))
+
+
+def installed(name: str) -> str | None:
+    """Return the version of a package, None where it is not there."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def tried(*names: str) -> list[Trial]:
+    """Return the results of trials, side by side, each in a process of its own."""
+    command = [sys.executable, "-P", "-m", "suchus.apps.cli.doctor"]
+    with ExitStack() as stack:
+        running = []
+        for name in names:
+            begun = subprocess.Popen([*command, name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            running.append(stack.enter_context(begun))
+            stack.callback(begun.kill)  # before its end is waited for
+        return [_outcome(process) for process in running]
+
+
+def _outcome(process: "subprocess.Popen[str]") -> Trial:
+    try:
+        out, err = process.communicate(timeout=_PATIENCE)
+    except subprocess.TimeoutExpired:
+        return Trial(found=None, failure=f"no answer within {_PATIENCE:g} s")
+    if process.returncode < 0:
+        return Trial(found=None, failure=f"the process died of signal {-process.returncode}")
+    if process.returncode > 0:
+        return Trial(found=None, failure=(err.strip().splitlines() or ["no word"])[-1])
+    return Trial(found=json.loads(out.splitlines()[-1]))
+
+
+def _needs(requires: Iterable[str] | None, extra: str) -> list[Any]:
+    """Return what suchus, or one of its extras, needs here.
+
+    Raises:
+        UnfitMachine: what reads requirements is missing.
+    """
+    try:
+        parse = import_module("packaging.requirements").Requirement
+    except ModuleNotFoundError as error:
+        raise UnfitMachine("the package packaging is missing: pip install --upgrade suchus.") from error
+    if requires is None:
+        try:
+            requires = distribution("suchus").requires or ()
+        except PackageNotFoundError:
+            requires = ()
+    every = [parse(text) for text in requires]
+    plain = [need for need in every if need.marker is None or need.marker.evaluate({"extra": ""})]
+    if not extra:
+        return plain
+    return [need for need in every if need not in plain and need.marker and need.marker.evaluate({"extra": extra})]
+
+
+_TEXT = ("www-browser", "links", "elinks", "lynx", "w3m")
+"""Browsers that draw letters only, and would take the terminal."""
+
+
+def browser() -> webbrowser.BaseBrowser | None:
+    """Return the browser that an address is opened with, or None where there is none that draws.
+
+    It is the one that ``BROWSER`` names, or the system's; on Linux without a display there is none.
+    """
+    try:
+        system = webbrowser.get()
+    except webbrowser.Error:
+        return None
+    return None if called(system) in _TEXT else system
+
+
+def called(found: webbrowser.BaseBrowser) -> str:
+    """Return the name of a browser, as it is called on the command line."""
+    return Path(str(getattr(found, "name", ""))).name or type(found).__name__
+
+
+def trial_walk() -> dict[str, Any]:
+    """Let the caiman walk for a moment; return how long walking took [s]."""
+    import suchus  # noqa: PLC0415  what fails to import is what a trial finds
+
+    crawl = suchus.crawl  # imports what it needs
+    start = time.perf_counter()
+    record = crawl("caiman", "belly_crawl", duration=0.2)
+    return {"seconds": time.perf_counter() - start, "finite": bool(record.position.notnull().all())}
+
+
+def trial_swim() -> dict[str, Any]:
+    """Compile a loop that runs on threads; return by which layer, and where the flow solver's code is kept."""
+    import numba  # noqa: PLC0415
+    import numpy as np  # noqa: PLC0415
+
+    from suchus.flow import compiled, linking  # noqa: PLC0415
+
+    @numba.njit(parallel=True)  # type: ignore[untyped-decorator]
+    def doubled(values: Any) -> Any:
+        out = np.empty_like(values)
+        for i in numba.prange(values.size):
+            out[i] = 2.0 * values[i]
+        return out
+
+    doubled(np.ones(8))
+    folder = compiled.FOLDER
+    return {
+        "layer": numba.threading_layer(),
+        "folder": None if folder is None else str(folder),
+        "compiled": 0 if folder is None else len(list(folder.rglob("*.nbc"))),
+        "missing": linking.missing(),
+    }
+
+
+def trial_draw() -> dict[str, Any]:
+    """Open an OpenGL context without a window; return by what."""
+    os.environ.setdefault("MUJOCO_GL", "egl" if sys.platform == "linux" else "glfw")
+    import mujoco  # noqa: PLC0415
+
+    context = mujoco.GLContext(64, 64)
+    context.make_current()
+    context.free()
+    return {"by": os.environ["MUJOCO_GL"]}
+
+
+TRIALS: dict[str, Callable[[], dict[str, Any]]] = {"walk": trial_walk, "swim": trial_swim, "draw": trial_draw}
+"""By name."""
+
+
+if __name__ == "__main__":
+    print(json.dumps(TRIALS[sys.argv[1]]()))

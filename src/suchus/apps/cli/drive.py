@@ -1,0 +1,313 @@
+"""``suchus drive GAIT``: a robot of servos moves in a gait, by rules, or swims; its log is a record."""
+
+import select
+import shlex
+import sys
+import termios
+import time
+import tty
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from itertools import chain, count
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+import xarray as xr
+from rich.console import Console
+
+from suchus.hardware.bus import FRAMINGS, Instruction, Packet, Port, Wiring
+from suchus.hardware.bus.packets import Framing
+from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.options import gait_first, parse
+from suchus.apps.cli.terminal import working
+from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming, needs
+from suchus.robot.design import Robot
+from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort
+from suchus.core.errors import BusFailure, UnknownName
+from suchus.experiments.catalog._driven import Driven
+from suchus.visual.figures import styled
+from suchus.robot.gaits import gait_of, own_gait, suits
+from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
+from suchus.robot.motion import START, Gait
+from suchus.core.files import check_writable, save, there
+from suchus.apps.report import PAGE, check_place, save_outcome
+from suchus.apps.report.result import RECORD
+from suchus.robot.robots import ROBOTS
+from suchus.core.stopping import Stopped, finishing
+from suchus.swim.water import swim_of
+
+SWIM = "swim"
+"""Gait that is the robot's own wave, as in suchus view --lake."""
+_PATIENT = 60.0  # [s]; for letting a robot down and writing its log, on a computer that is told to stop
+_SHOWN = 3  # ticks whose packets a dry run prints
+_HELD = 4.0  # [s]; how long a robot stands up
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveOptions:
+    """Options of ``suchus drive``."""
+
+    gait: Annotated[str, tyro.conf.Positional] = ""
+    """The gait, a name that suchus list shows or a TOML file; swim for the robot's own wave; its own gait if none."""
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is driven."""
+    hardware: Path = Path("hardware.toml")
+    """Which servo hangs where, as suchus calibrate or suchus emulate write it."""
+    map: Path | None = None
+    """Servo map of hobby servos on PCA9685 boards, which tell nothing, in the place of --hardware; --port names their
+    I2C bus."""
+    port: str | None = None
+    """Port of its only bus, in the place of the file's; /dev/i2c-1 for --map."""
+    clock: Literal["wall", "bus"] = "wall"
+    """wall: this computer's time; bus: an emulator is told the time, and nothing is ever late."""
+    control: Literal["open", "closed", "steered", "pattern", "stand", "swim"] = "open"
+    """What decides: the gait alone, the three feedback rules, these and the heading loop, coupled oscillators, standing
+    up and sitting down again, or a swim."""
+    seconds: float = 30.0
+    """How long, the first second of standing included [s]."""
+    rate: float | None = None
+    """Ticks in a second [Hz]; by default what suits a robot of its size, 100 for one of 1 m."""
+    stop: Literal["sag", "hold", "off"] = "sag"
+    """How it ends: let down with a fifth of its torque and switched off, left standing, or switched off at once."""
+    without: tuple[str, ...] = ()
+    """Servos that are not there: it goes on with them limp."""
+    dry_run: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Open no port: show what would be sent, and drive an emulated robot instead."""
+    out: Path | None = None
+    """Folder of the log, its figures and its page; by default out/drive_GAIT."""
+
+
+def run(words: Sequence[str]) -> int:
+    """Drive until the time is over, a key is pressed or something is wrong, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the robot cannot do it; nothing has moved.
+        BusFailure: servos cannot be reached, or the robot had to be stopped; the log is kept.
+    """
+    about = "Drive a robot of servos. Any key stops it, as Ctrl-C and the end of the terminal do; then it is let down."
+    options = parse(DriveOptions, "suchus drive", gait_first(words), about)
+    gait, control = _movement(options)
+    folder = options.out or Path("out") / f"drive_{gait.name}"
+    check_writable(folder.parent)
+    check_place(folder)
+    if options.map is not None:
+        return _drive(options, gait, control, folder, words, lambda: _blind(options))
+    wiring = read_wiring(options.hardware, options.robot)
+    if options.port is not None:
+        if len(wiring.bus) != 1:
+            raise BadCommand(
+                f"--port names one port, and {options.hardware} has {len(wiring.bus)} buses: name them there."
+            )
+        wiring = replace(wiring, bus=(replace(wiring.bus[0], port=options.port),))
+    return _drive(options, gait, control, folder, words, lambda: _opened(options, wiring, gait, control))
+
+
+def _drive(
+    options: DriveOptions,
+    gait: Gait,
+    control: Control,
+    folder: Path,
+    words: Sequence[str],
+    opened: Callable[[], AbstractContextManager[tuple[Rig | BlindRig, Any]]],
+) -> int:
+    """Drive an opened robot, keep its log, and return 0."""
+    settings = DriveSettings(duration=options.seconds, stop=options.stop)
+    begun = time.perf_counter()
+    told = Driven(robot=options.robot, gait=gait, control=options.control, stop=options.stop)
+    with finishing(_PATIENT), opened() as (rig, clock):
+        check_drive(rig, gait, control)
+        try:
+            with _keys() as asked, working() as bars:
+                record = drive(
+                    rig, gait, control, settings, clock=clock, asked=asked, say=bars.say, progress=bars.task(gait.name)
+                )
+        except Stopped as stop:
+            _hurry(getattr(stop, "record", None), folder)
+            raise
+        except (BusFailure, KeyboardInterrupt) as error:
+            _keep(told, getattr(error, "record", None), folder, words, time.perf_counter() - begun)
+            raise
+    _keep(told, record, folder, words, time.perf_counter() - begun)
+    return 0
+
+
+@contextmanager
+def _blind(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
+    """Yield a robot of hobby servos and its clock; a dry run prints what would be written."""
+    assert options.map is not None
+    if options.clock == "bus":
+        raise BadCommand("hobby servos have no bus whose emulator could be told the time: leave out --clock bus.")
+    servo_map = read_map(options.map, options.robot)
+    wires = Shown() if options.dry_run else open_wires(options.port or "/dev/i2c-1")
+    pulses = Pulses(wires, sorted({line.board for line in servo_map.servos}), servo_map.rate)
+    rig = BlindRig(options.robot, servo_map, pulses)
+    try:
+        yield rig, WallClock(rig.period)
+    finally:
+        rig.close()
+
+
+class Shown:
+    """An I2C bus that is none: it prints the first things that are written to it."""
+
+    def __init__(self) -> None:
+        self._left = 24
+
+    def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
+        """Print what would be written."""
+        self._left -= 1
+        if self._left >= 0:
+            print(f"write {i2c_addr:#04x} {register:#04x}  {bytes(data).hex(' ')}")
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+def _movement(options: DriveOptions) -> tuple[Gait, Control]:
+    """Return the gait and what decides."""
+    robot = options.robot
+    if options.gait == SWIM or (options.control == "swim" and not options.gait):
+        gait, kind = swim_of(robot), "swim"
+    else:
+        try:
+            gait = gait_of(robot, options.gait or None)
+        except UnknownName as error:
+            raise BadCommand(f"{error} {SWIM} and a path to a TOML file will do as well.") from error
+        kind = options.control
+        if not options.gait and not suits(robot, gait):
+            gait = own_gait(robot)
+    closed = Coordinated().suited(robot, gait)
+    controls: dict[str, Callable[[], Control]] = {
+        "open": OpenLoop,
+        "closed": lambda: closed,
+        "steered": lambda: replace(closed, heading=HeadingRule()),
+        "pattern": PatternGenerator,
+        "stand": lambda: Standing(at=START + gait.period, hold=_HELD),
+        "swim": Swimming,
+    }
+    return gait, controls[kind]()
+
+
+@contextmanager
+def _opened(options: DriveOptions, wiring: Wiring, gait: Gait, control: Control) -> Iterator[tuple[Rig, Any]]:
+    """Yield the open robot and its clock; an emulated one in this process where nothing is to be opened."""
+    ports: list[Port] = []
+    clocked = options.clock == "bus" or options.dry_run
+    if options.dry_run:
+        emulator = Emulator(wiring, EmulatedBody(options.robot, gait), clocked=True)
+        ports = [
+            Telling(MemoryPort(emulator, number), FRAMINGS[bus.protocol], wiring)
+            for number, bus in enumerate(wiring.bus)
+        ]
+    rig = Rig(
+        options.robot, wiring, ports, clocked=clocked, without=options.without,
+        rate=None if options.dry_run else options.rate, needed=needs(control),
+    )  # fmt: skip
+    try:
+        yield rig, BusClock(rig) if clocked else WallClock(rig.period)
+    finally:
+        rig.close()
+
+
+def _keep(told: Driven, record: xr.Dataset | None, folder: Path, words: Sequence[str], seconds: float) -> None:
+    """Write the folder of a log, and say what it says."""
+    if record is None or record.sizes["time"] < 1:
+        return
+    outcome = told.tell(record, seconds)
+    with styled():
+        figures = told.draw(outcome)
+    save_outcome(outcome, figures, told, folder, command=shlex.join(["suchus", "drive", *words]))
+    console = Console(highlight=False)
+    console.print(outcome.decides, markup=False)
+    cause = str(record.cause.item())
+    if cause:
+        console.print(cause, markup=False)
+    print(f"the log, its figures and its replay: {folder / PAGE}")
+
+
+def _hurry(record: xr.Dataset | None, folder: Path) -> None:
+    """Keep a log and nothing else: whoever told this process to stop does not wait for figures."""
+    if record is not None and record.sizes["time"] > 0:
+        others = (folder.with_name(f"{folder.name}_stopped{number}") for number in count(1))
+        folder = next(place for place in chain([folder], others) if not there(place))  # an earlier log stays
+        folder.mkdir(parents=True)
+        kept = save(record, folder / RECORD)
+        with suppress(OSError):  # a terminal that is gone
+            print(f"the log: {kept}", flush=True)
+
+
+@contextmanager
+def _keys() -> Iterator[Callable[[], str]]:
+    """Yield what says whether a key was pressed; the terminal is as before in the end."""
+    before = None
+    with suppress(termios.error, OSError, ValueError, AttributeError):  # no terminal, or one that cannot be set
+        if sys.stdin.isatty():
+            before = termios.tcgetattr(sys.stdin)
+            tty.setcbreak(sys.stdin)
+
+    def asked() -> str:
+        if before is None:
+            return ""
+        try:
+            ready, _, _ = select.select((sys.stdin,), (), (), 0.0)
+            return ("a key." if sys.stdin.read(1) else "the terminal was closed.") if ready else ""
+        except (OSError, ValueError):
+            return "the terminal was closed."
+
+    try:
+        yield asked
+    finally:
+        if before is not None:
+            with suppress(termios.error, OSError, ValueError):
+                termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+
+
+class Telling:
+    """A port that prints what is sent over it: the handshake in short, then the packets of some ticks.
+
+    Args:
+        port: that it is.
+        framing: what is spoken.
+        wiring: names of those that are spoken to.
+    """
+
+    def __init__(self, port: Port, framing: Framing, wiring: Wiring) -> None:
+        self.name = port.name
+        self._port, self._decoder, self._told = port, framing.requests(), 0
+        self._word = framing.word
+        self._names = {one.id: one.name for one in wiring.servo}
+        self._tables = {one.id: one.table for one in wiring.servo}
+
+    def send(self, data: bytes, wait: float) -> None:
+        """Send, and print what."""
+        for packet in self._decoder.feed(data):
+            self._tell(packet, data)
+        self._port.send(data, wait)
+
+    def receive(self, wait: float) -> bytes:
+        """Return what has arrived."""
+        return self._port.receive(wait)
+
+    def close(self) -> None:
+        """Let go of it."""
+        self._port.close()
+
+    def _tell(self, packet: Packet, data: bytes) -> None:
+        if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
+            return
+        word, rest = self._word, packet.data
+        address = int.from_bytes(rest[:word], "little")
+        length = int.from_bytes(rest[word : 2 * word], "little")
+        table = next(iter(self._tables.values()))
+        register = next((one.name for one in table.registers if one.address == address), str(address))
+        if register == "goal_position":
+            self._told += 1
+        if self._told > _SHOWN:
+            return
+        kind = "write" if packet.code == Instruction.SYNC_WRITE else "read"
+        step = length + 1 if kind == "write" else 1
+        called = [self._names.get(rest[i], str(rest[i])) for i in range(2 * word, len(rest), step)]
+        print(f"{kind} {register}, {len(called)} of {', '.join(called[:3])} ...\n  {data.hex(' ')}")

@@ -1,0 +1,172 @@
+"""``suchus emulate ROBOT``: its servos on buses that other programs open, with the simulated robot behind them."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from math import radians
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+
+from suchus.hardware.bus import BusPlace, BusProtocol, Wiring, straight
+from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.options import parse
+from suchus.apps.cli.view import pages_of_viewer
+from suchus.robot.design import Robot
+from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, Server, Trouble
+from suchus.sim.faults import FAULTS, from_table
+from suchus.robot.gaits import own_gait
+from suchus.hardware import read_wiring, write_wiring
+from suchus.sim.land import Ground, Lake
+from suchus.robot.motion import Gait
+from suchus.core.files import check_replaceable, check_writable, write
+from suchus.core.files.store import packed
+from suchus.robot.robots import ROBOTS
+
+_BAUD = {
+    "dynamixel": 1_000_000,
+    "feetech": 1_000_000,
+    "line": 2_000_000,
+}  # [1/s]; numbers that are written out are longer
+_PLACE = Path("hardware.toml")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmulateOptions:
+    """Options of ``suchus emulate``."""
+
+    robot: Annotated[Robot, tyro.conf.Positional] = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is emulated."""
+    hardware: Path = _PLACE
+    """Which servo hangs where, with the paths of the ports; written for this robot where there is no such file."""
+    protocol: BusProtocol = "dynamixel"
+    """What servos speak, where the file is written; line: hobby servos behind a board of your own."""
+    clock: Literal["wall", "bus"] = "wall"
+    """wall: time passes by itself; bus: the robot moves when it is told to, by suchus drive --clock bus."""
+    gait: Gait | None = None
+    """Gait in whose first posture the robot begins; by default its own."""
+    lake: float | None = None
+    """Level of the water around it [m]; dry land if it is left out."""
+    slope: float = 0.0
+    """Slope of the ground, uphill positive [degrees]."""
+    socket: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Listen on a socket of this computer in the place of a pseudo-terminal."""
+    trouble: Annotated[Trouble, tyro.conf.arg(name="")] = field(default_factory=Trouble)
+    """What goes wrong on the wire and in servos."""
+    fault: tuple[str, ...] = ()
+    """What breaks in the servos, as limp:LF_yaw or weak:RH_pitch: a fault that suchus list shows, and its part."""
+    seconds: float | None = None
+    """How long to serve [s]; until Ctrl-C if it is left out."""
+    view: tyro.conf.FlagCreatePairsOff[bool] = False
+    """Show the robot in the browser (extra: viewer)."""
+    port: int = 8080
+    """Port of the page in the browser; 0 for any that is free."""
+    out: Path | None = None
+    """Where to keep what truly happened, a record that suchus view and suchus replay show; nothing by default."""
+
+
+def emulate(words: Sequence[str]) -> int:
+    """Serve until interrupted, and return 0.
+
+    Raises:
+        SuchusError: the words or a file make no sense, or the ports cannot be made.
+    """
+    about = (
+        "Emulate a robot's servos on a bus: what drives them cannot tell them from real ones, and nothing can break."
+    )
+    options = parse(EmulateOptions, "suchus emulate", _robot_first(words), about)
+    if options.out is not None:
+        check_writable(options.out.parent)
+        check_replaceable(options.out)
+    trouble = options.trouble
+    clocked = options.clock == "bus"
+    body = EmulatedBody(
+        options.robot,
+        options.gait or own_gait(options.robot),
+        ground=Ground(uphill=radians(options.slope)),
+        lake=None if options.lake is None else Lake(level=options.lake),
+        faults=[_fault(text, trouble.at) for text in options.fault],
+        latency=trouble.latency if clocked else 0.0,
+    )
+    wiring, links = _wired(options)
+    server = Server(Emulator(wiring, body, trouble, clocked=clocked), links, sockets=options.socket)
+    viewer: Any = None
+    each: Callable[[], None] = _nothing
+    try:
+        if options.socket or not links:
+            wiring = _with_ports(wiring, server.ports)
+        if not options.hardware.exists():
+            write_wiring(_with_ports(wiring, server.ports), options.hardware)
+        print(
+            f"{', '.join(server.ports)}: the servos of {options.robot.name}, wired as {options.hardware} says",
+            flush=True,
+        )
+        if trouble.latency and clocked and abs(body.latency - trouble.latency) > 1e-9:
+            print(f"goals are {1e3 * body.latency:g} ms on their way, whole steps of the physics", flush=True)
+        if options.view:
+            viewer = _watched(options, server, body)
+            each = viewer.look
+            print(f"open {viewer.url} in a browser; Ctrl-C ends it.", flush=True)
+        end = body.tick + round(options.seconds / body.period) if options.seconds is not None else None
+        with suppress(KeyboardInterrupt):
+            server.serve(until=lambda: end is not None and body.tick >= end, each=each)
+    finally:
+        server.close()
+        if viewer is not None:
+            viewer.stop()
+        if options.out is not None and body.tick > 0:
+            print(f"what truly happened: {write(options.out, packed(body.record()))}")
+    print("ended.")
+    return 0
+
+
+def _nothing() -> None:
+    """Do nothing after a step."""
+
+
+def _wired(options: EmulateOptions) -> tuple[Wiring, list[Path]]:
+    """Return what hangs where, and under which names the pseudo-terminals are found."""
+    if options.hardware.exists():
+        wiring = read_wiring(options.hardware, options.robot)
+        ports = [Path(one.port) for one in wiring.bus if "://" not in one.port]
+        return wiring, ports if len(ports) == len(wiring.bus) and not options.socket else []
+    check_writable(options.hardware.parent)
+    link = options.hardware.parent / f"{options.hardware.stem}.port"
+    place = BusPlace(port=link.name, protocol=options.protocol, baud=_BAUD[options.protocol])
+    return straight(options.robot, [place], USUAL[options.protocol], boards=True), [] if options.socket else [link]
+
+
+def _with_ports(wiring: Wiring, ports: Sequence[str]) -> Wiring:
+    """Return a wiring whose buses are found where they are."""
+    named = [port if "://" in port else Path(port).name for port in ports]
+    return replace(wiring, bus=tuple(replace(one, port=port) for one, port in zip(wiring.bus, named, strict=True)))
+
+
+def _fault(text: str, at: float) -> Any:
+    kind, colon, part = text.partition(":")
+    if not colon or not part:
+        raise BadCommand(f"--fault {text} names no part; say as limp:LF_yaw. The kinds are {', '.join(FAULTS)}.")
+    return from_table({"kind": kind, "joint": part, "at": at})
+
+
+def _watched(options: EmulateOptions, server: Server, body: EmulatedBody) -> Any:
+    """Return the page in a browser that watches the robot."""
+    pages, ports = pages_of_viewer(), ", ".join(server.ports)
+
+    def picture() -> Any:
+        torque = "with its torque on" if (body.powered > 0.0).any() else "limp: nobody drives it"
+        return pages.WatchedRobot(body.time, body.now, options.lake, f"{ports}, {torque}")
+
+    return pages.WatchedApart(options.robot, picture, port=options.port, title=f"{options.robot.name}, emulated")
+
+
+def _robot_first(words: Sequence[str]) -> list[str]:
+    """Let the robot be named as an option too, as everywhere else."""
+    words = list(words)
+    for i, word in enumerate(words):
+        if word == "--robot" and i + 1 < len(words):
+            return [words[i + 1], *words[:i], *words[i + 2 :]]
+        if word.startswith("--robot="):
+            return [word.partition("=")[2], *words[:i], *words[i + 1 :]]
+    return words

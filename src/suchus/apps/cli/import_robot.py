@@ -1,0 +1,112 @@
+"""``suchus import ROBOT.urdf``: a robot of another tool as a draft, with a gait to begin with."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from suchus.robot import blueprint
+from suchus.apps.cli.options import parse
+from suchus.apps.cli.run import run_it
+from suchus.apps.cli.word_checks import check_toml
+from suchus.robot.design import layout
+from suchus.core.errors import OutsideLimits
+from suchus.sim.model.importing import Draft, Words, import_robot
+from suchus.robot.motion import Gait, draft_gait
+from suchus.core.files import check_replaceable, check_writable
+
+_METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportOptions:
+    """Options of ``suchus import``."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """URDF or MJCF, a tree of hinges drawn upright and straight at zero posture."""
+    out: Path | None = None
+    """The robot's file; by default the file's name with .toml, in this folder. A gait is written beside it."""
+    front: str | None = None
+    """A body at the front end. By default guessed from names, else along the file's x axis."""
+    heading: Annotated[float | None, tyro.conf.arg(metavar="DEGREES")] = None
+    """Direction of the front, from the file's x axis to the left; needed if a body is as long as it is wide."""
+    neck: str | None = None
+    """Body in which the axis ends in front, where it forks, as into a jaw or an arm on the back."""
+    tail: str | None = None
+    """Body in which the axis ends behind, where it forks."""
+    leave: tuple[str, ...] = ()
+    """Bodies to leave out with all that is attached to them, such as arms or fins; their mass goes to their parent."""
+    foot_radius: _METRES = None
+    """Radius of every foot, if the shapes in the file do not give it."""
+    packages: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="FOLDER")] = ()
+    """Folders in which the packages lie that meshes name by package://NAME/..., as those of ROS_PACKAGE_PATH."""
+    without_meshes: bool = False
+    """Take a body whose mesh is not read all the same, with a rod for its shape."""
+
+
+def import_file(words: Sequence[str]) -> int:
+    """Read a robot from a file of another tool, write it and a gait, say what was guessed, and return 0.
+
+    Raises:
+        SuchusError: the words make no sense, or the file is no robot that can be taken.
+    """
+    about = (
+        "Read a robot from a URDF or an MJCF: a draft in which every guess has a comment, and a gait to begin with. "
+        "Nothing in the file is executed; what it includes is read from its own folder only."
+    )
+    options = parse(ImportOptions, "suchus import", words, about)
+    out = options.out or Path(f"{options.file.stem}.toml")
+    check_toml(out, "robot")
+    check_writable(out.parent)
+    walk = out.with_name(f"{out.stem}_walk.toml")
+    for file in (out, walk):
+        check_replaceable(file)
+    said = Words(
+        front=options.front,
+        heading=options.heading,
+        neck=options.neck,
+        tail=options.tail,
+        leave=options.leave,
+        foot_radius=options.foot_radius,
+        packages=options.packages,
+        without_meshes=options.without_meshes,
+    )
+    draft = import_robot(options.file, name=out.stem, words=said)
+    print(*_plan(draft), *(f"note: {text}" for text in draft.remarks), sep="\n")
+    gait = _gait(draft, f"{out.stem}_walk")
+    head = (f"A draft that suchus read from {options.file.name}. Check it; what is guessed says so.", *draft.remarks)
+    blueprint.write(draft.robot, out, notes=draft.notes, head=head)
+    print(f"robot: {out}")
+    if gait is not None:
+        file = blueprint.write(gait, walk, head=("A first gait, not the best.",))
+        print(f"gait: {file}", *run_it(draft.robot, str(out), file), sep="\n")
+    return 0
+
+
+def _plan(draft: Draft) -> list[str]:
+    """Return the body plan in lines."""
+    robot, place = draft.robot, layout(draft.robot)
+    hinges = [hinge.turn for hinge in robot.axis_hinges]
+    counts = ", ".join(f"{hinges.count(turn)} {turn}" for turn in ("yaw", "pitch", "roll") if turn in hinges)
+    lines = [
+        f"{robot.name}: {robot.mass:.4g} kg, {robot.length:.4g} m, {len(place.hinges)} hinges, "
+        f"{len(place.servos)} driven",
+        f"axis: {len(robot.axis)} segment{'s' * (len(robot.axis) > 1)} from {robot.axis[0].name} to "
+        f"{robot.axis[-1].name}; {counts or 'no'} hinges; root {robot.root}",
+    ]
+    for girdle in robot.girdles:
+        turns = ", ".join(hinge.turn for hinge in girdle.limb.hinges)
+        lines.append(
+            f"limbs L{girdle.name}, R{girdle.name} on {girdle.segment}: {turns}; reach {girdle.limb.reach:.3g} m"
+        )
+    return lines
+
+
+def _gait(draft: Draft, name: str) -> Gait | None:
+    try:
+        return draft_gait(draft.robot, name)
+    except OutsideLimits as error:
+        print(f"note: {error}")
+        return None

@@ -1,0 +1,85 @@
+"""``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+import xarray as xr
+
+from suchus.core import files as record
+from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.options import parse
+from suchus.apps.cli.word_checks import check_page
+from suchus.robot.design import Robot
+from suchus.hardware import held
+from suchus.core.files import check_file, check_replaceable
+from suchus.visual.replay import replay, save
+from suchus.robot.robots import ROBOTS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReplayOptions:
+    """Options of ``suchus replay``."""
+
+    file: Annotated[Path, tyro.conf.Positional]
+    """The record of a run on land, a NetCDF file, such as out/displacement/record.nc."""
+    run: str | None = None
+    """The run of the record, by its label or its number from 0; needed if it holds several."""
+    ghost: str | None = None
+    """Another run of the record, for comparison, by its label or its number."""
+    robot: Robot | None = None
+    """Robot of the record; by default the one that the record names."""
+    title: str = ""
+    """Heading of the page; by default robot and gait."""
+    out: Path | None = None
+    """The page; by default the record's name with .html instead of .nc."""
+
+
+def make_replay(words: Sequence[str]) -> int:
+    """Write the page, say where it is, and return 0.
+
+    Raises:
+        SuchusError: the words or the record make no sense, or the place cannot be written to.
+    """
+    about = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
+    options = parse(ReplayOptions, "suchus replay", words, about)
+    check_file(options.file)
+    out = options.out or options.file.with_suffix(".html")
+    check_page(out)
+    check_replaceable(out)
+    stored = record.load(options.file)
+    shown = _chosen(stored, options.run, "--run")
+    ghost = None if options.ghost is None else _chosen(stored, options.ghost, "--ghost")
+    named = str(shown.robot.item()) if "robot" in shown.coords else "caiman"
+    robot = ROBOTS[named] if options.robot is None else options.robot
+    shown = held(shown, robot)
+    labels = [_label(run).replace("_", " ") for run in (shown, ghost) if run is not None]
+    save(replay(shown, robot, ghost=ghost, labels=labels, title=options.title), out)
+    print(f"{robot.name}, {' and '.join(labels)}: {out}, {out.stat().st_size / 1e6:.1f} MB")
+    return 0
+
+
+def _chosen(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:
+    """Return one run of a record."""
+    if "run" not in stored.dims:
+        if name is not None and name not in ("0", _label(stored)):
+            raise BadCommand(f"{option} asks for {name!r}, but the record holds one run only: leave it out.")
+        return stored
+    labels = [_label(stored.isel(run=i)) for i in range(stored.sizes["run"])]
+    if name is None and len(labels) == 1:
+        return stored.isel(run=0)
+    choices = ", ".join(f"{i} {label}" for i, label in enumerate(labels))
+    if name is None:
+        raise BadCommand(f"the record holds {len(labels)} runs ({choices}); choose one with {option}.")
+    if name in labels:
+        return stored.isel(run=labels.index(name))
+    if name.isdecimal() and len(name) < 10 and int(name) < len(labels):
+        return stored.isel(run=int(name))
+    raise BadCommand(f"{option} asks for {name!r}, but the record's runs are {choices}.")
+
+
+def _label(run: xr.Dataset) -> str:
+    name = run.coords.get("label", run.coords.get("gait"))
+    return "this run" if name is None else str(name.values)

@@ -1,0 +1,263 @@
+"""``suchus reproduce``: every experiment, then the page."""
+
+import sys
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+import suchus
+import suchus.experiments.catalog
+from suchus.core import threads
+from suchus.apps.cli.entry import BadCommand
+from suchus.apps.cli.options import OUT, QUICK, parse
+from suchus.apps.cli.run import perform
+from suchus.apps.cli.terminal import Bars, working
+from suchus.core.errors import SuchusError
+from suchus.experiments.experiment import Experiment
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.core.jobs import Job, finish, place_for
+from suchus.core.progress import Progress
+from suchus.core.files import check_replaceable, check_writable, made_alike, sweep
+from suchus.apps.report import Failure, Result, check_place, load_result, whole, write_page
+from suchus.core.writing import asked_to_replace, replacing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reproduction:
+    """An experiment that is to be run again."""
+
+    name: str
+    """On the shelf."""
+    out: Path
+    """The folder for results."""
+    quick: bool
+    """Whether its quick form is asked for, whatever it is."""
+    replace: bool = False
+    """Whether what a user wrote or changed may be replaced."""
+
+    @property
+    def experiment(self) -> Experiment:
+        """The question in the form that is asked for."""
+        experiment = EXPERIMENTS[self.name]
+        return experiment.quick() if self.quick else experiment
+
+    @property
+    def command(self) -> str:
+        """What makes the same result again."""
+        return f"suchus run {self.name}{' --quick' * self.quick}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reproduced:
+    """Result of an experiment, or the reason why it failed."""
+
+    result: Result | Failure
+    """For the page."""
+    summary: str
+    """The same in a line."""
+
+
+def attempt(task: Reproduction, progress: Progress) -> Reproduced:
+    """Run an experiment into its folder and read the result back.
+
+    Args:
+        task: which and where.
+        progress: called with the share that is done, 0 to 1.
+    """
+    try:
+        with replacing(task.replace):
+            done = perform(task.experiment, task.name, task.out, progress, task.command)
+        result = load_result(done.folder)
+    except SuchusError as error:
+        return failed(task.name, str(error))
+    except Exception as error:
+        return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
+    return Reproduced(result=result, summary=f"{_summary(result)} ({done.seconds:.1f} s)")
+
+
+def kept(task: Reproduction) -> Reproduced | None:
+    """Return the result that an earlier run left, if it is whole and a run would give the same again.
+
+    That is so if the settings, the files of suchus and the versions of libraries are the same. An experiment that is no
+    part of suchus itself is always run again, since its own code is in no digest.
+    """
+    try:
+        experiment = task.experiment
+        result = load_result(task.out / task.name)
+        same = made_alike(result.outcome["provenance"], experiment.settings())
+    except SuchusError:
+        return None
+    if not (same and whole(result) and result.outcome["command"] == task.command and _is_ours(experiment)):
+        return None
+    return Reproduced(result=result, summary=f"{_summary(result)} (kept from an earlier run)")
+
+
+def _is_ours(experiment: Experiment) -> bool:
+    file = sys.modules[type(experiment).__module__].__file__
+    return file is not None and Path(file).is_relative_to(Path(suchus.__file__).parent)
+
+
+def _summary(result: Result) -> str:
+    words = [verdict["verdict"] for verdict in result.outcome["verdicts"]]
+    return f"{result.name}: {', '.join(f'{words.count(word)} {word}' for word in dict.fromkeys(words)) or 'no verdict'}"
+
+
+def failed(name: str, sentence: str, trace: str = "") -> Reproduced:
+    """Return what is reported of an experiment that failed.
+
+    Args:
+        name: of the experiment.
+        sentence: what went wrong.
+        trace: where in the code, if it was none of our own errors.
+    """
+    return Reproduced(result=Failure(name=name, sentence=sentence, trace=trace), summary=f"{name}: failed: {sentence}")
+
+
+REPORT = "report.html"
+"""Name of the page of all experiments."""
+_MOST = 4
+"""Experiments at a time unless more are asked for [-]; beyond, the longest one alone decides, and each takes memory."""
+_EACH = 1
+"""Threads of each of several experiments [-]: two would end the flow's small loops little sooner, for twice the
+processor time."""
+_LONG = (
+    "swimming",
+    "feedback",
+    "joint_faults",
+    "gallop_limits",
+    "terrain",
+    "bipedal_reach",
+    "displacement",
+    "swim_free",
+    "crawl_stability",
+)
+"""What takes longest is begun first, so that no process idles in the end."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReproduceOptions:
+    """Options of ``suchus reproduce``."""
+
+    out: OUT = Path("out")
+    quick: QUICK = False
+    jobs: Annotated[
+        int | None, tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MOST} at most.")
+    ] = None
+    anew: Annotated[
+        bool,
+        tyro.conf.FlagCreatePairsOff,
+        tyro.conf.arg(help="Run every experiment again. Otherwise results of the same code and settings are kept."),
+    ] = False
+
+
+def reproduce(words: Sequence[str]) -> int:
+    """Run every experiment of the article, write the page, print its path; return 1 if an experiment failed, else 0.
+
+    Started again it goes on where it stopped: what is there of the same settings, code and versions is kept.
+
+    Raises:
+        SuchusError: the words make no sense, or the results cannot be saved.
+    """
+    about = "Run every experiment and write one page with all results, DIR/report.html."
+    options = parse(ReproduceOptions, "suchus reproduce", words, about)
+    sound = dict(EXPERIMENTS.items())  # what is broken is attempted too, and reported with what is wrong
+    tasks = [
+        Reproduction(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
+        for name in EXPERIMENTS
+        if name not in sound or sound[name].reproduces
+    ]
+    if not tasks:
+        raise BadCommand("there is no experiment on the shelf.")
+    if options.jobs is not None and options.jobs < 1:
+        raise BadCommand(f"--jobs is {options.jobs}; at least 1 experiment at a time is needed.")
+    check_writable(options.out)
+    for task in tasks:
+        check_place(options.out / task.name)
+    check_replaceable(options.out / REPORT)
+    jobs = min(threads.count(), _MOST) if options.jobs is None else options.jobs
+    with working() as bars:
+        outcomes = [done.result for done in _reproduced(tasks, bars, jobs=jobs, anew=options.anew)]
+        results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
+        failures = [outcome for outcome in outcomes if isinstance(outcome, Failure)]
+        page = write_page(results, failures, options.out / REPORT)
+    print(page)
+    return 1 if failures else 0
+
+
+def _reproduced(tasks: Sequence[Reproduction], bars: Bars, *, jobs: int, anew: bool) -> list[Reproduced]:
+    """Return the result of each task; the longest are begun first.
+
+    A process that dies takes its experiment with it and nothing else. When this one is stopped, by Ctrl-C or an error,
+    the others end too, and leave nothing half-written.
+    """
+    order = sorted(tasks, key=_rank)
+    results = _Results(order, anew)
+    for number in range(len(order)):
+        if results.has(number):
+            bars.say(results.get(number).summary)
+    job = Job(
+        name="reproduce",
+        kind="reproduction",
+        piece="experiment",
+        unit="experiments",
+        work=partial(_attempted, shelf=list(suchus.experiments.catalog.__path__)),
+        items=order,
+        tries=1,  # an experiment that takes too much memory takes it again
+        died=_died,
+    )
+    side_by_side = min(jobs, sum(not results.has(n) for n in range(len(order))) or 1)
+    try:
+        finish(
+            job,
+            results,
+            place=place_for("reproduce", jobs=side_by_side, each=_EACH),
+            each=lambda number: bars.task(order[number].name),
+            finished=lambda _, done: bars.say(done.summary),
+        )
+    finally:
+        for number, task in enumerate(order):
+            if not results.has(number):
+                sweep(task.out / task.name)
+    return [results.get(order.index(task)) for task in tasks]
+
+
+class _Results:
+    """Results of experiments, each a folder that the run itself writes; those of a run that would repeat them stay."""
+
+    def __init__(self, tasks: Sequence[Reproduction], anew: bool) -> None:
+        old = {} if anew else {number: kept(task) for number, task in enumerate(tasks)}
+        self._results = {number: result for number, result in old.items() if result is not None}
+
+    def has(self, number: int) -> bool:
+        """Return whether a result is there."""
+        return number in self._results
+
+    def get(self, number: int) -> Reproduced:
+        """Return a result that is there."""
+        return self._results[number]
+
+    def put(self, number: int, result: Reproduced) -> None:
+        """Take up a result, whose folder is written."""
+        self._results[number] = result
+
+
+def _attempted(task: Reproduction, progress: Progress, shelf: list[str]) -> Reproduced:
+    """Attempt an experiment, also in a process of its own, which knows the same shelf."""
+    suchus.experiments.catalog.__path__[:] = shelf
+    return attempt(task, progress)
+
+
+def _died(task: Reproduction, exit_code: int | None) -> Reproduced:
+    sweep(task.out / task.name)
+    return failed(
+        task.name, f"its process ended with exit code {exit_code}; where memory was short, --jobs 1 takes less of it."
+    )
+
+
+def _rank(task: Reproduction) -> int:
+    return _LONG.index(task.name) if task.name in _LONG else len(_LONG)

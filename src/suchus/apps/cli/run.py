@@ -1,0 +1,214 @@
+"""``suchus run NAME``: one experiment, its results into a folder."""
+
+import shlex
+import time
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, suppress
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import xarray as xr
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from suchus.apps.cli.entry import PROJECT
+from suchus.apps.cli.options import TABLES, choose
+from suchus.apps.cli.shelves import entry, title
+from suchus.apps.cli.terminal import working
+from suchus.robot.design import Robot, lacking
+from suchus.core.errors import plain_warnings
+from suchus.experiments.experiment import Experiment, Outcome
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.visual.figures import styled
+from suchus.robot.gaits import DRAFTED, GAITS
+from suchus.core.progress import Progress
+from suchus.core.files import check_writable, write_tables
+from suchus.apps.report import OUTCOME, PAGE, answer, carried, check_place, quantity, save_outcome
+from suchus.core.sources import current
+from suchus.article.verdict import Verdict, listed
+
+_COLOURS = {
+    "reproduced": "green",
+    "same sense": "yellow",
+    "contradicted": "red",
+    "undecided": "magenta",
+    "models disagree": "magenta",
+    "not testable": "dim",
+    "by construction": "cyan",
+    "fitted": "cyan",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Performed:
+    """An experiment that was run and saved."""
+
+    outcome: Outcome
+    """Its outcome."""
+    folder: Path
+    """Folder of its files."""
+    seconds: float
+    """Duration of running and drawing [s]."""
+
+
+def perform(experiment: Experiment, name: str, out: Path, progress: Progress, command: str) -> Performed:
+    """Run an experiment, draw its figures and save all of it in ``out / name``.
+
+    Args:
+        experiment: the question.
+        name: its name on the shelf.
+        out: the folder for results.
+        progress: called with the share that is done, 0 to 1.
+        command: what makes the same result again.
+
+    Raises:
+        Unwritable: the results cannot be saved; reported before the run where it can be known.
+    """
+    start = time.perf_counter()
+    check_place(out / name)
+    options = [f"--{one.name.replace('_', '-')}" for one in fields(experiment)]  # type: ignore[arg-type]
+    with _plain_sums(), plain_warnings(name, options=options):
+        outcome = experiment.run(progress)
+        progress("drawing", 1.0)
+        with styled():
+            figures = experiment.draw(outcome)
+        progress("saving", 1.0)
+        folder = save_outcome(outcome, figures, experiment, out / name, command=command)
+    for path in outcome.kept:
+        with suppress(OSError):  # what cannot be removed costs no result
+            path.unlink()
+    return Performed(outcome=outcome, folder=folder, seconds=time.perf_counter() - start)
+
+
+def _plain_sums() -> AbstractContextManager[object]:
+    """Let xarray take NumPy's sums and medians, whatever else is installed beside it.
+
+    Those of ``numbagg``, which comes with the extra ``capture``, round otherwise, so that equal runs would not give
+    equal bytes everywhere; and they compile for up to half a minute in every process.
+    """
+    return xr.set_options(use_numbagg=False, use_bottleneck=False)  # type: ignore[no-untyped-call]
+
+
+def show_outcome(question: Experiment, done: Performed) -> None:
+    """Print the answer, the numbers that carry it, the verdicts, and where everything else is."""
+    console = Console(highlight=False)
+    console.print(f"[bold]{escape(question.title)}[/]")
+    for line in moves(question):
+        console.print(escape(line))
+    console.print(escape(answer(done.outcome.decides)))
+    rows = carried(question.answers, done.outcome.measures)
+    numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
+    for row in rows:
+        numbers.add_row(*(escape(part) for part in row if part or len(numbers.columns) > 2))
+    console.print(numbers)
+    if done.outcome.verdicts:
+        table = Table(box=None, padding=(0, 2, 0, 0))
+        for heading, side in (
+            ("claim", "left"),
+            ("printed", "right"),
+            ("measured", "right"),
+            ("verdict", "left"),
+        ):
+            table.add_column(heading, justify=side, style=None)  # type: ignore[arg-type]
+        for verdict in done.outcome.verdicts:
+            claim = verdict.claim
+            table.add_row(
+                escape(f"{claim.quantity} ({claim.place})"),
+                quantity(claim.value, claim.unit, 3),
+                quantity(verdict.measured, _unit(verdict, done.outcome), 3),
+                f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
+            )
+        console.print(table)
+    if done.outcome.unjudged:
+        console.print(escape(done.outcome.unjudged), soft_wrap=True)
+    console.print(f"{done.seconds:.1f} s; the page with all of it: {escape(str(done.folder / PAGE))}", soft_wrap=True)
+
+
+def _unit(verdict: Verdict, outcome: Outcome) -> str:
+    """Return the unit of what was measured: of a statement, which prints no number, that of the rule's measure."""
+    measure = outcome.measures.get(verdict.rule.measure)
+    return verdict.claim.unit if verdict.claim.value is not None or measure is None else measure.unit
+
+
+def moves(question: Experiment) -> list[str]:
+    """Return in a sentence in which gaits the robot moves, where it is another one than the question's own."""
+    robot = getattr(question, "robot", None)
+    one = getattr(question, "gait", None)
+    gaits = getattr(question, "gaits", ()) if one is None else (one,)
+    if not gaits or robot is None or robot == getattr(type(question)(), "robot", None):
+        return []
+    if gaits[0].name == DRAFTED:
+        return [f"No gait on the shelf suits {robot.name}: it moves in one that was drafted for it."]
+    told = []
+    for gait in gaits:
+        shelf = GAITS.get(gait.name, gait)
+        other = f" (a cycle in {gait.period:.3g} s; {shelf.period:.3g} s on the shelf)"
+        told.append(gait.name + (other if gait.period != shelf.period else ""))
+    return [f"{robot.name} moves in the gait{'s' * (len(told) > 1)} {listed(told)}."]
+
+
+def run(words: Sequence[str]) -> int:
+    """Run one experiment and return 0.
+
+    Args:
+        words: the name of the experiment, which ``word_checks`` found on the shelf, and options.
+
+    Raises:
+        SuchusError: the words make no sense, or the run failed.
+    """
+    if words[:1] in (["-h"], ["--help"]):
+        print(_help())
+        return 0
+    name, *options = words
+    choice = choose(EXPERIMENTS[name], name, options)
+    check_writable(choice.out)
+    with working() as bar:
+        done = perform(choice.experiment, name, choice.out, bar.task(name), _again(words))
+    tables = write_tables(done.outcome.record, done.folder / TABLES) if choice.csv else None
+    if choice.json:
+        print((done.folder / OUTCOME).read_text(encoding="utf-8"), end="")
+        return 0
+    show_outcome(choice.experiment, done)
+    if tables is not None:
+        print(f"the record as CSV: {tables}")
+    return 0
+
+
+def run_it(robot: Robot, asked: str, gait: Path, first: str = "displacement") -> list[str]:
+    """Return the line that says how to see a gait on a robot; nothing where no question suits it.
+
+    Args:
+        robot: the robot.
+        asked: its name or its file; empty for the robot of the shelf that is taken where none is named.
+        gait: the file of the gait.
+        first: the question to ask where the robot suits it, before how far it walks and how fast.
+    """
+    for name, option in ((first, "--gait"), ("displacement", "--gait"), ("speed_range", "--gaits")):
+        if not lacking(robot, EXPERIMENTS[name].needs):
+            who = ("--robot", asked) if asked else ()
+            return [f"run it: {shlex.join(['suchus', 'run', name, *who, option, str(gait)])}"]
+    return []
+
+
+def _again(words: Sequence[str]) -> str:
+    """Return the command that makes the same result again, from any folder."""
+    project = current()
+    return shlex.join(["suchus", "run", *words, *((PROJECT, str(project.folder)) if project else ())])
+
+
+def _help() -> str:
+    shelf = EXPERIMENTS.sources()
+    width = max((len(name) for name in shelf), default=0)
+    return "\n".join(
+        (
+            "usage: suchus run NAME [--quick] [--out DIR] [--csv] [--json] [--FIELD VALUE ...]",
+            "",
+            "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
+            "",
+            "experiments:",
+            *(entry(name, title(source), width) for name, source in shelf.items()),
+            "",
+            "suchus run NAME --help lists what can be changed about an experiment.",
+        )
+    )

@@ -1,0 +1,112 @@
+"""``suchus list``: what stands on the shelves; of suchus' own nothing is imported."""
+
+import ast
+import tokenize
+from collections.abc import Sequence
+from pathlib import Path
+from pkgutil import resolve_name
+from shutil import get_terminal_size
+from textwrap import fill
+
+from suchus.apps.cli.entry import PROJECT, BadCommand
+from suchus.core.errors import SuchusError
+from suchus.core.sources import SHELVES, Source, gather
+
+_LISTED = {
+    "robots": "suchus.robot.robots:ROBOTS",
+    "gaits": "suchus.robot.gaits:GAITS",
+    "faults": "suchus.sim.faults:FAULTS",
+    "experiments": "suchus.experiments.catalog:EXPERIMENTS",
+    "controllers": "suchus.robot.control:CONTROLLERS",
+    "measures": "suchus.experiments.study:MEASURES",
+    "contestants": "suchus.contestants:CONTESTANTS",
+}
+"""Where each shelf is, by its name."""
+_SCATTERED = ("controllers", "measures")
+"""Shelves whose modules declare things with names of their own."""
+_USAGE = f"""usage: suchus list [{PROJECT} DIR]
+
+Show what stands on the shelves, each with its title. What a project folder or another package puts there is marked with
+where it comes from; it is loaded, and shown as broken where that fails."""
+
+
+def show(words: Sequence[str]) -> int:
+    """Print every shelf and return 0."""
+    if any(word in ("-h", "--help") for word in words):
+        print(_USAGE)
+        return 0
+    if words:
+        raise BadCommand(f"suchus list takes no {words[0]!r}.")
+    shelves = {
+        shelf: gather(shelf.removesuffix("s"), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED
+    }
+    width = max((len(name) for sources in shelves.values() for name in sources), default=0)
+    for i, (shelf, sources) in enumerate(shelves.items()):
+        print("\n" * bool(i) + shelf)
+        for name, source in sources.items():
+            print(entry(name, title(source) + _needs(source) + _origin(source, shelf), width))
+    return 0
+
+
+def entry(name: str, text: str, width: int) -> str:
+    """Return a name and its title side by side, the title wrapped to the terminal."""
+    columns = max(60, min(110, get_terminal_size().columns))
+    return fill(text, columns, initial_indent=f"  {name:<{width}}  ", subsequent_indent=" " * (width + 4))
+
+
+def title(source: Source) -> str:
+    """Return the first line of the docstring of what is declared or of its module, or of a TOML file's comment."""
+    if source.file is None:
+        return ""
+    if source.file.suffix == ".toml":
+        first = _text(source.file).lstrip().partition("\n")[0]
+        return first.lstrip("# ") if first.startswith("#") else ""
+    try:
+        tree = ast.parse(_text(source.file))
+    except (SyntaxError, ValueError):
+        return "(cannot be read)"
+    parts = [part for part in tree.body if isinstance(part, (ast.ClassDef, ast.FunctionDef))]
+    inside = next((part for part in parts if part.name == source.attribute), tree)
+    return (ast.get_docstring(inside) or "").partition("\n")[0]
+
+
+def _needs(source: Source) -> str:
+    """Return what an experiment needs of a robot, and for whom a gait was made."""
+    if source.attribute:
+        return ""
+    needs, robots = _stated(source, "needs"), _stated(source, "made_for")
+    text = f" (needs {', '.join(needs).replace('_', ' ')})" if needs else ""
+    return text + (f" (of {', '.join(robots)})" if robots else "")
+
+
+def _origin(source: Source, shelf: str) -> str:
+    """Return where a thing of the user's comes from, and what is wrong with it."""
+    if source.shipped:
+        return ""
+    try:
+        resolve_name(_LISTED[shelf])[source.name]
+    except SuchusError as error:
+        return f" [broken: {error}]"
+    return f" [{source.place}]"
+
+
+def _stated(source: Source, what: str) -> tuple[str, ...]:
+    """Return the texts of an assignment in a module, or in a class of it, read without importing it."""
+    if source.file is None or source.file.suffix != ".py":
+        return ()
+    try:
+        for node in ast.walk(ast.parse(_text(source.file))):
+            if isinstance(node, ast.Assign) and any(isinstance(t, ast.Name) and t.id == what for t in node.targets):
+                return tuple(str(part) for part in ast.literal_eval(node.value))
+    except (SyntaxError, ValueError, TypeError):  # a text that is not written out
+        return ()
+    return ()
+
+
+def _text(file: Path) -> str:
+    """Return the text of a module or a TOML file."""
+    try:
+        with tokenize.open(file) if file.suffix == ".py" else file.open(encoding="utf-8") as stream:
+            return stream.read()
+    except (OSError, SyntaxError, UnicodeDecodeError) as error:
+        raise ValueError(str(error)) from error

@@ -1,0 +1,67 @@
+"""What people see in the terminal while a command works: bars, or a line now and then."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from rich import progress as rich_progress
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, TaskID, TextColumn, TimeElapsedColumn
+
+from suchus.core.progress import Progress
+
+_EVERY = 10.0  # [s]; between lines where there is no terminal for a bar
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Progress bars on standard error; nothing where that is no terminal."""
+
+    _progress: rich_progress.Progress
+
+    def task(self, name: str) -> Progress:
+        """Add a bar and return what moves it."""
+        task: TaskID = self._progress.add_task(name, total=1.0, stage="")
+
+        def move(stage: str, share: float) -> None:
+            self._progress.update(task, completed=share, stage=stage)
+
+        return move
+
+    @property
+    def seen(self) -> bool:
+        """Whether there is a terminal to show them on."""
+        return self._progress.console.is_terminal
+
+    def reporter(self, name: str) -> Progress:
+        """Add a bar and return what moves it, or says a line now and then where there is no terminal."""
+        move, last = self.task(name), time.monotonic()
+
+        def tell(stage: str, share: float) -> None:
+            nonlocal last
+            move(stage, share)
+            if not self.seen and time.monotonic() - last > _EVERY:
+                last = time.monotonic()
+                self.say(f"{name}: {stage}, {share:.0%}")
+
+        return tell
+
+    def say(self, text: str) -> None:
+        """Print a line above the bars."""
+        self._progress.console.print(escape(text), highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def working() -> Iterator[Bars]:
+    """Show progress while the block runs."""
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("[dim]{task.fields[stage]}"),
+    )
+    with rich_progress.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        yield Bars(progress)

@@ -1,0 +1,112 @@
+"""What a command line says wrong that is known before the command's libraries are loaded, which takes seconds.
+
+Only names on shelves, input files and ``--out`` are looked at: the parser of each command reads all words, and
+everything else is refused there.
+"""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from pathlib import Path
+
+from suchus.apps.cli.entry import BadCommand, Subcommand
+from suchus.core.errors import UnknownName
+from suchus.core.reading import check_file, there
+from suchus.core.sources import AS_TOML, SHELVES, Source, gather
+from suchus.core.writing import check_replaceable, check_writable
+
+_HELP = ("-h", "--help")
+
+
+def check_words(command: Subcommand, words: Sequence[str]) -> None:
+    """Refuse what names nothing, and an output file that cannot be.
+
+    Args:
+        command: the command, which says what its words name.
+        words: what follows it.
+
+    Raises:
+        BadCommand: a name or the end of an output file makes no sense.
+        UnknownName: there is no such experiment.
+        UnreadableFile: there is no such input file.
+        Unwritable: the output cannot be written, or would replace what the user wrote.
+    """
+    if any(word in _HELP for word in (words[:1] if command.first_word == "experiment" else words)):
+        return
+    if command.first_word:
+        _check_first(command, words)
+    for kind in command.shelf_options:
+        for name in given(words, f"--{kind}"):
+            _check_name(kind, name)
+    for out in given(words, "--out"):
+        if command.output and out and not out.startswith("-"):
+            _check_out(command.output, Path(out))
+
+
+def given(words: Sequence[str], option: str) -> list[str]:
+    """Return the values that words give an option, before all of them are read."""
+    joined = [word.partition("=")[2] for word in words if word.startswith(f"{option}=")]
+    return joined + [after for word, after in pairwise(words) if word == option]
+
+
+def check_page(path: Path) -> None:
+    """Refuse a page that a browser would not open as one.
+
+    Raises:
+        BadCommand: the name of its file does not end in .html.
+    """
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
+
+
+def check_toml(path: Path, content: str) -> None:
+    """Refuse a file for a gait or a robot that would not be read as one.
+
+    Raises:
+        BadCommand: the name of the file does not end in .toml.
+    """
+    if path.suffix != ".toml":
+        raise BadCommand(f"the {content} goes into a .toml file; --out is {str(path)!r}.")
+
+
+def _check_first(command: Subcommand, words: Sequence[str]) -> None:
+    word = words[0] if words else ""
+    if not word or word.startswith("-"):
+        if command.first_word == "experiment":
+            names = ", ".join(_shelf("experiment"))
+            raise BadCommand(
+                f"the name of the experiment comes first, as in suchus {command.name} NAME --quick; there is {names}."
+            )
+        return
+    if word in command.other_words:
+        return
+    if command.first_word == "file":
+        check_file(Path(word))
+    else:
+        _check_name(command.first_word, word)
+
+
+def _check_name(kind: str, name: str) -> None:
+    """Refuse a name that is not on the shelf, and no file that could stand in its place."""
+    shelf = _shelf(kind)
+    if name in shelf or name.startswith("-"):
+        return
+    if f"{kind}s" not in AS_TOML:
+        raise UnknownName(kind, name, shelf)
+    if Path(name).suffix not in (".toml", ".nc") and not there(Path(name)):
+        raise BadCommand(f"{UnknownName(kind, name, shelf)} A path to a TOML file will do as well.")
+
+
+def _shelf(kind: str) -> Mapping[str, Source]:
+    return gather(kind, SHELVES[f"{kind}s"], scattered=False)
+
+
+def _check_out(content: str, path: Path) -> None:
+    if content == "folder":
+        check_writable(path)
+        return
+    if content == "page":
+        check_page(path)
+    else:
+        check_toml(path, content)
+    check_writable(path.parent)
+    check_replaceable(path)

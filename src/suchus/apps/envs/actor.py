@@ -1,0 +1,36 @@
+"""How the commanded angles of a pack go from one action to the next."""
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control import Command, Sensed
+
+
+class Actor:
+    """The controller of a pack: commanded angles go in a straight line from those of one action to those of the next.
+
+    Args:
+        first: angles in which the robots begin, shape (run, servo) [rad]; written by ``aim``.
+        periods: control periods from one action to the next.
+        limbs: of a robot.
+    """
+
+    def __init__(self, first: Float[np.ndarray, "run servo"], periods: int, limbs: int) -> None:
+        self.target, self.periods = first, periods
+        self._begin, self._passed = first.copy(), 0
+        self._phase = np.zeros((len(first), limbs))
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """Return the angles in which the robots begin [rad]."""
+        return self.target
+
+    def aim(self, target: Float[np.ndarray, "run servo"]) -> None:
+        """Begin the way to other angles [rad]."""
+        self._begin[:], self.target[:], self._passed = self.target, target, 0
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Return the angles at the end of the next control period."""
+        del tick, sensed
+        self._passed += 1
+        way = self._passed / self.periods
+        return Command(self._begin + way * (self.target - self._begin), self._phase)

@@ -1,0 +1,359 @@
+"""A pack: many robots at one task, each in an episode of its own, simulated as one batch.
+
+An episode begins lying in a gait's mid-stance, standing on hind legs and tail, or floating.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import ceil
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+
+from suchus.core import rotation
+from suchus.robot.control import Standing
+from suchus.robot.control.standing import BALANCE
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.robot.design.scale import control_period, scaled
+from suchus.apps.envs.actor import Actor
+from suchus.apps.envs.senses import Observer, turning
+from suchus.apps.envs.tanks import Tanks
+from suchus.apps.envs.task import AnyGoal, Task, Terms, remaining
+from suchus.core.errors import Diverged, InvalidDesign
+from suchus.sim.fault import Fault, check_faults
+from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.sim.land import Ground, Push, Run
+from suchus.sim.land.afloat import surfaced
+from suchus.sim.land.batch import Beginning
+from suchus.sim.land.lake import up
+from suchus.sim.land.loop import Loop
+from suchus.sim.land.run import check_pushes
+from suchus.sim.model import activations, compile_model, standing
+from suchus.sim.model.export import home
+from suchus.robot.motion import check_limits, check_speeds, cycle_targets, hip_height
+from suchus.robot.motion.rising import size_of, stretched
+
+STILL = 3.0
+"""How long a robot has stood before an episode of standing begins [s]; it has settled after two."""
+_SOON = 0.2  # [s]; when standing up begins, where no crawl is needed
+_STANDS = 0.6
+"""Height of the snout of a robot that stands, over that of hind leg, trunk and head in one line [-].
+
+The article's robot has 0.99 when it stands and 0.2 when it lies.
+"""
+_STRAIGHT = "limbs_only"  # the trunk is straight in its first posture
+
+
+def begin(task: Task) -> Beginning:
+    """Return how episodes of a task begin, before anything is left to chance.
+
+    Raises:
+        OutsideLimits: the robot cannot take the posture.
+        Diverged: its simulation diverges as it stands up.
+        InvalidDesign: it falls over as it stands up, or touches the ground where it should float.
+        OutsideLimits: its joints cannot follow its swimming motion.
+    """
+    if task.start == "upright":
+        return _upright(task.body, task.ground, task.timestep)
+    model = compile_model(task.body, task.timestep)
+    if task.start == "swimming":
+        return _afloat(task, model)
+    qpos, servos = home(model, task.body, task.gait)
+    return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
+
+
+def off_by(task: Task, at: Beginning, jitter: np.ndarray) -> Beginning:
+    """Return a beginning with its joints displaced by ``jitter``, shape (servo,) [rad]; the commanded angles stay.
+
+    A lying robot is put on the ground again. One that stands keeps what cables bend, which is
+    no joint's alone.
+    """
+    model = compile_model(task.body, task.timestep)
+    if task.start == "lying":
+        return at._replace(qpos=standing(model, task.robot, hip_height(task.robot, task.gait), at.commanded + jitter))
+    qpos = at.qpos.copy()
+    direct = [servo for servo, hinge in enumerate(layout(task.robot).servo_hinges) if hinge >= 0]
+    qpos[model.jnt_qposadr[model.actuator_trnid[direct, 0]]] += jitter[direct]
+    return at._replace(qpos=qpos)
+
+
+def _afloat(task: Task, model: Any) -> Beginning:
+    """Put a robot on the water, or into a flow, in the mean posture of its swimming motion."""
+    swim = task.swum
+    check_limits(task.robot, swim)
+    check_speeds(task.robot, swim)
+    servos = cycle_targets(task.robot, swim, np.zeros(1), np.zeros(1))[0]  # its limbs held, its axis straight
+    stands = standing(model, task.robot, hip_height(task.robot, task.gait), servos)
+    if task.solved is not None:
+        return Beginning(stands, np.zeros(model.nv), activations(model, servos), servos)
+    assert task.lake is not None  # see ``Task``
+    qpos = surfaced(task.body, task.lake, up(task.ground), stands, task.timestep)
+    if np.array_equal(qpos, stands):
+        raise InvalidDesign(
+            f"robot {task.robot.name!r} touches the ground where its episode begins, at the world's origin with the "
+            f"level at {task.lake.at(0.0)[0]:g} m; a task that begins swimming needs deeper water: raise "
+            "task.lake.level."
+        )
+    return Beginning(qpos, np.zeros(model.nv), activations(model, servos), servos)
+
+
+@lru_cache(maxsize=16)
+def _upright(robot: Robot, ground: Ground, timestep: float) -> Beginning:
+    """Let a robot stand up once, as the shelf does it, and return the state in which it stands still."""
+    straight, period = GAITS[_STRAIGHT], control_period(robot)
+    gait = straight if suits(robot, straight) else own_gait(robot).without("axis")
+    balance = scaled(BALANCE, length_factor=size_of(robot))
+    control = Standing(at=_SOON, hold=STILL, balance=balance)
+    run = Run(robot=robot, gait=gait, ground=ground, control=control)
+    ticks = ceil((control.upright_from(robot) + STILL) / period)
+    loop = Loop([run], timestep, ticks=ticks)
+    for _ in range(ticks):
+        loop.decide()
+        loop.advance()
+    batch = loop.batch
+    if not batch.alive.all():
+        raise Diverged(
+            f"robot {robot.name!r} does not stand up: {batch.cause[0]}; an upright start needs one that does.",
+            time=float(batch.ended[0]),
+        )
+    height, least = float(loop.sensors["snout_position"][0, 2]), _STANDS * stretched(robot)
+    if height < least:
+        raise InvalidDesign(
+            f"robot {robot.name!r} falls over as it stands up: its snout is {height:.3g} m high, and {least:.3g} m at "
+            "least are those of one that stands; an upright start needs a robot that stays up."
+        )
+    qpos, qvel, act = (np.array(part[0]) for part in (batch.qpos, batch.qvel, batch.activations))
+    return Beginning(qpos, qvel, act, np.array(loop.command.targets[0]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chance:
+    """Random values that were drawn for one episode."""
+
+    phase: float = 0.0
+    """Phase of the clock at the beginning [cycle]."""
+    broken: Fault | None = None
+    """The fault, with the time at which it begins; None: no fault."""
+    push: Push | None = None
+    """The push; None: no push."""
+    bearing: float = 0.0
+    """Bearing of the goal from straight ahead, left positive [rad]."""
+
+    @property
+    def fault(self) -> str:
+        """Sentence that says what fails and when; empty without a fault."""
+        if self.broken is None:
+            return ""
+        return f"{self.broken.part} {self.broken.kind()} from {self.broken.at:.2f} s"
+
+
+class Pack:
+    """Robots at one task. The result of one robot does not depend on the number of the others.
+
+    Args:
+        task: the task.
+        count: number of robots.
+    """
+
+    def __init__(self, task: Task, count: int) -> None:
+        self.task, self.count = task, count
+        check_limits(task.robot, task.gait)
+        for fault in task.breaks.possible(task.robot) if task.breaks else ():
+            check_faults([fault], task.robot, np.inf)
+        if task.pushes is not None:
+            body = task.pushes.where(task.robot)
+            check_pushes([Push(force=(0.0, 0.0, 0.0), at=0.0, body=body)], task.body, np.inf)
+        self._begin = begin(task)
+        self._low, self._high = servo_ranges(task.robot).T
+        self._cranks = turning(task.robot)
+        self._turn = task.decision * np.array([task.robot.servo(name).speed for name in layout(task.robot).servos])
+        periods = round(task.decision / control_period(task.robot))
+        self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs))
+        if task.solved is None:
+            run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
+        else:
+            run = Run(robot=task.body, gait=task.swum, water=task.solved)
+        self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
+        self._tanks = None if task.solved is None else Tanks(run, loop.batch, periods, loop.period)
+        self._observer = Observer(task.robot, count, goal=task.goal is not None)
+        self._goals = np.zeros((count, 2))
+        self._commanded = self._actor.target  # a view; the actor writes it
+        self._turned = np.zeros_like(self._commanded)
+        self._phases = np.zeros(count)
+        self._power = np.zeros_like(self._commanded)
+        self.chances = [Chance()] * count
+        self.faults = np.full(count, "", dtype=object)
+        """Sentence on the fault of each episode, see ``Chance.fault``."""
+        self.causes = np.full(count, "", dtype=object)
+        """Why each episode ended; empty until it does."""
+
+    @property
+    def centre(self) -> Float[np.ndarray, " servo"]:
+        """Servo angles of an action of zero [rad]."""
+        return self._begin.commanded
+
+    @property
+    def time(self) -> Float[np.ndarray, " run"]:
+        """Time since the beginning of each episode [s]."""
+        return self.loop.clocks * self.loop.period
+
+    @property
+    def phase(self) -> Float[np.ndarray, " run"]:
+        """Phase of each robot's clock [cycle]."""
+        return self._phases + self.time / self.task.period
+
+    def restart(self, robots: Sequence[int], chances: Sequence[np.random.Generator]) -> None:
+        """Begin new episodes.
+
+        Args:
+            robots: indices of the robots.
+            chances: for each of them the random generator of its episode.
+        """
+        for i, random in zip(robots, chances, strict=True):
+            jitter = self.task.jitter * np.asarray(random.uniform(-1.0, 1.0, self._commanded.shape[1]))
+            chance = draw(self.task, random)
+            faults = () if chance.broken is None else (chance.broken,)
+            pushes = () if chance.push is None else (chance.push,)
+            at = off_by(self.task, self._begin, jitter)
+            self.loop.restart(i, at, faults, pushes)
+            if self._tanks is not None:
+                self._tanks.restart(i, at, faults, pushes)
+            self._actor.target[i], self._turned[i] = self._begin.commanded, 0.0
+            self.chances[i], self.faults[i], self.causes[i] = chance, chance.fault, ""
+            self._phases[i] = chance.phase
+            self._set_goal(i)
+
+    def feel(self) -> Float[np.ndarray, "run n"]:
+        """Return the observation of each robot, see ``senses``."""
+        commanded = np.where(self._cranks, self._turned / self._turn, (self._commanded - self.centre) / self.task.span)
+        goal = None if self.task.goal is None else (self._offset(self.task.goal), self.remaining)
+        return self._observer.observe(self.loop.sensed(), self.phase, commanded, goal)
+
+    def act(self, actions: Float[np.ndarray, "run servo"], who: Bool[np.ndarray, " run"]) -> Terms:
+        """Let the chosen robots act for one step; the terms of the others have no meaning.
+
+        A crank has no centre: an action turns it on from its last commanded angle, at most at its no-load speed.
+
+        Args:
+            actions: -1 to 1, values beyond are clipped [-].
+            who: whether each robot acts [-].
+        """
+        shares = np.clip(np.asarray(actions, dtype=float), -1.0, 1.0)
+        angles = np.clip(self.centre + self.task.span * shares, self._low, self._high)
+        target = np.where(self._cranks, self._commanded + self._turn * shares, angles)
+        target = np.where(who[:, None] & (True if self._tanks is None else self._tanks.moved), target, self._commanded)
+        turned = target - self._commanded
+        before, work, far = self.loop.sensors["centre_of_mass"].copy(), np.zeros(self.count), self.remaining
+        self.loop.choose(who)
+        self._actor.aim(target)
+        if self._tanks is not None:
+            work = self._tanks.act(target, who)
+            self.loop.skip(self._actor.periods)
+        else:
+            for period in range(1, self._actor.periods + 1):
+                self.loop.decide()
+                self.loop.advance(felt=period == self._actor.periods)  # nothing feels the ground in between
+                work += self._servo_power() * self.loop.period
+        self._turned = np.where(who[:, None], turned, self._turned)
+        return self._terms(who, before, far, work, (turned**2).sum(axis=1))
+
+    def record(self, robot: int) -> xr.Dataset:
+        """Return one robot as it is now, as a record of one sample."""
+        self.loop.choose(np.ones(self.count, dtype=bool))
+        recorder = self.loop.recorder(1)
+        recorder.store(0, self.phase[:, None] + np.array(self.task.gait.limb_phases), self._commanded)
+        return recorder.record(np.zeros(1)).isel(run=robot).copy(deep=True)
+
+    @property
+    def goals(self) -> Float[np.ndarray, "run 2"]:
+        """Where the goals are, forward and left in the world; zeros without a goal [m]."""
+        return self._goals.copy()
+
+    @property
+    def remaining(self) -> Float[np.ndarray, " run"]:
+        """Distance that remains from each centre of mass to its goal; 0 without a goal [m]."""
+        goal = self.task.goal
+        return np.zeros(self.count) if goal is None else remaining(goal, self._offset(goal))
+
+    def _offset(self, goal: AnyGoal) -> np.ndarray:
+        """Return the vector in the world from each centre of mass to its goal, shape (run, 2) [m]."""
+        return goal.offset(self.loop.sensors["centre_of_mass"][:, :2], self._goals)
+
+    def _set_goal(self, robot: int) -> None:
+        task = self.task
+        if task.goal is not None:
+            begin = self.loop.sensors["centre_of_mass"][robot, :2]
+            self._goals[robot] = task.goal.place(begin, self.chances[robot].bearing, task.ground, task.lake)
+
+    def _servo_power(self) -> Float[np.ndarray, " run"]:
+        """Return torque times speed, summed over the servos [W]."""
+        batch, power = self.loop.batch, self._power
+        np.multiply(batch.readings[:, batch.velocities], batch.readings[:, batch.torques], out=power)
+        return np.asarray(np.abs(power, out=power).sum(axis=1))
+
+    def _terms(
+        self, who: np.ndarray, before: np.ndarray, far: np.ndarray, work: np.ndarray, action_rate: np.ndarray
+    ) -> Terms:
+        after, diverged = self.loop.sensors["centre_of_mass"], who & ~self.loop.batch.alive
+        moved = np.where(diverged[:, None], 0.0, after - before)
+        drift = np.where(diverged, 0.0, np.abs(after[:, 1]) - np.abs(before[:, 1]))
+        height, level = (
+            self.loop.sensors["snout_position"][:, 2],
+            rotation.upward(self.loop.sensors["imu_orientation"])[:, 2],
+        )
+        low = (height < self.task.least_height) & (self.task.least_height > 0.0)
+        fell = low | (level < self.task.least_level)
+        left = self.remaining
+        reached = who & (left <= 0.0) & ~(fell | diverged) & (self.task.goal is not None)
+        for i in np.flatnonzero(who & (fell | diverged)):
+            self.causes[i] = self._why(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
+        for i in np.flatnonzero(reached):
+            self.causes[i] = f"it reached the goal at {self.time[i]:.2f} s"
+        return Terms(
+            forward=moved[:, 0],
+            lateral_drift=drift,
+            upright=np.where(fell | diverged, 0.0, self.task.decision),
+            work=np.where(diverged, 0.0, work),
+            action_rate=action_rate,
+            approach=np.where(diverged, 0.0, far - left),
+            goal=reached,
+            fall=fell | diverged,
+        )
+
+    def _why(self, robot: int, diverged: bool, height: float, level: float) -> str:
+        when = f"at {self.time[robot]:.2f} s"
+        if diverged:
+            return f"the simulation diverged {when}: {self.loop.batch.cause[robot]}"
+        if 0.0 < self.task.least_height > height:
+            return f"it fell {when}: the snout is at {height:.3f} m, below {self.task.least_height:g} m"
+        tilt, most = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
+        root = self.task.robot.root
+        return f"it rolled over {when}: the {root} is tilted by {tilt:.0f} degrees, beyond {most:.0f}"
+
+
+def draw(task: Task, random: np.random.Generator) -> Chance:
+    """Draw the random values of an episode: the phase of the clock, the bearing of the goal, the fault and the push.
+
+    Faults and pushes begin and end with control periods.
+    """
+    period = control_period(task.robot)
+    chance = Chance(phase=float(random.uniform()), bearing=0.0 if task.goal is None else task.goal.draw(random))
+    if task.breaks is not None:
+        broken: Any = task.breaks.draw(random, task.robot)
+        begins = np.ceil(random.uniform(task.breaks.earliest, task.breaks.latest) / period)
+        chance = replace(chance, broken=replace(broken, at=float(begins * period)))
+    if task.pushes is not None:
+        begins = np.ceil(random.uniform(task.pushes.earliest, task.pushes.latest) / period)
+        ends = begins + max(round(task.pushes.lasting / period), 1)
+        direction, force = random.uniform(-np.pi, np.pi), random.uniform(0.0, task.pushes.most)
+        push = Push(
+            force=(float(force * np.cos(direction)), float(force * np.sin(direction)), 0.0),
+            at=float(begins * period),
+            duration=float(ends * period - begins * period),
+            body=task.pushes.where(task.robot),
+        )
+        chance = replace(chance, push=push)
+    return chance

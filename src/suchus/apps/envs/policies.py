@@ -1,0 +1,178 @@
+"""Policies to compare with what is learned: holding still, random actions, and the shelf's gait by actions."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from suchus.robot.control import Control, Controller, HeadingHold, Runs
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period
+from suchus.apps.envs.senses import felt, part, turning
+from suchus.apps.envs.shelf import STEPS
+from suchus.apps.envs.task import Task
+from suchus.apps.envs.vector import CrocodileVectorEnv
+from suchus.robot.motion import Gait, Steer, cycle_targets, movement
+
+Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]
+"""From observations to actions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Still:
+    """All actions are zero: the posture in which the episode begins is held."""
+
+    task: Task
+    """The task, for whose robot the actions are."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Return zeros."""
+        return np.zeros((len(seen), len(layout(self.task.robot).servos)))
+
+
+@dataclass(slots=True)
+class Anything:
+    """Actions drawn uniformly from -1 to 1."""
+
+    task: Task
+    """The task, for whose robot the actions are."""
+    random: np.random.Generator
+    """Random generator."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Return random actions."""
+        return self.random.uniform(-1.0, 1.0, (len(seen), len(layout(self.task.robot).servos)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Follow:
+    """A gait that follows the clock of the observation and, where limbs are cranks, the angles of the cranks."""
+
+    task: Task
+    """The task, for whose robot the actions are."""
+    centre: tuple[float, ...]
+    """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
+    gait: Gait
+    """The gait; it is played with the period of the task's gait."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Return the actions that bring the servos to the gait's angles at the end of the step."""
+        task, gait, robot = self.task, self.gait, self.task.robot
+        sine, cosine = part(seen, "clock", robot).astype(float).T
+        clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
+        targets = cycle_targets(robot, gait, clock)
+        actions = (targets - np.array(self.centre)) / task.span
+        cranks = turning(robot)
+        if cranks.any():
+            behind = targets - np.pi * part(seen, "servo_position", robot)
+            speed = np.array([robot.servo(name).speed for name in layout(robot).servos])
+            ahead = (np.mod(behind + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
+            actions = np.where(cranks, ahead, actions)
+        return np.clip(actions, -1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwimToGoal:
+    """The task's swim by the clock of the observation, steered towards the goal by a mean bend."""
+
+    task: Task
+    """The task; it begins swimming and has a goal."""
+    centre: tuple[float, ...]
+    """Servo angles of an action of zero, ``Pack.centre`` [rad]."""
+    hold: HeadingHold = field(default_factory=HeadingHold)
+    """Its gain and its bends steer, by the bearing of the goal in the present step; its state is not used."""
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
+        task, robot = self.task, self.task.robot
+        swim = movement(robot, task.swum)
+        sine, cosine = part(seen, "clock", robot).astype(float).T
+        clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
+        direction = part(seen, "goal_direction", robot).astype(float)
+        share = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
+        steer = Steer(bend=self.hold.trunk_turn * share, tail=self.hold.turn * share)
+        phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)
+        targets = swim.targets(phases, swim.axis_of_clock(clock), steer)
+        return np.clip((targets - np.array(self.centre)) / task.span, -1.0, 1.0)
+
+
+class Controlled:
+    """A controller of the shelf, which feels what the observation holds; for one ``play``, since it remembers.
+
+    It is called in every control period with the observation of the present step; its commands for air are ignored.
+
+    Args:
+        task: the task.
+        centre: servo angles of an action of zero, ``Pack.centre`` [rad].
+        control: the controller, as ``Run.control`` takes it.
+        steps: greatest number of steps of an episode.
+        gait: the gait of the run that it controls; that of the task if None.
+
+    Raises:
+        SuchusError: on the first call, if the controller does not suit the robot or its gait.
+    """
+
+    def __init__(
+        self, task: Task, centre: tuple[float, ...], control: Control, *, steps: int, gait: Gait | None = None
+    ) -> None:
+        self._task, self._centre, self._control = task, np.array(centre), control
+        self._gait = gait or task.gait
+        self._period = control_period(task.robot)
+        self._per_step = round(task.decision / self._period)
+        self._ticks, self._tick = steps * self._per_step, 0
+        self._controller: Controller | None = None
+
+    def __call__(self, seen: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
+        """Call the controller for every control period of the step and return the last commanded angles as actions."""
+        task, count = self._task, len(seen)
+        if self._controller is None:
+            runs = Runs.alike(self._control, task.robot, self._gait, count=count, ticks=self._ticks)
+            self._controller = self._control.start(runs, self._period)
+        sensed = felt(seen, task.robot, self._tick * self._period)
+        for _ in range(self._per_step):
+            targets = self._controller.command(self._tick, sensed).targets
+            self._tick += 1
+        return np.asarray(np.clip((targets - self._centre) / task.span, -1.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Played:
+    """Results of episodes, one entry for each."""
+
+    returns: Float[np.ndarray, " episode"]
+    """Sum of the rewards [-]."""
+    lasted: Float[np.ndarray, " episode"]
+    """Duration of the episode [s]."""
+    forward: Float[np.ndarray, " episode"]
+    """Displacement along the world's x axis [m]."""
+    approach: Float[np.ndarray, " episode"]
+    """Decrease of the distance that remains to the goal; 0 without a goal [m]."""
+    goal: Bool[np.ndarray, " episode"]
+    """Whether the goal was reached [-]."""
+
+
+def play(task: Task, policy: Policy, *, episodes: int = 32, seed: int = 0, steps: int = STEPS) -> Played:
+    """Play episodes side by side and return their results.
+
+    Args:
+        task: the task.
+        policy: function from observations to actions.
+        episodes: number of episodes.
+        seed: seed of the first episode; each further one has the next number.
+        steps: number of steps after which an episode ends.
+    """
+    env = CrocodileVectorEnv(episodes, task, max_episode_steps=steps)
+    seen, _ = env.reset(seed=seed)
+    going = np.ones(episodes, dtype=bool)
+    returns, lasted, forward, approach = np.zeros((4, episodes))
+    goal = np.zeros(episodes, dtype=bool)
+    while going.any():
+        seen, rewards, terminated, truncated, infos = env.step(policy(seen))
+        returns += np.where(going, rewards, 0.0)
+        lasted += going * task.decision
+        forward += np.where(going, infos["forward"], 0.0)
+        approach += np.where(going, infos["approach"], 0.0)
+        goal |= going & infos["goal"]
+        going &= ~(terminated | truncated)
+    return Played(returns=returns, lasted=lasted, forward=forward, approach=approach, goal=goal)

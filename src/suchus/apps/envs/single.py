@@ -1,0 +1,248 @@
+"""One robot as a ``gymnasium.Env``: its spaces, the checks of what users give, and its picture, without OpenGL."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import gymnasium
+import numpy as np
+import xarray as xr
+from jaxtyping import Float, UInt8
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.patches import Circle
+
+from suchus.robot.design import Robot, layout
+from suchus.apps.envs.pack import Pack
+from suchus.apps.envs.senses import senses
+from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.task import TERMS, AnyGoal, Landing, Task, Terms
+from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.visual.figures import COLOURS, new, styled
+from suchus.visual.figures.posture import draw_posture
+from suchus.sim.land.lake import up
+from suchus.robot.robots import beside_article
+
+RENDER_MODES = ("rgb_array",)
+
+
+def action_space(robot: Robot) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of a robot's actions: one number of -1 to 1 for each servo."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (len(layout(robot).servos),), np.float32)
+
+
+def observation_space(robot: Robot, *, goal: bool = False) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of a robot's observations, with or without a goal: see ``senses.senses``."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot, goal=goal)[-1].columns.stop,), np.float32)
+
+
+def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo"]:
+    """Return actions as numbers.
+
+    Raises:
+        OutsideLimits: they have another shape, or are not finite.
+    """
+    numbers = np.asarray(actions, dtype=float)
+    if numbers.shape != shape:
+        raise OutsideLimits(f"actions have the shape {numbers.shape}; {shape} is needed: one number for each servo.")
+    if not np.isfinite(numbers).all():
+        raise OutsideLimits("an action is not a finite number; -1 to 1 is allowed.")
+    return numbers
+
+
+def check_render_mode(mode: str | None) -> None:
+    """Refuse a way of rendering that is not there.
+
+    Raises:
+        UnknownName: the message lists those that are.
+    """
+    if mode is not None and mode not in RENDER_MODES:
+        raise UnknownName("render mode", mode, RENDER_MODES)
+
+
+class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not read by mypy
+    """A robot at a task: a pack of one, see ``Pack``.
+
+    Args:
+        task: the task, or its name.
+        render_mode: None or ``rgb_array``.
+        **changes: fields of the task to change; ``robot`` and ``gait`` also by name.
+
+    Raises:
+        UnknownName: no such task, field or render mode.
+        InvalidDesign: a value that makes no sense.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012  gymnasium reads it off the class
+
+    def __init__(self, task: Task | str = "Crawl", render_mode: str | None = None, **changes: Any) -> None:
+        check_render_mode(render_mode)
+        self.task = chosen(task, changes)
+        self.pack = Pack(self.task, 1)
+        self.action_space = action_space(self.task.robot)
+        self.observation_space = observation_space(self.task.robot, goal=self.task.goal is not None)
+        self.render_mode = render_mode
+        self.metadata = metadata(self.task)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begin an episode; equal seeds give equal episodes.
+
+        Args:
+            seed: of everything that is left to chance; None goes on with the last one.
+            options: none are known.
+
+        Returns:
+            The observation, and ``time`` and ``fault``.
+        """
+        super().reset(seed=seed)
+        del options
+        self.pack.restart([0], [self.np_random])
+        return self.pack.feel()[0], {"time": 0.0, "fault": self.pack.chances[0].fault}
+
+    def step(self, action: Any) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """Act once.
+
+        Args:
+            action: one number of -1 to 1 for each servo; what is beyond counts as -1 or 1.
+
+        Returns:
+            Observation; reward; whether it fell or reached its goal; False, since time limits are a wrapper's; and the
+            terms of the reward, ``time``, ``fault`` and ``cause``, the sentence that says why the episode ended.
+
+        Raises:
+            OutsideLimits: an action of another shape, or not finite.
+        """
+        terms = self.pack.act(checked(action, self.action_space.shape)[None], np.ones(1, dtype=bool))
+        info = {name: values.tolist()[0] for name, values in step_info(self.pack, terms).items()}
+        return self.pack.feel()[0], float(terms.reward(self.task.rewards)[0]), bool(terms.over[0]), False, info
+
+    def render(self) -> np.ndarray | None:
+        """Return a picture of (480, 640, 3) for ``rgb_array``, else None."""
+        return portrait(self.pack, 0) if self.render_mode == "rgb_array" else None
+
+
+def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
+    """Return the entries of ``info`` after a step, each with one value for each robot."""
+    info = {name: getattr(terms, name) for name in TERMS if name != "fall"}
+    return info | {"time": pack.time, "fault": pack.faults.copy(), "cause": pack.causes.copy()}
+
+
+def portrait(pack: Pack, robot: int) -> np.ndarray:
+    """Return a picture of one robot of a pack."""
+    text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
+    around = Surroundings(up=up(pack.task.ground), goal=pack.task.goal, place=pack.goals[robot])
+    return picture(pack.task.robot, pack.record(robot), text, around)
+
+
+def metadata(task: Task) -> dict[str, Any]:
+    """Return what gymnasium wants to know about rendering."""
+    return {"render_modes": list(RENDER_MODES), "render_fps": round(1.0 / task.decision)}
+
+
+WIDTH, HEIGHT = 640, 480
+"""Of a picture [pixel]."""
+_DPI = 100
+_PLACES = ((0.12, 0.622, 0.8, 0.333), (0.12, 0.09, 0.8, 0.52))
+"""Of the two views, as shares of the picture: left, bottom, width, height."""
+_SPAN, _WIDE, _TALL = 1.6, 0.5, 0.75  # [m]; what is seen of the article's robot: along the walk, across it, and up
+_BELOW = 0.03  # [m]; what is seen below the ground
+_TINT = 0.22  # of the water's colour and the goal's
+_EDGE = 0.45  # [-]; of the picture's sides from its middle, where an arrow points to a goal beyond it
+_ARROW = 0.06  # [-]; its length, of the picture's width
+
+
+_SKY = 0.4
+"""Share of the view from the side that is above a robot which floats high above the ground [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Surroundings:
+    """What a picture shows beside the robot."""
+
+    up: Float[np.ndarray, "3"]
+    """Unit vector against gravity."""
+    goal: AnyGoal | None = None
+    """What the goal is; None where there is none."""
+    place: Float[np.ndarray, "2"] | None = None
+    """Where it is, forward and left in the world [m]."""
+
+
+def picture(robot: Robot, record: xr.Dataset, text: str, around: Surroundings) -> UInt8[np.ndarray, "height width 3"]:
+    """Return a robot from above and from its right side, with its centre of mass, as red, green and blue.
+
+    Water is blue, its surface a line; the goal is a ring, or a line where it is land, and an arrow at the edge of the
+    picture points to one that is beyond it. The view from the side rises with a robot that floats far above the ground.
+
+    Args:
+        robot: whose record it is.
+        record: of one run, one sample.
+        text: what is written above.
+        around: gravity and the goal.
+    """
+    with styled(font__size=9, axes__titlesize=10, xtick__labelsize=8, ytick__labelsize=8, axes__labelsize=9):
+        figure = new(width=WIDTH / _DPI, height=HEIGHT / _DPI)
+        figure.set_dpi(_DPI)
+        figure.set_layout_engine("none")  # finding a layout would take three quarters of the time
+        above, side = (figure.add_axes(place) for place in _PLACES)
+        above.tick_params(labelbottom=False)
+        draw_posture(above, robot, record, 0.0)
+        draw_posture(side, robot, record, 0.0, view="side")
+        x, y, z = record.centre_of_mass.values[0].tolist()
+        span, wide, below, tall = (beside_article(robot).length * part for part in (_SPAN, _WIDE, _BELOW, _TALL))
+        low = max(-below, z - (1 - _SKY) * (tall + below))
+        above.set(xlim=(x - span / 2, x + span / 2), ylim=(y - wide / 2, y + wide / 2), ylabel="left [m]", title=text)
+        side.set(
+            xlim=(x - span / 2, x + span / 2), ylim=(low, low + tall + below), xlabel="forward [m]", ylabel="up [m]"
+        )
+        if "water_level" in record:
+            draw_water(above, side, float(record.water_level[0]), around.up, y)
+        if around.goal is not None and around.place is not None:
+            _draw_goal(above, side, around.goal, around.place)
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.draw()
+    return np.array(canvas.buffer_rgba())[..., :3]
+
+
+def draw_water(above: Axes, side: Axes, level: float, up: Float[np.ndarray, "3"], left: float) -> None:
+    """Draw the water of a lake as far as two views reach, its surface as a line.
+
+    Args:
+        above: view from above; water is where there is some over the ground.
+        side: view from the side.
+        level: of the surface above the world's origin, against gravity [m].
+        up: unit vector against gravity.
+        left: where the view from the side cuts the water [m].
+    """
+    x, y = np.array(above.get_xlim()), np.array(above.get_ylim())
+    depth = level - up[0] * x[None, :] - up[1] * y[:, None]
+    if (depth > 0.0).any():
+        above.contourf(x, y, depth, levels=[0.0, max(depth.max(), 1e-9)], colors=[COLOURS["water"]], alpha=_TINT)
+    line = [(level - up[1] * left) / up[0]] if up[0] else []  # where the surface meets the ground
+    ends = np.sort([*x, *(shore for shore in line if x[0] < shore < x[1])])
+    for pair in pairwise(ends):
+        heights = (level - up[0] * np.array(pair) - up[1] * left) / up[2]
+        if heights.mean() > 0.0:
+            side.fill_between(pair, 0.0, heights, color=COLOURS["water"], alpha=_TINT, linewidth=0, zorder=0.1)
+            side.plot(pair, heights, color=COLOURS["water"], linewidth=1.2, zorder=0.2)
+
+
+def _draw_goal(above: Axes, side: Axes, goal: AnyGoal, place: Float[np.ndarray, "2"]) -> None:
+    (left, right), (low, high) = above.get_xlim(), above.get_ylim()
+    colour = COLOURS["limbs_only"]
+    if isinstance(goal, Landing):
+        for ax in (above, side):
+            ax.axvline(float(place[0]), color=colour, linestyle=(0, (4, 2)))
+    else:
+        above.add_patch(Circle((float(place[0]), float(place[1])), goal.within, facecolor="none", edgecolor=colour))
+        side.axvspan(
+            float(place[0]) - goal.within, float(place[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
+        )
+    centre = np.array([left + right, low + high]) / 2
+    towards = place - centre if not isinstance(goal, Landing) else np.array([place[0] - centre[0], 0.0])
+    beyond = float((np.abs(towards) / (_EDGE * np.array([right - left, high - low]))).max())
+    if beyond > 1.0:
+        head = centre + towards / beyond
+        tail = head - _ARROW * (right - left) * towards / np.hypot(*towards)
+        above.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)

@@ -1,0 +1,183 @@
+"""Many robots as one ``gymnasium.vector.VectorEnv``: all of them are one batch of physics."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from suchus.core.checks import require
+from suchus.apps.envs.pack import Pack
+from suchus.apps.envs.shelf import chosen
+from suchus.apps.envs.single import (
+    action_space,
+    check_render_mode,
+    checked,
+    metadata,
+    observation_space,
+    portrait,
+    step_info,
+)
+from suchus.apps.envs.task import Task
+from suchus.core.errors import InvalidDesign
+
+_AT_RESET = ("time", "fault")  # what is said when an episode begins
+
+
+class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # gymnasium is not read by mypy
+    """Robots at a task, each in an episode of its own, with the numbers of as many single environments.
+
+    Args:
+        num_envs: number of robots.
+        task: the task, or its name.
+        max_episode_steps: number of steps after which an episode is truncated; None: never.
+        autoreset_mode: how episodes begin anew, see gymnasium: ``NextStep``, ``SameStep`` or ``Disabled``.
+        render_mode: None or ``rgb_array``.
+        **changes: fields of the task to change; ``robot`` and ``gait`` also by name.
+
+    Raises:
+        UnknownName: no such task, field or render mode.
+        InvalidDesign: a value that makes no sense.
+    """
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        task: Task | str = "Crawl",
+        max_episode_steps: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        render_mode: str | None = None,
+        **changes: Any,
+    ) -> None:
+        check_render_mode(render_mode)
+        require("make_vec", "num_envs", num_envs, 1, 100_000, "")
+        self.task = chosen(task, changes)
+        self.pack = Pack(self.task, num_envs)
+        self.num_envs, self.max_episode_steps, self.render_mode = num_envs, max_episode_steps, render_mode
+        self.autoreset_mode = _mode(autoreset_mode)
+        self.metadata = {**metadata(self.task), "autoreset_mode": self.autoreset_mode}
+        robot = self.task.robot
+        self.single_action_space = action_space(robot)
+        self.single_observation_space = observation_space(robot, goal=self.task.goal is not None)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]
+        self._over = np.ones(num_envs, dtype=bool)
+        self._steps = np.zeros(num_envs, dtype=int)
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begin the episodes of all robots, or of those in ``options["reset_mask"]``.
+
+        Args:
+            seed: of the first robot, the others following by one; or one for each; None goes on with the last ones.
+            options: ``reset_mask``, booleans of shape (num_envs,).
+
+        Raises:
+            InvalidDesign: not as many seeds as robots, or a mask of another shape.
+        """
+        who = _mask(options, self.num_envs)
+        for i, episode_seed in enumerate(_seeds(seed, self.num_envs)):
+            if episode_seed is not None and who[i]:
+                self._randoms[i] = seeding.np_random(episode_seed)[0]
+        self._restart(who)
+        infos: dict[str, Any] = {}
+        self._say(infos, self._beginnings(), who)
+        return self.pack.feel(), infos
+
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Act once with every robot; with ``NextStep`` those whose episode is over begin a new one instead.
+
+        Raises:
+            OutsideLimits: actions of another shape, or not finite.
+            gymnasium.error.ResetNeeded: an episode is over and ``autoreset_mode`` is ``Disabled``.
+        """
+        numbers = checked(actions, self.action_space.shape)
+        again = self._over.copy()
+        if self.autoreset_mode is not AutoresetMode.NEXT_STEP and again.any():
+            raise gymnasium.error.ResetNeeded(f"the episodes of robots {np.flatnonzero(again).tolist()} are over.")
+        terms = self.pack.act(numbers, ~again)
+        self._steps[~again] += 1
+        rewards = np.where(again, 0.0, terms.reward(self.task.rewards))
+        terminated = ~again & terms.over
+        late = self._steps >= (self.max_episode_steps or np.inf)
+        truncated = ~again & late
+        said = step_info(self.pack, terms)
+        self._over = terminated | truncated
+        infos: dict[str, Any] = {}
+        begun = again
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and self._over.any():
+            begun = self._over.copy()
+            self._say_final(infos, said, begun)
+        self._say(infos, said, ~begun)
+        if begun.any():
+            self._restart(begun)
+            self._say(infos, self._beginnings(), begun)
+        return self.pack.feel(), rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """Return a picture of each robot for ``rgb_array``, else None."""
+        if self.render_mode != "rgb_array":
+            return None
+        return tuple(portrait(self.pack, i) for i in range(self.num_envs))
+
+    def _restart(self, who: np.ndarray) -> None:
+        robots = np.flatnonzero(who).tolist()
+        self.pack.restart(robots, [self._randoms[i] for i in robots])
+        self._steps[who], self._over[who] = 0, False
+
+    def _beginnings(self) -> dict[str, np.ndarray]:
+        return dict(zip(_AT_RESET, (self.pack.time, self.pack.faults.copy()), strict=True))
+
+    def _say(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
+        """Put the values of some robots into ``infos``, and beside each name the mask of these robots."""
+        if not who.any():
+            return
+        if who.all():
+            infos |= said | {f"_{name}": who.copy() for name in said}
+            return
+        for name, values in said.items():
+            nothing = np.full(self.num_envs, None) if values.dtype == object else np.zeros_like(values)
+            infos[name] = np.where(who, values, infos.get(name, nothing))
+            infos[f"_{name}"] = infos.get(f"_{name}", np.zeros(self.num_envs, dtype=bool)) | who
+
+    def _say_final(self, infos: dict[str, Any], said: dict[str, np.ndarray], who: np.ndarray) -> None:
+        last, final = self.pack.feel(), np.full(self.num_envs, None)
+        for i in np.flatnonzero(who):
+            final[i] = last[i].copy()
+        about: dict[str, Any] = {}
+        self._say(about, said, who)
+        infos.update(final_obs=final, _final_obs=who.copy(), final_info=about, _final_info=who.copy())
+
+
+def _mode(mode: AutoresetMode | str) -> Any:
+    try:
+        return AutoresetMode(mode)
+    except ValueError as error:
+        allowed = ", ".join(repr(known.value) for known in AutoresetMode)
+        raise InvalidDesign(f"autoreset_mode is {mode!r}; {allowed} are allowed.") from error
+
+
+def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
+    if seed is None:
+        return [None] * count
+    if isinstance(seed, (int, np.integer)):
+        return [int(seed) + i for i in range(count)]
+    if len(seed) != count:
+        raise InvalidDesign(f"there are {len(seed)} seeds for {count} robots; one each is needed, or one number.")
+    return list(seed)
+
+
+def _mask(options: dict[str, Any] | None, count: int) -> np.ndarray:
+    if not options or "reset_mask" not in options:
+        return np.ones(count, dtype=bool)
+    mask = np.asarray(options["reset_mask"])
+    if mask.shape != (count,) or mask.dtype != bool or not mask.any():
+        raise InvalidDesign(
+            f"reset_mask has the shape {mask.shape} and holds {mask.dtype}; {count} booleans are needed, one true."
+        )
+    return mask

@@ -1,0 +1,132 @@
+"""Article, ours and animal side by side."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from suchus.robot.design import LEGS, Robot, behind_hips, lacking
+from suchus.article.paper import CLAIMS, CRAWL_END, CRAWL_START
+from suchus.article.paper.animals import ANIMALS, Animal
+from suchus.apps.report.rendering import number, quantity
+from suchus.apps.report.result import Result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonRow:
+    """One row of the comparison."""
+
+    animal: Animal
+    """The animal's number."""
+    article: str
+    """The article's, empty if it gives none."""
+    ours: str
+    """Ours."""
+    seen: str
+    """The animal's number, as text."""
+    experiment: str
+    """Where ours comes from; empty if it is a measure of the robot itself."""
+
+
+Results = Mapping[str, Result]
+_TAIL = ("limbs", "tail_yaw")  # a tail begins at the hips, and is no tail where it is stiff
+_DURATION = CRAWL_END - CRAWL_START
+_COORDINATED, _LIMBS_ONLY = CLAIMS["displacement_coordinated"].value, CLAIMS["displacement_limbs_only"].value
+
+
+def beside(robot: Robot, results: Results) -> tuple[ComparisonRow, ...]:
+    """Return the rows whose experiment was run.
+
+    Args:
+        robot: the robot of the page.
+        results: by experiment.
+    """
+    rows = (_row(animal, robot, results) for animal in ANIMALS)
+    return tuple(row for row in rows if row is not None)
+
+
+def _row(animal: Animal, robot: Robot, results: Results) -> ComparisonRow | None:
+    experiment, measure, printed = _OURS[animal.key]
+    value = measure(robot, results)
+    if value is None:
+        return None
+    return ComparisonRow(
+        animal=animal,
+        article=quantity(printed, animal.unit, 2),
+        ours=quantity(value, animal.unit, 2),
+        seen=_range(animal),
+        experiment=experiment,
+    )
+
+
+def _range(animal: Animal) -> str:
+    if animal.low == animal.high:
+        return quantity(animal.low, animal.unit, 3)
+    return f"{number(animal.low, 2)} to {quantity(animal.high, animal.unit, 3)}"
+
+
+def _measured(results: Results, experiment: str, *names: str) -> list[float] | None:
+    """Measures of an experiment, or None if it was not run or did not come to all of them."""
+    if experiment not in results:
+        return None
+    outcome = results[experiment].outcome["measures"]
+    values = [outcome.get(name, {}).get("value") for name in names]
+    return None if any(value is None for value in values) else values
+
+
+def _tail_length(robot: Robot, _: Results) -> float | None:
+    return None if lacking(robot, _TAIL) else behind_hips(robot) / robot.length
+
+
+def _tail_mass(robot: Robot, _: Results) -> float | None:
+    if lacking(robot, _TAIL):
+        return None
+    behind = robot.axis[robot.root_place + 1 :]
+    return sum(shape.mass for segment in behind for shape in segment.shapes) / robot.mass
+
+
+def _mass(robot: Robot, _: Results) -> float | None:
+    return robot.mass if 0.46 <= robot.length <= 1.27 else None
+
+
+def _speed(_: Robot, results: Results) -> float | None:
+    found = _measured(results, "displacement", "forward_coordinated")
+    return found[0] / _DURATION if found else None
+
+
+def _high_walk_speed(_: Robot, results: Results) -> float | None:
+    found = _measured(results, "speed_range", "speed_high_walk")
+    return found[0] if found else None
+
+
+def _stride_share(_: Robot, results: Results) -> float | None:
+    found = _measured(results, "displacement", "forward_coordinated", "forward_limbs_only")
+    return 1.0 - found[1] / found[0] if found else None
+
+
+def _duty_factor(_: Robot, results: Results) -> float | None:
+    found = _measured(results, "gait_diagram", *(f"duty_factor_{leg}" for leg in LEGS))
+    return sum(found) / len(found) if found else None
+
+
+def _death_roll(_: Robot, results: Results) -> float | None:
+    found = _measured(results, "death_roll", "rate_c_shape_water")
+    return abs(found[0]) if found else None
+
+
+_Measured = Callable[[Robot, Results], float | None]
+_OURS: Mapping[str, tuple[str, _Measured, float | None]] = MappingProxyType(
+    {
+        "tail_length": ("", _tail_length, CLAIMS["tail_share"].value),
+        "tail_mass": ("", _tail_mass, None),
+        "mass": ("", _mass, None),
+        "speed": ("displacement", _speed, _COORDINATED / _DURATION if _COORDINATED else None),
+        "high_walk_speed": ("speed_range", _high_walk_speed, CLAIMS["high_walk_speed_low"].value),
+        "stride_share": (
+            "displacement",
+            _stride_share,
+            1.0 - _LIMBS_ONLY / _COORDINATED if _COORDINATED and _LIMBS_ONLY else None,
+        ),
+        "duty_factor": ("gait_diagram", _duty_factor, None),
+        "death_roll": ("death_roll", _death_roll, None),
+    }
+)

@@ -1,0 +1,207 @@
+"""Two outcomes side by side: numbers with their difference, verdicts, settings, figures and replays."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import write
+from suchus.apps.report.rendering import render
+from suchus.apps.report.result import Moving, Picture, Result
+
+_SHOWN = 80
+"""Letters of a setting that the page shows [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Compared:
+    """One measure of both outcomes."""
+
+    name: str
+    """Its name."""
+    unit: str
+    """Its unit; both units where they differ."""
+    first: float | None
+    """Value in the first outcome; None where it has none."""
+    second: float | None
+    """Value in the second."""
+    difference: float | None
+    """Second less first, in ``unit``; None where one is missing or the units differ."""
+    share: float | None
+    """The difference over the size of the first [-]; None where the first is zero."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judged:
+    """One claim, and what both outcomes say of it."""
+
+    quantity: str
+    """Quantity that the claim is about."""
+    where: str
+    """Place in the article: section, figure or table."""
+    first: str
+    """Verdict of the first outcome; empty where it has none."""
+    second: str
+    """Verdict of the second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """One setting in which the outcomes differ."""
+
+    name: str
+    """Dotted path."""
+    first: str
+    """Value in the first outcome; empty where it has none."""
+    second: str
+    """Value in the second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Comparison:
+    """What two outcomes have in common, and in what they differ."""
+
+    names: tuple[str, str]
+    """Names of the two outcomes."""
+    results: tuple[Result, Result]
+    """The two outcomes."""
+    measures: tuple[Compared, ...]
+    """Every measure of either, the largest relative difference first."""
+    verdicts: tuple[Judged, ...]
+    """Every claim that either judges, those with another verdict first."""
+    settings: tuple[Setting, ...]
+    """Every setting in which they differ."""
+
+    @property
+    def of_both(self) -> tuple[Compared, ...]:
+        """Measures of which both outcomes have a number."""
+        return tuple(measure for measure in self.measures if measure.first is not None and measure.second is not None)
+
+    @property
+    def of_one(self) -> tuple[Compared, ...]:
+        """Measures of which only one outcome has a number, or none."""
+        return tuple(measure for measure in self.measures if measure.first is None or measure.second is None)
+
+    @property
+    def changed(self) -> tuple[Judged, ...]:
+        """Claims that both judge, and differently."""
+        judged = (verdict for verdict in self.verdicts if verdict.first and verdict.second)
+        return tuple(verdict for verdict in judged if verdict.first != verdict.second)
+
+
+def compare(first: Result, second: Result, names: tuple[str, str]) -> Comparison:
+    """Set two outcomes side by side.
+
+    Args:
+        first: an outcome.
+        second: another, to be compared with it.
+        names: what they are called.
+
+    Raises:
+        IncompatibleRecord: they have no measure in common.
+    """
+    given = first.outcome["measures"], second.outcome["measures"]
+    measures = [_compared(name, *given) for name in _union(first, second)]
+    if not any(one.first is not None and one.second is not None for one in measures):
+        raise IncompatibleRecord(
+            f"{first.folder} ({first.name}) and {second.folder} ({second.name}) have no measure in common; compare two "
+            "outcomes of one experiment."
+        )
+    measures.sort(key=lambda one: (one.difference is None, -_size(one)))  # equal ones stay in their order
+    judged = list(_judged(first.outcome["verdicts"], second.outcome["verdicts"]))
+    judged.sort(key=lambda one: (one.first == one.second, not (one.first and one.second)))
+    flat = [dict(_flat(one.outcome.get("settings", {}))) for one in (first, second)]
+    differ = [name for name in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(name) != flat[1].get(name)]
+    return Comparison(
+        names=names,
+        results=(first, second),
+        measures=tuple(measures),
+        verdicts=tuple(judged),
+        settings=tuple(Setting(name=n, first=_short(flat[0].get(n)), second=_short(flat[1].get(n))) for n in differ),
+    )
+
+
+def write_comparison(comparison: Comparison, path: str | Path) -> Path:
+    """Write the page of a comparison and return its path; replays stay where they are and are shown from there.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    path = Path(path)
+    text = render_comparison(comparison, path.parent)
+    return write(path, text)
+
+
+def render_comparison(comparison: Comparison, place: str | Path) -> str:
+    """Return the page as text.
+
+    Args:
+        comparison: what to show.
+        place: the folder of the page, from which it shows the replays.
+    """
+    place = Path(place)
+    first, second = comparison.results
+    content: dict[str, Any] = {
+        "it": comparison,
+        "titles": list(dict.fromkeys([first.outcome["title"], second.outcome["title"]])),
+        "pictures": _pairs({p.name: p for p in first.pictures}, {p.name: p for p in second.pictures}),
+        "replays": _pairs({r.file.name: r for r in first.replays}, {r.file.name: r for r in second.replays}),
+    }
+    return render("compare.html", place, content)
+
+
+def _pairs(
+    first: Mapping[str, Picture] | Mapping[str, Moving], second: Mapping[str, Picture] | Mapping[str, Moving]
+) -> list[tuple[str, tuple[Any, Any]]]:
+    return [(name, (first.get(name), second.get(name))) for name in dict.fromkeys([*first, *second])]
+
+
+def _union(first: Result, second: Result) -> list[str]:
+    return list(dict.fromkeys([*first.outcome["measures"], *second.outcome["measures"]]))
+
+
+def _compared(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> Compared:
+    a, b = first.get(name), second.get(name)
+    units = list(dict.fromkeys(one["unit"] for one in (a, b) if one))
+    values = [one["value"] if one else None for one in (a, b)]
+    difference = share = None
+    if len(units) == 1 and values[0] is not None and values[1] is not None:
+        difference = values[1] - values[0]
+        share = difference / abs(values[0]) if values[0] else None
+    return Compared(
+        name=name, unit=" / ".join(units), first=values[0], second=values[1], difference=difference, share=share
+    )
+
+
+def _size(one: Compared) -> float:
+    """How much a measure differs, relative to the first as it is shown: metres and newtons are sorted together."""
+    if one.share is None:
+        return inf if one.difference else 0.0
+    return abs(one.share)
+
+
+def _judged(first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> Iterator[Judged]:
+    before, after = ({verdict["claim"]: verdict for verdict in verdicts} for verdicts in (first, second))
+    for claim in dict.fromkeys([*before, *after]):
+        judged = before.get(claim) or after[claim]
+        words = [str(by_claim[claim]["verdict"]) if claim in by_claim else "" for by_claim in (before, after)]
+        yield Judged(quantity=judged["quantity"], where=judged["where"], first=words[0], second=words[1])
+
+
+def _flat(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield every value of nested settings with its dotted path."""
+    if isinstance(value, Mapping):
+        for name, below in value.items():
+            yield from _flat(below, f"{path}.{name}".lstrip("."))
+    elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
+        for i, below in enumerate(value):
+            yield from _flat(below, f"{path}[{i}]")
+    else:
+        yield path, value
+
+
+def _short(value: Any) -> str:
+    text = "" if value is None else str(value)
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"

@@ -1,0 +1,232 @@
+"""Five lessons of ten minutes for a class: each one page that plays offline, with a replay, a slider and a question.
+
+What is right follows from the runs: every number on a page is measured when the page is made.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from suchus.robot.control import Swimming
+from suchus.robot.design.ground import Ground
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
+from suchus.robot.motion import START
+from suchus.core.progress import Progress, silent, staged
+from suchus.core.files import versions, write
+from suchus.visual.replay.page import environment, rendered
+from suchus.robot.robots import ROBOTS
+
+_TIMESTEP, _EVERY = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
+_DEEP = 1.0
+"""Level of the water in which the swimmer swims [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lesson:
+    """One page: runs of one robot, of which a slider chooses, and a question that they answer."""
+
+    name: str
+    """Name of the file without its ending."""
+    title: str
+    """Heading."""
+    caption: str
+    """What there is to see, in a sentence or two."""
+    choice: str
+    """Name of the slider."""
+    runs: tuple[Run, ...]
+    """The runs, each labelled with the slider's value."""
+    cycles: float
+    """Cycles of the gait that are shown [-]."""
+    question: str
+    """Question, whose answer is one of the labels."""
+    right: Callable[[Sequence[float]], int]
+    """Returns which run is the answer, given how far each got [m]."""
+    because: str
+    """Explanation, which holds whichever run is the answer."""
+    command: str
+    """Where to go on, on the command line."""
+
+
+def lessons() -> tuple[Lesson, ...]:
+    """Return the lessons in their order."""
+    return _bending(), _timing(), _joints(), _friction(), _waves()
+
+
+def write_lessons(folder: Path, chosen: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
+    """Write lessons and a page that lists them, and return the paths, the list first.
+
+    Args:
+        folder: for the pages; made where it is not there.
+        chosen: the lessons; all if empty.
+        progress: called with the share that is done, 0 to 1.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    chosen = chosen or lessons()
+    listing = environment().get_template("lessons.html").render(lessons=chosen, version=versions()["suchus"])
+    pages = {"index": listing}
+    for i, (lesson, following) in enumerate(zip(chosen, [*chosen[1:], None], strict=True)):
+        part = staged(progress, lesson.name, i / len(chosen), (i + 1) / len(chosen))
+        pages[lesson.name] = page(lesson, following, part)
+    return [write(file, pages[file.stem]) for file in lesson_files(folder, chosen)]
+
+
+def lesson_files(folder: Path, chosen: Sequence[Lesson] = ()) -> list[Path]:
+    """Return where ``write_lessons`` writes, in the order in which it does."""
+    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in chosen or lessons()))]
+
+
+def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:
+    """Return a lesson as an HTML page; ``following`` is the lesson that it leads to."""
+    first = lesson.runs[0]
+    duration = START + lesson.cycles * max(run.gait.period for run in lesson.runs)
+    record = simulate(lesson.runs, duration=duration, timestep=_TIMESTEP, every=_EVERY, progress=progress)
+    apart = [record.isel(run=i) for i in range(len(lesson.runs))]
+    far = [float(one.centre_of_mass[-1, 0] - one.centre_of_mass[0, 0]) for one in apart]
+    labels = [run.label for run in lesson.runs]
+    return rendered(
+        "lesson.html", apart[0], first.robot, others=apart[1:], choice=lesson.choice, labels=labels, title=lesson.title,
+        caption=lesson.caption, question=lesson.question, options=labels, right=lesson.right(far),
+        because=lesson.because, numbers=[f"{value:.2f} m".replace("-", "−") for value in far],
+        heading=f"forward in {duration:g} s", command=lesson.command, following=following,
+    )  # fmt: skip
+
+
+def _farthest(far: Sequence[float]) -> int:
+    return int(np.argmax(far))
+
+
+def _least(far: Sequence[float]) -> int:
+    return int(np.argmin(far))
+
+
+def _backwards(far: Sequence[float]) -> int:
+    """Return the first run that goes backwards; the one that gets least far where none does."""
+    behind = np.flatnonzero(np.asarray(far) < 0.0)
+    return int(behind[0]) if behind.size else _least(far)
+
+
+def _bending() -> Lesson:
+    robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
+    return Lesson(
+        name="bending",
+        title="What is a bending spine good for?",
+        caption="The legs do exactly the same in every run. Only how far spine and tail bend is different.",
+        choice="Bend of spine and tail",
+        runs=tuple(
+            Run(robot=robot, gait=gait.bent(share), label=f"{share:.0%} of its crawl")
+            for share in (0.0, 0.25, 0.5, 0.75, 1.0)
+        ),
+        cycles=2,
+        question="With which bend does it get farthest?",
+        right=_farthest,
+        because="A foot that stands holds on to the ground. When the trunk bends it turns hips and shoulders, "
+        "which carries the body past the standing foot, and reaches out with the foot in the air: the "
+        "step gets longer, though the leg moves no more than before. Look at the tracks: how long is a "
+        "step in each run?",
+        command="suchus run displacement",
+    )
+
+
+def _timing() -> Lesson:
+    robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
+    lags = {"in time with the legs": 0.0, "1/8 cycle late": 0.125, "1/4 cycle late": 0.25, "3/8 cycle late": 0.375,
+            "1/2 cycle late": 0.5}  # fmt: skip
+    return Lesson(
+        name="timing",
+        title="Does it matter when the spine bends?",
+        caption="Legs and spine move just as much in every run. Only when the spine bends is different.",
+        choice="The spine bends",
+        runs=tuple(Run(robot=robot, gait=gait.lagged(lag), label=label) for label, lag in lags.items()),
+        cycles=2,
+        question="How late must the spine be at least for the robot to crawl backwards?",
+        right=_backwards,
+        because="In time, the trunk turns each leg backwards while its foot stands: leg and spine push the same "
+        "way. Half a cycle late the spine turns the leg forwards while its foot stands, and takes away "
+        "what the leg gives. Where it takes more than the leg gives, the robot goes backwards.",
+        command="suchus view",
+    )
+
+
+def _joints() -> Lesson:
+    robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
+    return Lesson(
+        name="joints",
+        title="Which broken joint is the worst?",
+        caption="In every run one joint of a left leg gives no torque. The robot does not know, and crawls on as "
+        "before.",
+        choice="Joint without torque",
+        runs=tuple(
+            Run(robot=robot, gait=gait, faults=joint_failure(robot, gait, joint, "limp"), label=joint.replace("_", " "))
+            for joint in failing_joints(robot)
+        ),
+        cycles=2,
+        question="Which joint costs the most distance?",
+        right=_least,
+        because="Yaw swings a leg forward and back, pitch and knee carry the body and lift the foot. Watch the "
+        "arrows, which are the forces on the feet: a leg can lose its push, or its load, which other feet "
+        "and the belly then take. Does the robot still go straight?",
+        command="suchus run joint_faults",
+    )
+
+
+def _friction() -> Lesson:
+    robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
+    factors = {
+        "a tenth of usual": 0.1,
+        "a fifth of usual": 0.2,
+        "half of usual": 0.5,
+        "usual": 1.0,
+        "twice as rough": 2.0,
+    }
+    return Lesson(
+        name="friction",
+        title="Is rougher ground better?",
+        caption="The same crawl, on ground from slippery to rough.",
+        choice="Friction of the ground",
+        runs=tuple(
+            Run(robot=robot, gait=gait, ground=Ground(friction_scale=factor), label=label)
+            for label, factor in factors.items()
+        ),
+        cycles=2,
+        question="On which ground does it get least far?",
+        right=_least,
+        because="Friction does two things: feet push with it, and whatever drags over the ground is braked by it. "
+        "If both were scaled alike and nothing else counted, the distance would not change at all. Look "
+        "which feet slide, in which direction, and what the tail does.",
+        command="suchus run terrain --quick",
+    )
+
+
+def _waves() -> Lesson:
+    robot, gait = ROBOTS["swimmer"], GAITS["undulation"]
+    waves = {"one, from tail to head": -1.0, "none: all joints at once": 0.0, "a half, from head to tail": 0.5,
+             "one, from head to tail": 1.0, "one and a half, from head to tail": 1.5}  # fmt: skip
+    return Lesson(
+        name="waves",
+        title="How does a body without legs swim?",
+        caption="A row of joints in water. Each swings just as far in every run; only which swings first is different.",
+        choice="Waves on the body",
+        runs=tuple(
+            Run(
+                robot=robot,
+                gait=gait.with_numbers(waves=count),
+                label=label,
+                lake=Lake(level=_DEEP),
+                control=Swimming(),
+            )
+            for label, count in waves.items()
+        ),
+        cycles=6,
+        question="Which swims fastest?",
+        right=_farthest,
+        because="A wave that runs along the body presses on the water behind it, and the water presses back: the "
+        "body goes the other way. So a wave towards the tail swims forwards, and one towards the head "
+        "swims backwards. How many waves there are decides how much of the pressing is along the body and "
+        "how much only to the sides.",
+        command="suchus run swim_sweep --quick",
+    )

@@ -1,0 +1,191 @@
+"""The page of one outcome, in its folder: question, answer, replay, figures, verdicts, numbers, settings and data.
+
+It is one file that needs nothing else and no network; further replays and films stand beside it.
+"""
+
+import base64
+import csv
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite, nan
+from pathlib import Path
+from typing import Any
+
+from suchus.core.errors import UnreadableFile
+from suchus.experiments.experiment import Measure
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.core.files import read_text, write
+from suchus.apps.report.rendering import number, quantity, render, tied
+from suchus.apps.report.result import Result, load_result
+
+PAGE = "index.html"
+"""Name of the page in the folder of an outcome."""
+MARKS = {
+    "reproduced": "●",
+    "same sense": "◐",
+    "contradicted": "✕",
+    "undecided": "◑",
+    "models disagree": "≠",
+    "not testable": "○",
+    "fitted": "◇",
+    "by construction": "□",
+}
+"""Sign of each verdict, for those who do not see its colour."""
+MOST = 6
+"""Numbers that stand below an answer [-]."""
+_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
+"""What older outcomes do not say of a verdict."""
+_WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
+"""What parts of the names of measures are short for."""
+_HEAVY = 2 * 2**20
+"""Size of a replay or a table [byte] beyond which it is linked and does not travel inside the page."""
+
+
+def write_outcome_page(folder: str | Path) -> Path:
+    """Write the page of an outcome into its folder and return its path.
+
+    Args:
+        folder: that ``save_outcome`` wrote.
+
+    Raises:
+        SuchusError: there is no outcome in it, or the place cannot be written to.
+    """
+    folder = Path(folder)
+    text = render_outcome_page(load_result(folder))
+    return write(folder / PAGE, text)
+
+
+def render_outcome_page(result: Result) -> str:
+    """Return the page of an outcome as text."""
+    outcome = result.outcome
+    lead = answer(outcome["decides"])
+    measures = {
+        name: Measure(nan if one["value"] is None else one["value"], one["unit"])
+        for name, one in outcome["measures"].items()
+    }
+    first = result.replays[0].file if result.replays else None
+    inside = first is not None and first.stat().st_size <= _HEAVY
+    content = {
+        "result": result,
+        "outcome": outcome,
+        "on_shelf": outcome["experiment"] in EXPERIMENTS,
+        "lead": lead,
+        "more": outcome["decides"][len(lead) :].strip(),
+        "robot": _named(outcome, "robot"),
+        "gait": _named(outcome, "gait"),
+        "verdicts": list(told(result)),
+        "carried": carried(outcome.get("answers", ()), measures),
+        "differs": outcome.get("differs"),
+        "replay": read_text(first, 2 * _HEAVY) if first is not None and inside else "",
+        "beside": [*result.replays[1 if inside else 0 :], *result.films],
+        "data": [_table("numbers.csv", _numbers(measures)), *_data(result)],
+        "marks": MARKS,
+    }
+    return render("outcome.html", result.folder, content, tied=tied)
+
+
+def told(result: Result) -> Iterator[dict[str, Any]]:
+    """Yield the verdicts of a result as pages show them: with their spread, and how many designs agree."""
+    for verdict in result.outcome["verdicts"]:
+        whole = {**_LACKING, **verdict}
+        yield {**whole, "experiment": result.name, "of_designs": _share(whole), "scatter": _scatter(whole)}
+
+
+def answer(decides: str) -> str:
+    """Return the first two sentences of what decided."""
+    return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
+
+
+def carried(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
+    """Return name, value and interval of the measures that carry an answer, in words.
+
+    A measure that a run has not, as one of another gait, or that is no finite number is left out; ``MOST`` are taken.
+
+    Args:
+        answers: names of these measures; where there are none, the first are taken.
+        measures: all of a run, by name.
+    """
+    finite = [name for name, measure in measures.items() if isfinite(measure.value)]
+    ends = ("_low", "_high")
+    rows = []
+    named = [one for one in answers if one in finite] or [one for one in finite if not one.endswith(ends)]
+    for name in named[:MOST]:
+        low, high = (measures.get(name + end) for end in ends)
+        unit = measures[name].unit
+        spread = ""
+        if low is not None and high is not None and low.value < high.value:  # of a single repeat it is not known
+            spread = f"{number(low.value, 3)} to {quantity(high.value, unit, 3)}"
+        rows.append(
+            (
+                " ".join(_WORDS.get(part, part) for part in name.split("_")),
+                quantity(measures[name].value, unit, 3),
+                spread,
+            )
+        )
+    return rows
+
+
+def _share(verdict: Mapping[str, Any]) -> str:
+    """Return in a sentence how many plausible designs agree."""
+    share = verdict.get("share")
+    if not share:
+        if few := str(verdict.get("too_few", "")):
+            return few
+        unswept = str(verdict.get("unswept", ""))
+        return f"Not tried on other designs: {unswept}." if unswept else ""
+    text = (
+        f"The statement holds in {share['share']:.0%} ({share['low']:.0%} to {share['high']:.0%}) of "
+        f"{share['designs']:,} plausible designs".replace(",", "\N{NO-BREAK SPACE}")
+    )
+    if share["turned_by"] and share["at"] is not None:
+        side = "above" if share["above"] else "below"
+        text += f"; best predicted by {share['turned_by']} {side} {number(share['at'], 3)}"
+    return f"{text}."
+
+
+def _scatter(verdict: Mapping[str, Any]) -> str:
+    """Return the range of a measured number's repeats, empty if nothing was repeated."""
+    low, high = verdict.get("low"), verdict.get("high")
+    if low is None or high is None:
+        return ""
+    return f"{number(low, 3)} to {quantity(high, verdict['unit'], 3)} in {verdict.get('repeats', 'repeats')}"
+
+
+def _named(outcome: Mapping[str, Any], what: str) -> str:
+    """Return the name of the robot or the gait of an outcome; empty where it has none."""
+    settings = outcome.get("settings")
+    value = settings.get(what) if isinstance(settings, Mapping) else None
+    return str(value.get("name", "")) if isinstance(value, Mapping) else ""
+
+
+def _numbers(measures: Mapping[str, Measure]) -> str:
+    """Return all numbers as CSV, with nothing for one that is not finite."""
+    text = io.StringIO()
+    rows = ((name, repr(one.value) if isfinite(one.value) else "", one.unit) for name, one in measures.items())
+    csv.writer(text).writerows([("measure", "value", "unit"), *rows])
+    return text.getvalue()
+
+
+def _data(result: Result) -> Iterator[dict[str, Any]]:
+    """Yield the tables of a result: the numbers behind each figure, and what the experiment wrote beside them."""
+    for picture in result.pictures:
+        file = result.folder / f"{picture.name}.data.csv"
+        if file.is_file():
+            yield _table(file.name, _short(file), file)
+    for name, text in result.tables.items():
+        yield _table(name, text if len(text) <= _HEAVY else "", result.folder / name)
+
+
+def _short(file: Path) -> str:
+    """Return a text that travels inside the page; nothing of one that is too long."""
+    try:
+        return read_text(file, _HEAVY)
+    except UnreadableFile:
+        return ""
+
+
+def _table(name: str, text: str, file: Path | None = None) -> dict[str, Any]:
+    """Return a table with the address at which a browser finds it: in the page itself, or None to link its file."""
+    coded = base64.b64encode(text.encode()).decode()
+    return {"name": name, "file": file, "source": f"data:text/csv;base64,{coded}" if text else None}

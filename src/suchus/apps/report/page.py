@@ -1,0 +1,279 @@
+"""Results become an index: the verdicts, and a link to the page of each result; it needs no network and no script."""
+
+import re
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from suchus.visual import figures
+from suchus.robot.blueprint import described_robot
+from suchus.robot.design import Chosen, Robot, tables_of, unit_at, value_at
+from suchus.robot.design.meaning import meanings, unit
+from suchus.core.errors import SuchusError
+from suchus.robot.gaits import GAITS
+from suchus.sim.metrics.energy import METRES
+from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
+from suchus.core.files import versions, write
+from suchus.apps.report.beside import beside
+from suchus.apps.report.outcome_page import MARKS, PAGE, told, write_outcome_page
+from suchus.apps.report.rendering import embedded, number, quantity, render, tied
+from suchus.apps.report.result import Failure, Result
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.claims import counted, standings
+
+_ENOUGH = 60
+"""Letters that say something [-]."""
+_PUT_IN = ("by construction", "fitted", "said twice")
+"""Standings of what is no evidence though it may agree."""
+
+
+HEADLINE = (
+    "displacement_coordinated",
+    "displacement_limbs_only",
+    "displacement_ratio",
+    "com_fluctuation",
+    "fault_tolerance",
+    "height_standing",
+    "swim_tail_thrust",
+)
+"""Claims that the page begins with: what the article is about, in its order."""
+
+
+def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str | Path) -> Path:
+    """Write the page, and those of outcomes that have none yet, and return its path.
+
+    An earlier one stays until the new one is complete.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    path = Path(path)
+    for result in results:
+        if not (result.folder / PAGE).is_file():
+            write_outcome_page(result.folder)
+    text = render_page(results, failures, path.parent)
+    return write(path, text)
+
+
+def render_page(results: Sequence[Result], failures: Sequence[Failure], place: str | Path | None = None) -> str:
+    """Return the page as text.
+
+    Args:
+        results: in the order of the page.
+        failures: what did not.
+        place: the folder of the page, from which it links films and replays; None: the one that holds the results.
+    """
+    place = None if place is None else Path(place)
+    return render("page.html", place, _content(results, failures), tied=tied, gist=_gist)
+
+
+def _gist(text: str) -> str:
+    """Return the first sentences of a text, as many as it takes to say something."""
+    gist = ""
+    for sentence in re.split(r"(?<=[.:;]) ", text):
+        gist = f"{gist} {sentence}".strip()
+        if len(gist) > _ENOUGH and gist.endswith("."):
+            break
+    return gist
+
+
+def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str, Any]:
+    order = {key: place for place, key in enumerate(CLAIMS)}
+    results = sorted(results, key=lambda result: _place(result, order))
+    robot, others = robot_of(results)
+    judged = robot.name == ARTICLES  # the article's claims are about its robot, and no other page is about them
+    verdicts = [verdict for result in results for verdict in told(result) if judged]
+    verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
+    words = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
+    worth = standings(words)
+    named = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
+    return {
+        "results": results,
+        "pages": {result.name: result.folder / PAGE for result in results},
+        "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
+        "title": TITLE,
+        "authors": AUTHORS,
+        "failures": failures,
+        "judged": judged,
+        "verdicts": verdicts,
+        "headline": [verdict for verdict in verdicts if verdict["claim"] in HEADLINE],
+        "departures": [verdict for verdict in verdicts if verdict["verdict"] == "contradicted"],
+        "own": {name: [v for v in verdicts if v["experiment"] == name] for name in (r.name for r in results)},
+        "marks": MARKS,
+        "count": counted(words, [str(verdict["claim"]) for verdict in verdicts if verdict["fragile"]]),
+        "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _PUT_IN},
+        "tally": {result.name: _counts(result.outcome["verdicts"] if judged else ()) for result in results},
+        "untouched": [c for c in CLAIMS.values() if judged and not c.of and c.key not in words],
+        "beside": beside(robot, {result.name: result for result in results}),
+        "metres": metres({result.name: result for result in results}),
+        "shown": next((result for result in results if result.replays), None),
+        "robot": robot,
+        "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
+        "others": others,
+        "drawing": _drawing(robot),
+        "parts": parts(tables_of(robot) or robot),
+        "chosen": {robot.name: choices(robot, named)}
+        | {name: choices(gait, GAITS.beside(name, "chosen", ())) for name, gait in GAITS.items() if judged},
+        "misprints": tuple(ERRATA.values()) if judged else (),
+        "versions": versions(),
+    }
+
+
+def _counts(verdicts: Sequence[Mapping[str, Any]]) -> dict[str, int]:
+    count = Counter(str(verdict["verdict"]) for verdict in verdicts)
+    return {word: count[word] for word in MARKS}
+
+
+def _place(result: Result, order: Mapping[str, int]) -> int:
+    """Where the article comes to the last claim of a result, its main one; what claims nothing comes last."""
+    return max((order.get(v["claim"], len(order)) for v in result.outcome["verdicts"]), default=len(order))
+
+
+def _drawing(robot: Robot) -> dict[str, str]:
+    figure = figures.dimension_drawing(robot)
+    with tempfile.TemporaryDirectory() as folder:
+        svg, png = figures.save(figure, Path(folder), "robot")
+        return {"source": embedded(svg, png), "caption": figures.caption(figure)}
+
+
+_MEASURES = ("speed", "work_per_metre", "cost_of_transport")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metre:
+    """A row of the table."""
+
+    where: str
+    """Place, in words."""
+    experiment: str
+    """Name of the experiment that measured them."""
+    speed: str
+    """Speed, with its unit."""
+    work: str
+    """Work of the servos over the distance, with its unit."""
+    cost: str
+    """Cost of transport: that work over the weight; empty where it was not measured."""
+
+
+def metres(results: Mapping[str, Result]) -> list[Metre]:
+    """Return the rows that the outcomes allow, in the order from land to depth."""
+    rows = []
+    for ending, where in METRES.items():
+        for name, result in results.items():
+            outcome = result.outcome["measures"]
+            speed, work, cost = (_with_unit(outcome.get(f"{what}_{ending}")) for what in _MEASURES)
+            if speed and work:
+                rows.append(Metre(where=where, experiment=name, speed=speed, work=work, cost=cost))
+    return rows
+
+
+def _with_unit(measure: Mapping[str, object] | None) -> str:
+    """Return a measure with its unit; empty where there is none, or no number."""
+    if measure is None or not isinstance(measure["value"], (int, float)):
+        return ""
+    return quantity(float(measure["value"]), str(measure["unit"]), 3)
+
+
+ARTICLES = "caiman"
+"""Name of the article's robot, shown where no result names one; verdicts are shown of no other."""
+
+
+def robot_of(results: Sequence[Result]) -> tuple[Robot, dict[str, int]]:
+    """Return the robot of most results, and how many results each other robot has, by name.
+
+    A robot that this version of suchus cannot build any more does not count.
+    """
+    robots = [robot for result in results if (robot := _robot(result.outcome.get("settings", {}))) is not None]
+    if not robots:
+        return ROBOTS[ARTICLES], {}
+    (most, _), *others = Counter(robots).most_common()
+    return most, {robot.name: count for robot, count in others}
+
+
+def _robot(settings: Any) -> Robot | None:
+    values = settings.get("robot") if isinstance(settings, Mapping) else None
+    try:
+        return described_robot(values) if isinstance(values, Mapping) else None
+    except (ValidationError, SuchusError):
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """One field of a robot or gait."""
+
+    field: str
+    """Dotted path."""
+    value: str
+    """Its value with its unit."""
+    meaning: str
+    """Meaning of the number, from the docstring of its field."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChosenNumber:
+    """One number that the article does not give."""
+
+    field: str
+    """Dotted path."""
+    value: str
+    """Our value with its unit."""
+    low: str
+    """Least plausible value."""
+    high: str
+    """Greatest plausible value."""
+    why: str
+    """The reason."""
+
+
+def parts(design: Any) -> dict[str, tuple[Row, ...]]:
+    """Return the rows of each part of a robot, by the part's name."""
+    about = meanings(type(design))
+    tables: dict[str, tuple[Row, ...]] = {}
+    for f in fields(design):
+        part = getattr(design, f.name)
+        if is_dataclass(part):
+            meaning = about.get(f.name, "")
+            title = f"{f.name.replace('_', ' ')}: {meaning[:1].lower()}{meaning[1:]}"
+            tables[title] = tuple(rows(part, f.name))
+    return tables
+
+
+def rows(design: Any, path: str = "") -> Iterator[Row]:
+    """Yield a row for every number below a frozen value."""
+    about = meanings(type(design))
+    for f in fields(design):
+        value, meaning = getattr(design, f.name), about.get(f.name, "")
+        below = f"{path}.{f.name}".lstrip(".")
+        if is_dataclass(value):
+            yield from rows(value, below)
+        else:
+            yield Row(field=below, value=_shown(value, unit(meaning)), meaning=_plain(meaning))
+
+
+def choices(design: Any, chosen: Sequence[Chosen]) -> tuple[ChosenNumber, ...]:
+    """Return a row for every number that the article does not give."""
+    return tuple(_choice(design, free) for free in chosen)
+
+
+def _choice(design: Any, one: Chosen) -> ChosenNumber:
+    value, unit = value_at(design, one.field), unit_at(design, one.field)
+    return ChosenNumber(
+        field=one.field, value=_shown(value, unit), low=number(one.low), high=number(one.high), why=one.why
+    )
+
+
+def _shown(value: Any, unit: str) -> str:
+    if isinstance(value, tuple):
+        return " to ".join(_shown(item, unit) for item in value) if len(value) == 2 else ", ".join(map(str, value))
+    return quantity(value, unit) if isinstance(value, (int, float)) else str(value)
+
+
+def _plain(meaning: str) -> str:
+    """A meaning without the brackets of its unit and the marks of its code words."""
+    return re.sub(r"\s*\[[^\]]*\]", "", " ".join(meaning.split())).replace("``", "").removeprefix(".")

@@ -1,0 +1,131 @@
+"""Where the pages of results come from: templates that share a frame, a style and the way numbers are written.
+
+Figures are made small enough to travel inside a page.
+"""
+
+import base64
+import io
+import os
+import re
+from collections.abc import Callable
+from functools import cache
+from math import degrees
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, pass_context
+from jinja2.runtime import Context
+from markupsafe import Markup
+from PIL import Image
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def quantity(value: float | None, unit: str, digits: int = 4) -> str:
+    """Return a number with its unit; angles in degrees too. Nothing where there is no number."""
+    if value is None:
+        return ""
+    shown = number(value, digits)
+    if unit == "rad":
+        return f"{shown} rad ({number(degrees(value), 3)}°)"
+    return shown if unit in ("-", "1", "") else f"{shown} {'°C' if unit == 'degC' else unit}"
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number to a few digits, with a true minus and powers of ten written out."""
+    if isinstance(value, int):
+        return str(value).replace("-", "−")
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
+    exponent = f" × 10{str(int(power)).translate(_RAISED)}" if power else ""
+    return mantissa.replace("-", "−") + exponent
+
+
+def tied(text: str) -> str:
+    """Return a text whose ``Fig. 16`` and ``eq. (14)`` do not break over lines."""
+    return re.sub(r"\b(Figs?|Table|Section|eqs?)(\.?) ", "\\1\\2\N{NO-BREAK SPACE}", text)
+
+
+_HEAVY = 60_000
+"""Length of a drawing [byte] beyond which pixels may stand for it; sixty of them make less than 4 MB."""
+_COLOURS = 64
+"""Colours that a drawn figure needs [-]: a handful of lines and texts, and the steps of one map."""
+_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+_DATA = re.compile(r'(?<= )(d|transform|x|y)="([^"]*)"')
+_OVERHEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</metadata>", re.S)
+_PLAIN_TEXT = "data:image/svg+xml,"
+
+
+def embedded(svg: Path, png: Path) -> Markup:
+    """Return a figure as a data URI: as a drawing, or as pixels if it is heavy and these are lighter.
+
+    Args:
+        svg: the figure as a drawing.
+        png: the figure as pixels.
+    """
+    drawn = as_drawing(svg.read_text(encoding="utf-8"))
+    if len(drawn) <= _HEAVY or not png.is_file():
+        return drawn
+    return min(drawn, as_pixels(png.read_bytes()), key=len)
+
+
+def as_drawing(svg: str) -> Markup:
+    """Return an SVG as a data URI, without what only editors need and with coordinates to a hundredth of a point."""
+    slim = _DATA.sub(_rounded, _OVERHEAD.sub("", svg))
+    slim = re.sub(r">\s+<", "><", slim).strip()
+    if "'" in slim or "&" in slim:
+        return Markup(f"data:image/svg+xml;base64,{base64.b64encode(slim.encode()).decode()}")
+    escaped = re.sub(r"\s+", " ", slim).replace("%", "%25").replace("#", "%23").replace('"', "'")
+    return Markup(_PLAIN_TEXT + escaped.replace("<", "%3C").replace(">", "%3E"))
+
+
+def as_pixels(png: bytes) -> Markup:
+    """Return a PNG as a data URI, with a palette of few colours."""
+    with Image.open(io.BytesIO(png)) as picture:
+        flat = Image.new("RGB", picture.size, "white")
+        flat.paste(picture, mask=picture.getchannel("A") if picture.mode == "RGBA" else None)
+    slim = io.BytesIO()
+    flat.quantize(_COLOURS, dither=Image.Dither.NONE).save(slim, format="PNG", optimize=True)
+    return Markup(f"data:image/png;base64,{base64.b64encode(slim.getvalue()).decode()}")
+
+
+def _rounded(attribute: re.Match[str]) -> str:
+    name, value = attribute.groups()
+    if name == "transform" and "scale" in value:
+        return attribute[0]  # small factors on the outlines of letters keep their digits
+    return f'{name}="{_NUMBER.sub(lambda n: f"{float(n[0]):.2f}".rstrip("0").rstrip("."), value)}"'
+
+
+def render(template: str, place: Path | None, content: dict[str, Any], **filters: Any) -> str:
+    """Return a page as text.
+
+    Args:
+        template: name of its file.
+        place: the folder of the page, from which it links files; None: the one that holds their folders.
+        content: what the template names.
+        filters: of the template, beside ``quantity``, ``number`` and ``link``.
+    """
+    environment = _environment(tuple(filters.items()))
+    style = Markup(environment.get_template("style.css").render())
+    return environment.get_template(template).render(style=style, page_folder=place, **content) + "\n"
+
+
+@cache
+def _environment(filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Environment:
+    """Return templates with their filters; each is compiled once in a process."""
+    environment = Environment(
+        loader=PackageLoader("suchus.apps.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"quantity": quantity, "number": number, "link": _link, **dict(filters)}
+    return environment
+
+
+@pass_context
+def _link(context: Context, file: Path) -> str:
+    """Return how the page that is rendered names a file."""
+    place = context["page_folder"]
+    return quote(Path(os.path.relpath(file, file.parent.parent if place is None else place)).as_posix())

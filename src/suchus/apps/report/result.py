@@ -1,0 +1,231 @@
+"""A saved outcome, checked and read back for the page: the page is made of files and simulates nothing."""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
+
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.visual.figures import WIDTH
+from suchus.core.files import read_json, read_text
+from suchus.apps.report.rendering import embedded
+from suchus.article.verdict import Word
+
+OUTCOME = "outcome.json"
+RECORD = "record.nc"
+
+
+class _Described(BaseModel):
+    model_config = ConfigDict(strict=True, extra="allow")
+
+
+class _Measure(_Described):
+    value: FiniteFloat | None
+    unit: str
+
+
+class _Share(_Described):
+    share: FiniteFloat
+    low: FiniteFloat
+    high: FiniteFloat
+    designs: int
+    turned_by: str = ""
+    at: FiniteFloat | None = None
+    above: bool = False
+
+
+class _Verdict(_Described):
+    claim: str
+    quantity: str
+    statement: str
+    where: str
+    printed: FiniteFloat | None
+    measured: FiniteFloat | None
+    unit: str
+    verdict: Word
+    why: str
+    low: FiniteFloat | None = None
+    high: FiniteFloat | None = None
+    repeats: str = ""
+    quote: str = ""
+    rule: list[str] = []
+    fragile: bool = False
+    share: _Share | None = None
+    unswept: str = ""
+    too_few: str = ""
+
+
+class _Provenance(_Described):
+    config_hash: str
+    seed: Any
+    seconds: FiniteFloat
+
+
+class _File(_Described):
+    name: str
+    caption: str
+
+
+class _Outcome(_Described):
+    experiment: str
+    title: str
+    shows: str
+    decides: str
+    command: str
+    measures: dict[str, _Measure]
+    verdicts: list[_Verdict]
+    provenance: _Provenance
+    figures: list[_File]
+    tables: list[str]
+    films: list[_File] = []
+    replays: list[_File] = []
+    unjudged: str = ""
+
+
+def check_described(outcome: Any, file: Path) -> None:
+    """Refuse what no outcome says.
+
+    Args:
+        outcome: what a file says, as JSON is read.
+        file: which, for the message.
+
+    Raises:
+        IncompatibleRecord: naming the place and what is wrong there.
+    """
+    try:
+        _Outcome.model_validate(outcome)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        if first["type"] == "missing":
+            raise IncompatibleRecord(f"{file} lacks {place}.") from error
+        raise IncompatibleRecord(
+            f"{file} is no outcome of suchus: {place or 'it'} is of another kind ({first['msg'].lower()})."
+        ) from error
+
+
+_COLUMN = 1.15 * 72 * WIDTH
+"""Width of a drawing beyond which it takes both columns of the page [pt]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """A figure ready for a page."""
+
+    name: str
+    """Its file's name without the ending."""
+    caption: str
+    """Caption: what the picture or replay shows."""
+    file: Path
+    """The picture as a drawing; as pixels it stands beside it."""
+    wide: bool = False
+    """Whether it is so wide that half a page would make it too small to read."""
+
+    @property
+    def source(self) -> Markup:
+        """The picture itself as a data URI."""
+        return embedded(self.file, self.file.with_suffix(".png"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Moving:
+    """A film or a replay that stands beside the page: it is linked, since it is too heavy to travel inside."""
+
+    file: Path
+    """Path of the file."""
+    caption: str
+    """Caption: what the picture or replay shows."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """The contents of a folder of results."""
+
+    folder: Path
+    """The folder."""
+    outcome: Mapping[str, Any]
+    """Contents of ``outcome.json``."""
+    pictures: tuple[Picture, ...]
+    """The figures."""
+    tables: Mapping[str, str]
+    """Further texts by file name."""
+    films: tuple[Moving, ...] = field(default=())
+    """Moving pictures, those whose files are there."""
+    replays: tuple[Moving, ...] = field(default=())
+    """Runs to look at, those whose files are there."""
+
+    @property
+    def name(self) -> str:
+        """Name of the experiment."""
+        return str(self.outcome["experiment"])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """An experiment that failed."""
+
+    name: str
+    """Name of the experiment."""
+    sentence: str
+    """One sentence that says why it failed."""
+    trace: str = ""
+    """Where in the code, if it was none of our own errors."""
+
+
+def load_result(folder: str | Path) -> Result:
+    """Read a folder that ``save_outcome`` wrote.
+
+    Raises:
+        UnreadableFile: there is no outcome in it.
+        IncompatibleRecord: it says something else than an outcome should.
+    """
+    folder = Path(folder)
+    file = folder / OUTCOME
+    try:
+        outcome = read_json(file)
+        check_described(outcome, file)
+        pictures = tuple(
+            Picture(
+                name=f["name"],
+                caption=f["caption"],
+                file=_inside(folder, f"{f['name']}.svg"),
+                wide=_wide(_inside(folder, f"{f['name']}.svg")),
+            )
+            for f in outcome["figures"]
+        )
+        tables = {name: read_text(_inside(folder, name)) for name in outcome["tables"]}
+        films = _moving(folder, outcome.get("films", ()))
+        replays = _moving(folder, outcome.get("replays", ()))
+    except UnreadableFile:
+        raise
+    except OSError as error:
+        raise UnreadableFile(f"{error.filename or file} cannot be read: {(error.strerror or '').lower()}.") from error
+    return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
+
+
+def whole(result: Result) -> bool:
+    """Return whether every file that an outcome names is in its folder: record, films and replays too."""
+    names = [RECORD, *(file["name"] for part in ("films", "replays") for file in result.outcome.get(part, ()))]
+    return all(_inside(result.folder, name).is_file() for name in names)
+
+
+def _wide(svg: Path) -> bool:
+    """Return whether a drawing is wider than a figure that fills one column of text."""
+    width = re.search(r'<svg[^>]*\bwidth="([\d.]+)pt"', read_text(svg)[:2000])
+    return width is not None and float(width[1]) > _COLUMN
+
+
+def _moving(folder: Path, outcome: Iterable[Mapping[str, str]]) -> tuple[Moving, ...]:
+    files = (Moving(file=_inside(folder, one["name"]), caption=one["caption"]) for one in outcome)
+    return tuple(one for one in files if one.file.is_file())
+
+
+def _inside(folder: Path, name: str) -> Path:
+    """A file of the folder itself; a name that leads elsewhere is refused."""
+    if Path(name).name != name:
+        raise IncompatibleRecord(f"{folder / OUTCOME} is no outcome of suchus: {name!r} is no file of its folder.")
+    return folder / name

@@ -1,0 +1,269 @@
+"""What servos a robot needs, as a folder: a page, tables and the robot with the servos that are bought."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from math import degrees, isfinite
+from pathlib import Path
+from typing import Any
+
+from suchus.robot import blueprint
+from suchus.visual import figures
+from suchus.robot.design import Motor, layout
+from suchus.visual.figures.servos import Used, draw_use
+from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
+from suchus.hardware.sizing import ServoFamily, Sizing, fitted, use, why
+from suchus.core.files import write
+from suchus.apps.report.rendering import embedded, number, render
+
+PAGE, SERVOS, FAMILIES, ROBOT = "size.html", "servos.csv", "families.csv", "robot.toml"
+_COLUMNS = (
+    "family",
+    "servo",
+    "bought",
+    "case",
+    "period_s",
+    "peak_torque_Nm",
+    "rms_torque_Nm",
+    "torque_limit_Nm",
+    "continuous_torque_Nm",
+    "speed_rad_s",
+    "no_load_speed_rad_s",
+    "power_W",
+    "mean_current_A",
+    "peak_current_A",
+    "share_at_limit",
+    "used_of_torque",
+    "used_of_heat",
+    "lag_rad",
+    "steady_degC",
+    "limit_degC",
+    "warm_after_s",
+    "cable_tension_N",
+)
+
+
+def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
+    """Write what was found into a folder that is there.
+
+    Args:
+        sizing: what was found.
+        folder: where to.
+        hours: for which the battery is asked [h].
+    """
+    write(folder / SERVOS, servos_text(sizing))
+    write(folder / FAMILIES, families_text(sizing, hours))
+    best = sizing.best
+    pictures = []
+    if best is not None:
+        head = [f"{sizing.robot.name} with servos that are bought: {best.name} at {best.volts:g} V."]
+        blueprint.write(fitted(sizing.robot, best.chosen, best.volts), folder / ROBOT, head=head)
+        figure = draw_use(uses(best), f"{sizing.robot.name}: {best.name}")
+        svg, png = figures.save(figure, folder, "servos")
+        pictures.append({"source": embedded(svg, png), "caption": figures.caption(figure)})
+    text = render("size.html", folder, _content(sizing, pictures, hours), deg=degrees)
+    write(folder / PAGE, text)
+
+
+def uses(family: ServoFamily) -> list[Used]:
+    """Return what each servo of a family uses, in the case that asks most of it."""
+    found = []
+    for name, case, _ in family.binding():
+        load, motor = family.loads[case][name], family.chosen[name]
+        found.append(Used(name, motor.name, load.line / FULL_WOUND, load.rms / motor.continuous_torque))
+    return found
+
+
+def servos_text(sizing: Sizing) -> str:
+    """Return a table of every servo in every case: those of the design first, then those of each family tried."""
+    rows = [
+        _row("as designed", None, name, case, load, sizing.cases[i].gait.period)
+        for i, (case, loads) in enumerate(sizing.own.items())
+        for name, load in loads.items()
+    ]
+    for family in sizing.families:
+        for i, (case, loads) in enumerate(family.loads.items()):
+            gait = sizing.cases[i].gait
+            period = gait.period * family.factors[gait.name]
+            ordered = sorted(loads, key=lambda name: -use(family.chosen[name], loads[name]))
+            rows += [_row(family.name, family.chosen[name], name, case, loads[name], period) for name in ordered]
+    return _csv(_COLUMNS, rows)
+
+
+def _row(family: str, motor: Motor | None, servo: str, case: str, load: ServoLoad, period: float) -> list[object]:
+    heat = None if motor is None else load.rms / motor.continuous_torque
+    limit = load.line if motor is None else load.line / FULL_WOUND
+    return [
+        family, servo, "" if motor is None else motor.name, case, period, load.torque, load.rms, load.limit,
+        None if motor is None else motor.continuous_torque, load.speed,
+        None if motor is None else motor.no_load_speed, load.power, load.current, load.peak_current, load.at_limit,
+        limit, heat, load.off, load.steady, None if motor is None else motor.temperature_limit, load.warm_after,
+        load.tension,
+    ]  # fmt: skip
+
+
+def families_text(sizing: Sizing, hours: float) -> str:
+    """Return a table of the families: whether they do, with which periods, for how much."""
+    head = ["family", "volts", "does", "as_asked", *(f"period_s {gait}" for gait in _periods(sizing, None))]
+    head += ["price_low_EUR", "price_high_EUR", "servos_kg", f"battery_Ah_for_{hours:g}_h", "servos", "lacking"]
+    rows: list[list[object]] = []
+    for family in sizing.families:
+        row: list[object] = [family.name, family.volts, family.passes, family.as_asked]
+        row += list(_periods(sizing, family).values())
+        if family.passes:
+            counts = "; ".join(f"{count} {name}" for name, count in counted(family).items())
+            row += [*family.price, family.mass, family.battery(hours), counts, ""]
+        else:
+            row += [None, None, None, None, "", family.lacking]
+        rows.append(row)
+    return _csv(head, rows)
+
+
+def counted(family: ServoFamily) -> dict[str, int]:
+    """Return how many of each servo are bought, the cheapest first."""
+    ones = sorted(family.chosen.values(), key=lambda motor: sum(motor.price))
+    return {motor.name: ones.count(motor) for motor in dict.fromkeys(ones)}
+
+
+def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
+    """Return the answer in sentences."""
+    best = sizing.best
+    if best is None:
+        reasons = "; ".join(f"{family.name}: {family.lacking}" for family in sizing.families)
+        return [f"No family of servos does for {sizing.robot.name}. {reasons}.", *_own_too_warm(sizing)]
+    counts = " and ".join(f"{count} {name}" for name, count in counted(best).items())
+    low, high = best.price
+    name, case, most = best.binding()[0]
+    said = [
+        f"{best.name} does for {sizing.robot.name}{_slower(sizing, best)}: {counts}, {low:.0f} to "
+        f"{high:.0f} EUR, {1000 * best.mass:.0f} g.",
+        f"The binding servo is {name} in {case}, which uses {100 * most:.0f} % of what {best.chosen[name].name} has, "
+        f"by {why(best.chosen[name], best.loads[case][name])}.",
+        f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
+        f"movement.",
+    ]
+    kept = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
+    if kept:
+        said.append(f"The linear actuator of {' and '.join(kept)} stays as it is: no family has one.")
+    slower = sizing.slower
+    if slower is not None:
+        low, high = slower.price
+        counts = " and ".join(f"{count} {name}" for name, count in counted(slower).items())
+        said.append(
+            f"{slower.name} would do{_slower(sizing, slower)}: {counts}, {low:.0f} to {high:.0f} EUR.",
+        )
+    remembered = sorted({field.replace("_", " ") for motor in best.chosen.values() for field in motor.remembered})
+    if remembered:
+        said.append(f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy.")
+    return said + _own_too_warm(sizing)
+
+
+def _own_too_warm(sizing: Sizing) -> list[str]:
+    """Return in a sentence which servo of the design would get too warm the soonest; nothing if none would."""
+    warm = [
+        (load.warm_after, name, case, load)
+        for case, loads in sizing.own.items()
+        for name, load in loads.items()
+        if isfinite(load.warm_after)
+    ]
+    if not warm:
+        return []
+    after, name, case, load = min(warm, key=lambda one: one[:3])
+    winding = sizing.robot.servo(name).winding
+    assert winding is not None
+    assert winding.heat is not None
+    count = len({name for _, name, _, _ in warm})
+    who = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
+    most = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
+    return [
+        f"As it is designed, {who}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"{after / 60:.2g} min and {most} if the movement went on for ever."
+    ]
+
+
+def _slower(sizing: Sizing, family: ServoFamily) -> str:
+    """Return with which periods a family does, where they are not those that were asked for."""
+    slow = {gait: period for gait, period in _periods(sizing, family).items() if family.factors[gait] != 1.0}
+    own = {case.gait.name: case.gait.period for case in sizing.cases}
+    texts = [f"{gait} at a period of {period:.3g} s instead of {own[gait]:.3g} s" for gait, period in slow.items()]
+    return f" with {' and '.join(texts)}" if texts else ""
+
+
+def _periods(sizing: Sizing, family: ServoFamily | None) -> dict[str, float]:
+    own = {case.gait.name: case.gait.period for case in sizing.cases}
+    return {gait: period * (1.0 if family is None else family.factors[gait]) for gait, period in own.items()}
+
+
+def _content(sizing: Sizing, pictures: Sequence[Mapping[str, Any]], hours: float) -> dict[str, Any]:
+    best = sizing.best
+    own = [
+        {"servo": name, "case": case, "load": load}
+        for case, loads in sizing.own.items()
+        for name, load in loads.items()
+        if load.at_limit > AT_LIMIT
+    ]
+    binding = [] if best is None else best.binding()
+    rows = [
+        {
+            "servo": name,
+            "bought": best.chosen[name].name,
+            "case": case,
+            "load": best.loads[case][name],
+            "use": most,
+            "why": why(best.chosen[name], best.loads[case][name]),
+            "rated": best.chosen[name].continuous_torque,
+            "tension": _tension(best.loads[case][name]),
+            "warm": _warm(best.loads[case][name]),
+        }
+        for name, case, most in binding
+        if best is not None
+    ]
+    return {
+        "robot": sizing.robot,
+        "count": len(layout(sizing.robot).servos),
+        "cases": [case.name for case in sizing.cases],
+        "answer": answer(sizing, hours),
+        "families": [
+            {
+                "one": family,
+                "servos": " and ".join(f"{count} {name}" for name, count in counted(family).items()),
+                "slower": _slower(sizing, family).removeprefix(" with "),
+                "battery": family.battery(hours) if family.passes else None,
+            }
+            for family in sizing.families
+        ],
+        "hours": hours,
+        "pictures": pictures,
+        "rows": rows,
+        "weak": own,
+        "best": best,
+        "allowed": AT_LIMIT,
+    }
+
+
+def _tension(load: ServoLoad) -> str:
+    return f"{number(load.tension, 2)} N" if isfinite(load.tension) else ""
+
+
+def _warm(load: ServoLoad) -> str:
+    """Return how warm a servo gets, or when it is too warm."""
+    if isfinite(load.warm_after):
+        return f"too warm after {load.warm_after / 60:.0f} min"
+    return f"{load.steady:.0f} °C"
+
+
+def _csv(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(head)
+    for row in rows:
+        out.writerow([_cell(value) for value in row])
+    return text.getvalue()
+
+
+def _cell(value: object) -> object:
+    if value is None or (isinstance(value, float) and value != value):
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.5g}" if isinstance(value, float) else value

@@ -1,0 +1,94 @@
+"""A page in a process of its own, so that whoever moves the robot is never kept waiting by a browser."""
+
+import os
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+
+from suchus.robot.design import Robot
+from suchus.core.errors import SuchusError
+from suchus.core.jobs.processes import deaf
+from suchus.core.stopping import end_with_parent
+from suchus.apps.viewer.server import CannotServe, Viewer
+from suchus.apps.viewer.stage import camera
+from suchus.apps.viewer.watch_page import WatchedRobot, WatchPage
+
+_PICTURE = 1 / 25  # [s]; between two pictures that are handed over
+_GONE = (EOFError, OSError)  # what a pipe says when the other end has ended
+_PATIENCE = 5.0  # [s]; for a process that was told to stop
+_COURTESY = 5  # by so much its priority is lower than that of the bus
+
+
+class WatchedApart:
+    """A page that watches a robot, served by a process of its own, which ends with this one.
+
+    Args:
+        robot: the robot.
+        picture: returns what is seen now; called by ``look`` only.
+        port: to listen on; 0 for any that is free.
+        title: of the page.
+
+    Raises:
+        CannotServe: the port is taken, or the process ended before it served.
+    """
+
+    def __init__(self, robot: Robot, picture: Callable[[], WatchedRobot], *, port: int, title: str) -> None:
+        self._picture, self._taken = picture, 0.0
+        spawning = get_context("spawn")
+        self._pipe, there = spawning.Pipe()
+        self._process = spawning.Process(target=_serve, args=(there, robot, port, title), daemon=True)
+        with deaf():
+            self._process.start()
+        there.close()
+        try:
+            self._pipe.send(picture())
+            told: str | SuchusError = self._pipe.recv()
+        except _GONE as error:
+            self.stop()
+            raise CannotServe("the process that serves the page ended before it did; try it without --view.") from error
+        if isinstance(told, SuchusError):
+            self.stop()
+            raise told
+        self.url = told
+
+    def look(self) -> None:
+        """Hand a picture over, where one is due and the page asked for it; never wait for the page."""
+        now = time.monotonic()
+        if now - self._taken < _PICTURE:
+            return
+        with suppress(*_GONE):
+            if self._pipe.poll():
+                self._pipe.recv()
+                self._taken = now
+                self._pipe.send(self._picture())
+
+    def stop(self) -> None:
+        """End the page and its process."""
+        self._pipe.close()
+        self._process.join(_PATIENCE)
+        if self._process.is_alive():
+            self._process.kill()
+
+
+def _serve(pipe: Connection, robot: Robot, port: int, title: str) -> None:
+    """Serve pictures until the other end of the pipe is closed."""
+    end_with_parent()
+    with suppress(OSError):
+        os.nice(_COURTESY)
+    seen: WatchedRobot = pipe.recv()
+    try:
+        viewer = Viewer(
+            lambda client: WatchPage(client, robot, lambda: seen), port=port, title=title, camera=camera(robot)
+        )
+    except SuchusError as error:
+        pipe.send(error)
+        return
+    try:
+        pipe.send(viewer.url)
+        while True:
+            pipe.send(None)
+            seen = pipe.recv()
+    except _GONE:
+        viewer.stop()

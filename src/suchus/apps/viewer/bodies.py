@@ -1,0 +1,143 @@
+"""Where everything of a robot is in a posture, and the skin cut into pieces of one colour."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import mujoco
+import numpy as np
+from scipy.cluster.vq import kmeans2
+
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.ground import Relief
+from suchus.sim.model import compile_model, joint_addresses
+from suchus.visual.skin import Poses, ankles, bone_names, footed
+
+COLOURS = 7
+"""Into how many colours the skin is cut; more look smoother and move slower [-]."""
+
+
+class BodyPoses:
+    """The bodies of a robot, set by an instant of a record.
+
+    Args:
+        robot: whose bodies.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self._place = layout(robot)
+        self.model = compile_model(robot)
+        self._feet = np.zeros((len(self._place.limbs), 3))
+        self._data = mujoco.MjData(self.model)
+        self._joints = joint_addresses(self.model, self._place.hinges)
+
+    def put(self, now: Mapping[str, np.ndarray]) -> None:
+        """Take the posture of an instant, by the names of ``record.VARIABLES``."""
+        self._data.qpos[:3], self._data.qpos[3:7] = now["position"], now["orientation"]
+        self._data.qpos[self._joints] = now["joint_angle"]
+        self._feet = np.asarray(now["foot_position"])
+        mujoco.mj_kinematics(self.model, self._data)
+
+    def bones(self, relief: Relief | None) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Return position [m] and orientation wxyz of every bone of the skin, whose feet lie flat on the ground.
+
+        Args:
+            relief: what stands up from the ground; None where it is even.
+        """
+        places, turns = zip(*map(self.body, bone_names(self.robot)), strict=True)
+        feet_flat = ankles(self.robot, Poses(np.array([places]), np.array([turns])), self._feet[None], relief)
+        poses = zip(feet_flat.positions[0], feet_flat.quaternions[0], strict=True)
+        return dict(zip(footed(self.robot).bones, poses, strict=True))
+
+    def geoms(self) -> list[int]:
+        """Return the numbers of the geoms that belong to the robot."""
+        return [i for i in range(self.model.ngeom) if self.model.geom_bodyid[i] > 0]
+
+    def geom(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return position [m] and orientation wxyz of a geom."""
+        turned = np.empty(4)
+        mujoco.mju_mat2Quat(turned, self._data.geom_xmat[number])
+        return np.array(self._data.geom_xpos[number]), turned
+
+    def body(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return position [m] and orientation wxyz of a body."""
+        body: Any = self._data.body(name)
+        return np.array(body.xpos), np.array(body.xquat)
+
+    def part(self, name: str) -> np.ndarray:
+        """Return where the joint of a servo, or the foot of a leg, is [m]; for the cable, where its first joint is."""
+        place = self._place
+        if name in place.limb_names:
+            return np.array(self._data.site(f"{name}_foot").xpos)
+        servo = place.servos.index(name) if name in place.servos else -1
+        hinge = place.cable(servo).hinges[0] if servo in place.cables else name
+        return np.array(self._data.xanchor[self.model.joint(hinge).id])
+
+
+@dataclass(frozen=True, slots=True)
+class SkinPiece:
+    """A part of the skin in one colour, with the bones that move it."""
+
+    vertices: np.ndarray
+    """(n, 3) [m]."""
+    faces: np.ndarray
+    """(m, 3)."""
+    weights: np.ndarray
+    """(n, bone) [-]."""
+    bones: tuple[str, ...]
+    """Names of the bones, which are bodies and ankles."""
+    rest: np.ndarray
+    """Origins of the bones at rest, (bone, 3) [m]."""
+    colour: tuple[int, int, int]
+    """Red, green, blue of 255."""
+
+
+@lru_cache(maxsize=8)
+def pieces(robot: Robot, count: int = COLOURS) -> tuple[SkinPiece, ...]:
+    """Return the skin of a robot cut by colour, since a browser's skinned mesh has but one.
+
+    Args:
+        robot: whose skin.
+        count: of colours.
+    """
+    whole = footed(robot)
+    of_faces = whole.colours[whole.faces].astype(float).mean(axis=1)
+    centres, group = kmeans2(of_faces, count, minit="++", seed=0)
+    dense = np.zeros((len(whole.vertices), len(whole.bones)))
+    np.add.at(dense, (np.arange(len(dense))[:, None], whole.indices), whole.weights)
+    parts = []
+    for number, centre in enumerate(centres):
+        faces_of_colour = whole.faces[group == number]
+        if len(faces_of_colour) == 0:
+            continue
+        vertices, faces = np.unique(faces_of_colour, return_inverse=True)
+        used = np.flatnonzero(dense[vertices].any(axis=0))
+        red, green, blue = (round(float(value)) for value in centre)
+        parts.append(
+            SkinPiece(
+                vertices=whole.vertices[vertices],
+                faces=faces.reshape(-1, 3),
+                weights=dense[np.ix_(vertices, used)],
+                bones=tuple(whole.bones[bone] for bone in used),
+                rest=whole.rest[used],
+                colour=(red, green, blue),
+            )
+        )
+    return tuple(parts)
+
+
+def support(feet: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Return the corners of the support of the loaded feet in order, (corner, 3) [m].
+
+    Args:
+        feet: places on the ground, one for each limb, (limb, 3) [m].
+        loaded: which stand, (limb,).
+    """
+    corners = feet[loaded]
+    if len(corners) < 3:
+        return np.asarray(corners)
+    middle = corners.mean(axis=0)
+    order = np.argsort(np.arctan2(corners[:, 1] - middle[1], corners[:, 0] - middle[0]))
+    return np.asarray(corners[order])

@@ -1,0 +1,235 @@
+"""What can be turned while the robot walks: numbers with a range, a unit and a step."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import isfinite, radians
+from types import MappingProxyType
+
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.robot.motion import Gait, check_limits
+from suchus.robot.robots import beside_article
+
+_HALVINGS = 14  # of the distance to a value that the robot cannot reach: a ten-thousandth of it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Knob:
+    """A number that people may turn, in the unit in which they see it."""
+
+    label: str
+    """Beside the slider."""
+    unit: str
+    """Unit in which it is shown."""
+    low: float
+    """Least value, in that unit."""
+    high: float
+    """Greatest value, in that unit."""
+    step: float
+    """Step of the slider, in that unit."""
+    scale: float = 1.0
+    """SI value of one unit."""
+    hint: str = ""
+    """Explanation of its effect, for the page."""
+
+    def __str__(self) -> str:
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
+
+    def said(self, value: float) -> str:
+        """Return a shown value with its unit."""
+        return f"{value:.4g} {self.unit}".rstrip()
+
+    def within(self, value: object, now: float) -> tuple[float, str]:
+        """Return a value that is allowed and, where it is not the one asked for, a sentence that says so.
+
+        Args:
+            value: asked for, in the knob's unit; anything.
+            now: which stands, and stays where what is asked for is no number.
+        """
+        try:
+            number = float(value)  # type: ignore[arg-type]
+        except (TypeError, ValueError):
+            return now, f"{self.label}: {str(value)[:40]!r} is no number; it stays at {self.said(now)}."
+        if not isfinite(number):
+            return now, f"{self.label}: {number} is no finite number; it stays at {self.said(now)}."
+        held = min(max(number, self.low), self.high)
+        if held != number:
+            allowed = f"{self.low:g} to {self.said(self.high)}"
+            return held, f"{self.label}: {self.said(number)} is outside {allowed}; it is {self.said(held)} now."
+        return number, ""
+
+
+_DEGREE = radians(1.0)
+
+_SHARE = 0.01  # a per cent
+
+GAIT_KNOBS: Mapping[str, Knob] = MappingProxyType(
+    {
+        "period": Knob(label="period", unit="s", low=0.5, high=8.0, step=0.05, hint="Of one cycle of the limbs."),
+        "duty_factor": Knob(
+            label="duty factor", unit="", low=0.3, high=0.9, step=0.01,
+            hint="Share of the cycle in which a foot stands.",
+        ),
+        "stroke": Knob(
+            label="limb stroke", unit="% of reach", low=0.0, high=60.0, step=0.5, scale=_SHARE,
+            hint="Half of the distance that a foot moves back in stance, of the front limbs; others in proportion.",
+        ),
+        "lift": Knob(
+            label="foot lift", unit="% of reach", low=0.0, high=60.0, step=0.5, scale=_SHARE,
+            hint="In swing, of the front limbs; others in proportion.",
+        ),
+        "height": Knob(
+            label="hip height", unit="% of reach", low=10.0, high=120.0, step=0.5, scale=_SHARE,
+            hint="Of the hindmost hips above the ground.",
+        ),
+        "crank": Knob(
+            label="crank in stance", unit="deg", low=10.0, high=340.0, step=5.0, scale=_DEGREE,
+            hint="Angle that a crank turns through while its foot stands.",
+        ),
+        "trunk_bend": Knob(
+            label="trunk bend", unit="deg", low=0.0, high=120.0, step=1.0, scale=_DEGREE,
+            hint="Amplitude of the sideways bend of the whole trunk.",
+        ),
+        "axis_bend": Knob(
+            label="axis bend", unit="deg", low=0.0, high=720.0, step=5.0, scale=_DEGREE,
+            hint="Amplitude of the sideways bend of the whole axis, all its joints together.",
+        ),
+        "axis_lag": Knob(
+            label="axis phase", unit="cycle", low=-0.5, high=0.5, step=0.01,
+            hint="Phase lag of the trunk's bend behind the limbs; with half a cycle a crawl goes backwards.",
+        ),
+        "tail_bend": Knob(
+            label="tail bend", unit="deg", low=0.0, high=120.0, step=1.0, scale=_DEGREE,
+            hint="Amplitude of the sideways bend of the tail.",
+        ),
+        "tail_lag": Knob(
+            label="tail phase", unit="cycle", low=0.0, high=1.0, step=0.01,
+            hint="Phase lag of the tail's bend behind the trunk's; with half a cycle they swing to opposite sides.",
+        ),
+        "waves": Knob(
+            label="waves along the body", unit="", low=-2.0, high=2.0, step=0.05,
+            hint="0 is a standing wave; positive it runs from head to tail.",
+        ),
+        "trunk_offset": Knob(
+            label="bend to the left", unit="deg", low=-60.0, high=60.0, step=1.0, scale=_DEGREE,
+            hint="Of the trunk, steadily: it turns left.",
+        ),
+        "tail_pitch": Knob(
+            label="tail pitch", unit="deg", low=-30.0, high=40.0, step=0.5, scale=_DEGREE,
+            hint="Down positive: the ground carries the tail, or it is lifted.",
+        ),
+    }
+)  # fmt: skip
+"""Numbers of a gait that can be turned; the ranges lie within those that ``Gait`` allows."""
+
+SLOPE = Knob(label="uphill", unit="deg", low=-20.0, high=20.0, step=0.5, scale=_DEGREE, hint="Slope along the walk.")
+SIDE_SLOPE = Knob(
+    label="left side up", unit="deg", low=-20.0, high=20.0, step=0.5, scale=_DEGREE, hint="Slope across the walk."
+)
+BUMPS = Knob(
+    label="bumps", unit="mm", low=0.0, high=60.0, step=5.0, scale=1e-3,
+    hint="Height of a field of random bumps ahead; the walk begins anew on them.",
+)  # fmt: skip
+"""For a robot as long as the article's; see ``bumps_under``."""
+SPEED = Knob(label="playback speed", unit="x", low=0.05, high=4.0, step=0.05, hint="1 is real time.")
+FORCE = Knob(label="force", unit="N", low=0.0, high=60.0, step=1.0)
+"""For a robot as heavy as the article's; see ``force_on``."""
+PUSH_DURATION = Knob(label="duration", unit="s", low=0.02, high=2.0, step=0.02, hint="Duration of the push.")
+DIRECTION = Knob(
+    label="direction", unit="deg", low=-180.0, high=180.0, step=15.0, scale=_DEGREE,
+    hint="0 pushes forward, 90 to the left, 180 backward.",
+)  # fmt: skip
+_PUSH = 15.0  # [N]; on the article's robot, at first
+_FAINT = 1.0  # [N]; a lighter body is pushed in millinewtons
+
+LEVEL = Knob(
+    label="water level", unit="mm", low=0.0, high=1000.0, step=5.0, scale=1e-3,
+    hint="Above the ground where the walk begins; the surface stays level where the ground slopes.",
+)  # fmt: skip
+AIR_FRACTION = Knob(
+    label="air fraction", unit="%", low=0.0, high=100.0, step=1.0, scale=1e-2,
+    hint="Share of the hull's air that is kept; less of it sinks.",
+)  # fmt: skip
+
+
+def force_on(robot: Robot) -> Knob:
+    """Return the knob of a push's force, which follows the weight of whom it pushes, in newtons or millinewtons."""
+    weight = robot.mass * GRAVITY
+    unit, scale = ("N", 1.0) if weight >= _FAINT else ("mN", 1e-3)
+    shown = f"{weight / scale:.0f}" if weight / scale >= 10.0 else f"{weight / scale:.2g}"
+    hint = f"{robot.name} weighs {shown} {unit}."
+    high = _rounded(FORCE.high * beside_article(robot).weight / scale)
+    return replace(FORCE, unit=unit, scale=scale, high=high, step=_rounded(high / 60.0), hint=hint)
+
+
+def push_on(robot: Robot) -> float:
+    """Return the force of a push as it is set at first [N]: 0.43 of the weight of a body of another size."""
+    return _rounded(_PUSH * beside_article(robot).weight)
+
+
+def bumps_under(robot: Robot) -> Knob:
+    """Return the knob of the bumps' height, which follows the length of whom they are under."""
+    return _resized(BUMPS, beside_article(robot).length)
+
+
+def knobs_of(robot: Robot, gait: Gait) -> Mapping[str, Knob]:
+    """Return what can be turned of a gait, by name: the numbers that it has and that move something of the robot."""
+    place = layout(robot)
+    lacking = {
+        *(() if place.limbs else ("duty_factor", "height")),
+        *(() if gait.has("foot paths") else ("height",)),
+        *(() if place.trunk_yaw else ("trunk_bend", "trunk_offset")),
+        *(() if place.tail_yaw or place.cables else ("tail_bend", "tail_lag")),
+        *(() if place.tail_pitch else ("tail_pitch",)),
+    }
+    numbers = gait.numbers() if gait.has("steering") else {}
+    return {name: knob for name, knob in GAIT_KNOBS.items() if name in numbers and name not in lacking}
+
+
+def _resized(knob: Knob, share: float) -> Knob:
+    low, high = (float(f"{share * end:.2g}") for end in (knob.low, knob.high))
+    return replace(knob, low=low, high=high, step=_rounded(share * knob.step))
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.2g}")
+
+
+def shown(gait: Gait, name: str) -> float:
+    """Return a number of a gait in the unit of its knob, to four digits."""
+    return float(f"{gait.number(name) / GAIT_KNOBS[name].scale:.4g}")
+
+
+def tuned(robot: Robot, gait: Gait, name: str, value: object) -> tuple[Gait, str]:
+    """Return a gait with one field turned as far as the robot's joints follow, and a sentence if that is not as asked.
+
+    Args:
+        robot: who walks.
+        gait: which the robot can walk.
+        name: of the knob.
+        value: asked for, in the knob's unit; anything.
+    """
+    knob, now = knobs_of(robot, gait)[name], shown(gait, name)
+    aim, notice = knob.within(value, now)
+    if notice and aim == now:
+        return gait, notice
+    wanted, why = _tried(robot, gait, name, aim * knob.scale)
+    if not why:
+        return wanted, notice
+    fits, reached = gait, now
+    for i in range(1, _HALVINGS + 1):
+        between = reached + (aim - now) / 2**i
+        trial, refused = _tried(robot, gait, name, between * knob.scale)
+        if not refused:
+            fits, reached = trial, between
+    return fits, f"{knob.label}: the robot cannot follow {knob.said(aim)}; it is {knob.said(reached)} now. {why}"
+
+
+def _tried(robot: Robot, gait: Gait, name: str, value: float) -> tuple[Gait, str]:
+    """Return a gait with one field changed, and why the robot cannot follow it; empty if it can."""
+    try:
+        changed = gait.with_numbers(**{name: value})
+        check_limits(robot, changed)
+    except (InvalidDesign, NotConverged, OutsideLimits) as error:
+        return gait, str(error)
+    return changed, ""

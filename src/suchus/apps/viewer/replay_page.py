@@ -1,0 +1,144 @@
+"""One browser that watches a record: a time slider, a robot, perhaps a ghost beside it."""
+
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+from viser import uplot
+
+from suchus.apps.viewer.drawn import DrawnAnimal
+from suchus.apps.viewer.knobs import SPEED
+from suchus.apps.viewer.live_page import DRAWN, PLOT
+from suchus.apps.viewer.plots import Plots
+from suchus.apps.viewer.replay import FilmedAnimal, Player, Take
+from suchus.apps.viewer.server import BrowserPage
+from suchus.apps.viewer.stage import WORLD, WalkScene
+
+
+class ReplayPage(BrowserPage):
+    """A browser and its own player of a record.
+
+    Args:
+        client: viser's handle of the browser.
+        takes: the runs of the record.
+        ghosts: the runs of the record for comparison; may be none.
+        animals: a filmed animal beside each run, in their order; may be none.
+    """
+
+    def __init__(
+        self, client: Any, takes: Sequence[Take], ghosts: Sequence[Take] = (), animals: Sequence[FilmedAnimal] = ()
+    ) -> None:
+        super().__init__(client)
+        self._takes = {take.label: take for take in takes}
+        self._ghosts = {take.label: take for take in ghosts}
+        end = max(take.end for take in (*takes, *ghosts))
+        self._animals = {take.label: animal for take, animal in zip(takes, animals, strict=bool(animals))}
+        self._drawn: DrawnAnimal | None = None
+        self._player = Player(float(takes[0].record.time[0]), end)
+        gui = client.gui
+        with gui.add_folder("Replay"):
+            self._play(gui, end)
+        with gui.add_folder("Record"):
+            self._run = gui.add_dropdown("run", tuple(self._takes))
+            self._ghost = (
+                gui.add_dropdown("ghost", tuple(self._ghosts), initial_value=_fellow(takes, ghosts)) if ghosts else None
+            )
+        with gui.add_folder("Look"):
+            skin = gui.add_checkbox("skin", initial_value=True, hint="Off: the shapes that touch the ground.")
+            self._follow = gui.add_checkbox("camera follows", initial_value=True)
+        self._dock()
+        self._plots = Plots(gui, uplot, takes[0].robot, compared=bool(ghosts))
+        self._stage = WalkScene(client.scene, takes[0].robot)
+        if ghosts:
+            self._stage.compare(ghosts[0].robot)
+        self._stage.look("skin")
+        skin.on_update(lambda _: self._stage.look("skin" if skin.value else "collision geoms"))
+        self._shown: tuple[str, str] = ("", "")
+        self._pictures, self._plotted = 0, 0.0
+
+    def _play(self, gui: Any, end: float) -> None:
+        player = self._player
+        self._slider = gui.add_slider("time [s]", min=player.time, max=end, step=0.01, initial_value=player.time)
+        paused = gui.add_checkbox("pause", initial_value=False)
+        speed = gui.add_slider(str(SPEED), SPEED.low, SPEED.high, SPEED.step, 1.0)
+
+        def seek(event: Any) -> None:
+            if event.client is not None:
+                player.seek(self._slider.value)
+
+        def faster(_: Any) -> None:
+            player.speed, _ = SPEED.within(speed.value, player.speed)
+
+        def pause(_: Any) -> None:
+            player.playing = not paused.value
+
+        self._slider.on_update(seek)
+        speed.on_update(faster)
+        paused.on_update(pause)
+
+    def draw(self, now: float, passed: float) -> None:
+        """Play on, and draw the sample that is due."""
+        self._player.advance(passed)
+        take = self._takes[self._run.value]
+        ghost = self._ghosts[self._ghost.value] if self._ghost is not None else None
+        labels = (take.label, ghost.label if ghost else "")
+        if labels != self._shown:
+            self._shown, self._plotted = labels, 0.0
+            self._tables = take.table(), ghost.table() if ghost else None
+            self._stage.lay(take.ground.relief)
+            self._accompany(take)
+            self._stage.draw_track(take.record.centre_of_mass.values[::5])
+        self._pictures += 1
+        self._show(take, ghost, everything=self._pictures % DRAWN == 1)
+        if now - self._plotted > PLOT:
+            self._plotted = now
+            self._plots.draw(*self._tables, now=self._player.time)
+
+    def _accompany(self, take: Take) -> None:
+        """Draw the animal that walks beside a run."""
+        if take.label in self._animals:
+            self._drawn = DrawnAnimal(self._client.scene, f"{WORLD}/animal", self._animals[take.label])
+
+    def _show(self, take: Take, ghost: Take | None, *, everything: bool) -> None:
+        time = self._player.time
+        with self._client.atomic():
+            now = take.at(time)
+            self._stage.place(now, (take.ground.uphill, take.ground.sideways), follow=bool(self._follow.value))
+            self._stage.show(now)
+            self._stage.flood(take.level(time))
+            if ghost is not None and self._stage.ghost is not None:
+                self._stage.ghost.show(ghost.at(time))
+            if self._drawn is not None:
+                self._drawn.show(time)
+            if everything:
+                self._slider.value = round(time, 2)
+                self._status.content = status_text(take, ghost, time, self._animals.get(take.label))
+
+
+def status_text(take: Take, ghost: Take | None, time: float, animal: FilmedAnimal | None = None) -> str:
+    """Return the head of the page as HTML: the displacement of each at this time."""
+    rows = []
+    for prefix, shown in (("", take), ("ghost", ghost)):
+        if shown is not None:
+            displaced = shown.at(time)["centre_of_mass"] - shown.origin
+            rows.append(
+                f'<tr><td style="padding-right:14px">{escape(f"{prefix} {shown.label}".strip())}</td>'
+                f'<td style="padding-right:14px;font-weight:600" data-suchus="forward">{displaced[0]:+.3f} m</td>'
+                f'<td style="font-weight:600">{displaced[1]:+.3f} m</td></tr>'
+            )
+    other = ghost is not None and not ghost.ground.looks_like(take.ground)
+    note = "<div>The ghost went on other ground, which is not shown.</div>" if other else ""
+    if animal is not None:
+        pace = "" if animal.pace == 1.0 else f" and slowed down by a factor of {animal.pace:.3g}"
+        note += f"<div>Beside it: the animal in {escape(animal.label)}, scaled to the robot's length{pace}.</div>"
+    return (
+        '<div style="padding:4px 12px;font:13px sans-serif"><table><tr style="color:#666;font-size:11px">'
+        f'<td data-suchus="time">at {time:.2f} s</td><td>forward</td><td>to the left</td></tr>{"".join(rows)}'
+        f"</table>{note}</div>"
+    )
+
+
+def _fellow(takes: Sequence[Take], ghosts: Sequence[Take]) -> str:
+    """Return the ghost to begin with: of one file with itself, the second run."""
+    same = takes[0].label == ghosts[0].label and len(ghosts) > 1 and takes[0].record.equals(ghosts[0].record)
+    return ghosts[1 if same else 0].label

@@ -1,0 +1,56 @@
+"""The article as data: its tables, claims, misprints and signs; imports the standard library only."""
+
+from suchus.article.paper.claim import Claim
+from suchus.article.paper.claims import CLAIMS
+from suchus.article.paper.errata import ERRATA, Misprint
+from suchus.article.paper.signs import BendAngles, JointSums, to_bend_angles, to_joint_sums
+from suchus.article.paper.tables import (
+    CRAWL_END,
+    CRAWL_START,
+    CYCLE_PERIOD,
+    CYCLES,
+    FEMUR,
+    HIP_OFFSET,
+    LEG_CHAIN,
+    LIMB_REACH,
+    SNAPSHOT_TIMES,
+    SPINE_BASE,
+    SPINE_CHAIN,
+    SPINE_LINK,
+    TABLE_I,
+    TABLE_II,
+    TAIL_JOINTS,
+    TIBIA,
+)
+
+TITLE = "Structure design and coordinated motion analysis of bionic crocodile robot"
+AUTHORS = ("Jun Wang", "Jingya Zheng", "Yuhang Zhao", "Kai Yang")
+
+__all__ = [
+    "AUTHORS",
+    "CLAIMS",
+    "CRAWL_END",
+    "CRAWL_START",
+    "CYCLES",
+    "CYCLE_PERIOD",
+    "ERRATA",
+    "FEMUR",
+    "HIP_OFFSET",
+    "LEG_CHAIN",
+    "LIMB_REACH",
+    "SNAPSHOT_TIMES",
+    "SPINE_BASE",
+    "SPINE_CHAIN",
+    "SPINE_LINK",
+    "TABLE_I",
+    "TABLE_II",
+    "TAIL_JOINTS",
+    "TIBIA",
+    "TITLE",
+    "BendAngles",
+    "Claim",
+    "JointSums",
+    "Misprint",
+    "to_bend_angles",
+    "to_joint_sums",
+]

@@ -1,0 +1,100 @@
+"""Every number and every testable statement of the article, and some of other publications, by key."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from suchus.article.paper.claim import Claim, said
+from suchus.article.paper.claims_animals import OSCILLATORS, SALAMANDERS
+from suchus.article.paper.claims_body import BODY
+from suchus.article.paper.claims_land import LAND
+from suchus.article.paper.tables import C1, C2, K
+
+
+def _constant(key: str, name: str, value: float, digit: float) -> Claim:
+    return Claim(
+        key=key,
+        where="IV.B, eq. (20)",
+        quantity=f"{name} of the body wave",
+        value=value,
+        unit="-",  # none is printed
+        rounding=digit / 2,  # half of the last printed digit
+        sense="The midline of the swimming robot is fitted by (20) with c1 = 0.027, c2 = 0.30, k = 0.023.",
+        quote="c1 = 0.027, c2 = 0.30 and k = 0.023",
+    )
+
+
+WATER = (
+    said(
+        "swim_tail_sine",
+        "II.A",
+        "swing of the tail in water",
+        "A crocodile's swimming tail swings like a sine wave.",
+        "The tail's swinging motion resembles a sine wave",
+    ),
+    said(
+        "swim_body_wave",
+        "IV.B, eq. (20)",
+        "wave of the robot's midline in water",
+        "The midline of the swimming robot has the form (20): a sine under an envelope that grows to the tail.",
+        "the center line trajectory is drawn and modeled into the form of fish body wave function",
+    ),
+    _constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
+    _constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
+    _constant("wave_k", "wave number k", K, 0.001),
+    said(
+        "swim_pressure_convex",
+        "IV.B, Fig. 17a",
+        "pressure on both sides of the tail at T/4",
+        "At a quarter of the cycle the pressure on the convex side of the tail is above that on the concave side.",
+        "the pressure on the bending and convex side of the flexible tail is greater than that on the concave side",
+    ),
+    said(
+        "swim_diagonal_force",
+        "IV.B, Fig. 17a",
+        "force at T/4",
+        "The pressure difference at a quarter of the cycle pushes the robot diagonally forward.",
+        "results in a diagonal forward force, propelling the robot in a diagonal direction",
+    ),
+    said(
+        "swim_pressure_falls",
+        "IV.B, Fig. 17a, c",
+        "pressure difference at T/4 less that at 3T/4",
+        "While body and tail move on towards the axis, from T/4 to 3T/4, the pressure difference falls.",
+        "towards the head-to-tail axis, the pressure difference gradually decreases, as demonstrated in Figure 17(c)",
+    ),
+    said(
+        "swim_thrust_symmetric",
+        "IV.B, Fig. 17c",
+        "forces at T/4 and 3T/4, mirrored",
+        "At three quarters of the cycle the thrust is forward again and mirrors that at one quarter.",
+        "the pressure difference ... generates a symmetrical diagonal forward thrust",
+    ),
+    said(
+        "swim_s_shape",
+        "IV.B, Fig. 17",
+        "track of the swimming robot",
+        "The robot swims along an S-shaped track.",
+        'producing an "S"-shaped swimming trajectory',
+    ),
+    said(
+        "swim_tail_thrust",
+        "IV.B",
+        "speed that the swing of the tail adds in water",
+        "The swing of the tail gives the main thrust in water.",
+        "When moving through the water, the swing of the tail and spine provides the main thrust.",
+    ),
+    said(
+        "swim_spine_thrust",
+        "IV.B",
+        "speed that the swing of the spine adds in water",
+        "The swing of the spine gives thrust in water too.",
+        "When moving through the water, the swing of the tail and spine provides the main thrust.",
+    ),
+)
+"""The claims about the water."""
+
+
+CLAIMS: Mapping[str, Claim] = MappingProxyType(
+    {claim.key: claim for claim in (*BODY, *LAND, *WATER, *SALAMANDERS, *OSCILLATORS)}
+)
+"""All claims, in the article's order; then those of other publications (``Claim.of``)."""

@@ -1,0 +1,281 @@
+"""From a rule and measures to a verdict, and in how many plausible designs the claim holds.
+
+The latter is the table that a run of ``suchus study claims`` left.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from math import isfinite
+from types import MappingProxyType
+from typing import Any, Literal, TypeVar, get_args
+
+from suchus.core.errors import IncompatibleRecord
+from suchus.article.paper import CLAIMS, Claim
+from suchus.article.verdict import ladder
+from suchus.article.verdict.rule import Rule, interval, listed
+
+ROBUST = 0.9
+"""A verdict is fragile if fewer plausible designs than this share agree with it [-].
+
+Nine in ten, set before the study was run: one design in ten drawn from our own ranges may disagree before a reader
+should be warned.
+"""
+_FILE = "claims.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Share:
+    """In how many plausible designs the statement of a claim holds."""
+
+    claim: str
+    """Its key."""
+    share: float
+    """Share of the designs that could be judged in which it holds [-]."""
+    low: float
+    """Lower end of the 95 % interval, after Wilson [-]."""
+    high: float
+    """Upper end [-]."""
+    designs: int
+    """Number of designs that could be judged [-]."""
+    turned_by: str
+    """The free number whose value best predicts where it holds; empty where none does beyond chance."""
+    at: float | None
+    """Its value there, in its own unit."""
+    above: bool
+    """Whether the statement rather holds above that value."""
+    of: str = ""
+    """The experiment that was asked again for it; empty where the walks of the study answer."""
+    rule: str = ""
+    """Digest of the rule that judged the designs, ``Rule.asked``."""
+
+    def robust(self, held: bool) -> bool:
+        """Return whether enough designs agree with a verdict.
+
+        Args:
+            held: whether the statement held in the run that was judged.
+        """
+        return (self.share if held else 1.0 - self.share) >= ROBUST
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TooFew:
+    """What plausible designs say of a claim that too few of them could judge to know a share."""
+
+    claim: str
+    """Its key."""
+    words: Mapping[str, int]
+    """Number of designs by the word that each says [-]."""
+    of: str
+    """The experiment that was asked again for it."""
+    rule: str
+    """Digest of the rule that judged the designs, ``Rule.asked``."""
+
+    def robust(self, held: bool) -> bool:
+        """Return whether enough of those few designs that have a word agree with a verdict.
+
+        Args:
+            held: whether the statement held in the run that was judged.
+        """
+        answers = [(_HELD[word] is held, count) for word, count in self.words.items() if word in _HELD]
+        return sum(count for same, count in answers if same) >= ROBUST * sum(count for _, count in answers)
+
+    def __str__(self) -> str:
+        """Return it as a sentence."""
+        told = listed([f"{self.words[word]} {word}" for word in WORDS if word in self.words])
+        number = sum(self.words.values())
+        return f"Asked of {number} plausible designs, too few of which could judge it to know a share: {told}."
+
+
+_Row = TypeVar("_Row", Share, TooFew)
+
+
+def _shipped() -> Mapping[str, Mapping[str, Any]]:
+    """Return the rows of the table that stands beside this module, none where it was not made yet."""
+    file = resources.files("suchus.article.verdict") / _FILE
+    if not file.is_file():
+        return MappingProxyType({})
+    rows: Mapping[str, Mapping[str, Any]] = json.loads(file.read_text(encoding="utf-8"))["claims"]
+    return rows
+
+
+def digest(claims: Mapping[str, Mapping[str, object]]) -> str:
+    """Return the SHA-256 of a table's rows, which stands in the table beside them."""
+    return hashlib.sha256(json.dumps(claims, sort_keys=True).encode()).hexdigest()
+
+
+SHARES: Mapping[str, Share] = MappingProxyType(
+    {key: Share(claim=key, **row) for key, row in _shipped().items() if "share" in row}
+)
+"""By claim."""
+TOO_FEW: Mapping[str, TooFew] = MappingProxyType(
+    {key: TooFew(claim=key, **row) for key, row in _shipped().items() if "share" not in row}
+)
+"""By claim, of those that too few designs could judge."""
+
+
+Word = Literal[
+    "reproduced", "same sense", "contradicted", "undecided", "models disagree", "not testable", "by construction",
+    "fitted",
+]  # fmt: skip
+"""``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
+but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
+``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
+carry the claim say different words. ``not testable``: nothing was measured that could decide, or the control group
+does not do what the claim needs. ``by construction``:
+an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
+chosen so that it comes out.
+"""
+WORDS: tuple[Word, ...] = get_args(Word)
+_HELD: Mapping[str, bool] = MappingProxyType({"reproduced": True, "same sense": True, "contradicted": False})
+"""Whether the statement held, by the words that say so of a run."""
+Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
+"""By claim: measures, and the word that its rule must say of them, on both sides of everything that it looks at."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What became of one claim of the article."""
+
+    claim: Claim
+    """The article's statement."""
+    rule: Rule
+    """The rule that was applied."""
+    measured: float | None
+    """What was measured, in the unit of ``unit``; None where nothing can be measured."""
+    low: float | None
+    """Lower end of its interval; None where it has none."""
+    high: float | None
+    """Upper end of its interval."""
+    verdict: Word
+    """The verdict in a word or two."""
+    why: str
+    """One or two sentences: what decided it."""
+    share: Share | None
+    """Fraction of plausible designs for which the statement holds; None where that is not known."""
+    voices: tuple[ladder.Voice, ...] = ()
+    """What each model says; none where one measure decides."""
+    too_few: TooFew | None = None
+    """What designs say that are too few to know a share; None where a share is known, or no design was asked."""
+
+    @property
+    def fragile(self) -> bool:
+        """Whether other plausible designs give another answer too often to rely on this one.
+
+        What was chosen for one design, or follows from how it was made, is no answer that others could shake.
+        """
+        return fragile(self.rule, self.verdict, self.share or self.too_few)
+
+
+def fragile(rule: Rule, word: str, designs: Share | TooFew | None) -> bool:
+    """Return whether other plausible designs give another answer too often to rely on a word.
+
+    Args:
+        rule: the claim's.
+        word: of its verdict.
+        designs: in how many the statement holds, or what few of them say; None where that is not known.
+    """
+    if rule.kind not in ("measured", "animals") or designs is None or designs.rule not in ("", rule.asked):
+        return False
+    held = _HELD.get(word)
+    return held is not None and not designs.robust(held)
+
+
+def judge(
+    rule: Rule,
+    measures: Mapping[str, float],
+    shares: Mapping[str, Share] = SHARES,
+    unable: Mapping[str, str] = ladder.NOTHING,
+) -> Verdict:
+    """Return the verdict of a rule on measures.
+
+    Args:
+        rule: the claim's.
+        measures: of its experiment, by name, in SI units.
+        shares: in how many plausible designs each claim holds, by claim.
+        unable: why models of the rule could not be run, in a sentence, by the names of its rungs.
+
+    Raises:
+        IncompatibleRecord: a measure that the rule names is not there.
+    """
+    claim = CLAIMS[rule.claim]
+    missing = sorted(rule.needs - set(measures))
+    if missing:
+        raise IncompatibleRecord(
+            f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
+        )
+    said = ladder.voices(rule, measures, unable)
+    value, low, high = _value(rule, measures, said), None, None
+    why = " ".join(part for part in (rule.reason(measures), rule.unable(measures)) if part)
+    if said:
+        _, least, greatest = ladder.spread(said)
+        low, high = (least, greatest) if isfinite(value) else (None, None)
+        why = f"{why} {ladder.sentence(said, rule.form)}"
+    elif rule.measure in rule.spread and isfinite(value):
+        low, high = interval(rule.measure, measures, rule.spread)
+    return Verdict(
+        claim=claim,
+        rule=rule,
+        measured=value if isfinite(value) else None,
+        low=low,
+        high=high,
+        verdict=_word(rule, claim, value, measures, said),
+        why=why,
+        share=_of_this(rule, shares.get(rule.claim)),
+        voices=said,
+        too_few=_of_this(rule, TOO_FEW.get(rule.claim)),
+    )
+
+
+def word_of(rule: Rule, measures: Mapping[str, float]) -> Word:
+    """Return the word of a rule on measures, those that it needs alone.
+
+    Args:
+        rule: the claim's.
+        measures: those of ``Rule.needs``.
+    """
+    said = ladder.voices(rule, measures)
+    return _word(rule, CLAIMS[rule.claim], _value(rule, measures, said), measures, said)
+
+
+def _near(printed: float, rounding: float, value: float) -> bool:
+    """Return whether a measured number is the printed one, as rounded.
+
+    Asked is the middle alone, of an ensemble or of models. A wide interval would reach more printed numbers, so that
+    little knowledge would make a word kinder; of a narrow one that shrinks to the printed number the same could be said
+    of much.
+    """
+    slack = 1e-9 * max(1.0, abs(printed))  # a value on the edge of its own rounding is inside
+    return abs(value - printed) <= rounding + slack
+
+
+def _value(rule: Rule, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> float:
+    return ladder.spread(said)[0] if said else float(measures[rule.measure])
+
+
+def _of_this(rule: Rule, row: _Row | None) -> _Row | None:
+    """Return a row if it is of this rule; one that another rule made says nothing of it."""
+    return None if row is None or row.rule not in ("", rule.asked) else row
+
+
+def _word(rule: Rule, claim: Claim, value: float, measures: Mapping[str, float], said: Sequence[ladder.Voice]) -> Word:
+    testable = rule.testable(measures)
+    if not isfinite(value) or testable is False:
+        return "not testable"
+    if ladder.disagree(said):
+        return "models disagree"
+    held = ladder.agreed(said) if said else rule.held(measures)
+    if held is None or testable is None:
+        return "undecided"
+    if rule.kind == "animals":  # a robot resembles an animal or not; it says nothing of the animal itself
+        return "same sense" if held else "not testable"
+    if not held:
+        return "contradicted"
+    near = claim.value is None or _near(claim.value, claim.rounding, value)
+    if rule.kind == "construction":
+        return "by construction" if near else "contradicted"
+    if not near:
+        return "same sense"
+    return "fitted" if rule.kind == "fitted" else "reproduced"

@@ -1,5 +1,0 @@
-"""The command line: ``suchus reproduce``, ``suchus run``, ``suchus list``."""
-
-from suchus.cli.entry import main
-
-__all__ = ["main"]

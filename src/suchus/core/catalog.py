@@ -1,0 +1,309 @@
+"""A shelf: things of one kind by name, from the package, a project folder, and packages of the user's."""
+
+import importlib
+import sys
+import traceback
+from collections.abc import Callable, ItemsView, Iterator, Mapping, ValuesView
+from importlib import import_module
+from importlib.util import find_spec
+from operator import attrgetter
+from pathlib import Path
+from threading import local
+from types import ModuleType
+from typing import Any, Generic, TypeVar, get_args
+
+from suchus.core.errors import BrokenFile, InvalidDesign, SuchusError, UnknownName
+from suchus.core.kinds import show
+from suchus.core.reading import there
+from suchus.core.sources import Source, current, gather
+
+T = TypeVar("T")
+
+
+class Catalog(Mapping[str, T], Generic[T]):
+    """A lazy mapping from names to what stands on a shelf, see ``suchus.core.sources``.
+
+    Listing the names reads file names only; a module is imported when its name is asked for. A folder declares its
+    thing in its module of that name, ``displacement/experiment.py``, or itself. Things of the user's that cannot be
+    loaded are listed, refused with a ``BrokenFile`` when they are asked for, and left out of ``values`` and ``items``.
+
+    Args:
+        kind: the singular noun, also the name each module must declare (``robot``, ``gait``, ``experiment``).
+        package: dotted name of the package whose modules stand on this shelf.
+        declares: dotted name of the type of what is declared, as ``module:Class``.
+        classes: whether each module declares a class derived from that type, rather than a value of it.
+        scattered: whether a module may declare several, as ``measures = (speed, slip)``, each with a name of its own,
+            and modules that declare none stand beside them.
+        named: returns the name that a thing has by itself, which must be that on the shelf.
+        read: returns what a TOML file describes, where this shelf has such files.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        package: str,
+        declares: str,
+        *,
+        classes: bool = False,
+        scattered: bool = False,
+        named: Callable[[Any], str] | None = None,
+        read: Callable[[Path], Any] | None = None,
+    ) -> None:
+        self.kind = kind
+        self._package, self._declares = package, declares
+        self._classes, self._scattered = classes, scattered
+        self._named, self._read = named, read
+        self._from_files: dict[Path, tuple[int, Any]] = {}
+        self._begun = _Begun()
+
+    def sources(self) -> dict[str, Source]:
+        """Return where each thing on the shelf comes from, by name; nothing is imported.
+
+        Raises:
+            AmbiguousName: two things have the same name.
+        """
+        return gather(self.kind, self._package, scattered=self._scattered)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.sources())
+
+    def __len__(self) -> int:
+        return len(self.sources())
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name in self.sources()
+
+    def __getitem__(self, name: str) -> T:
+        sources = self.sources()
+        if name not in sources:
+            raise UnknownName(self.kind, name, sources)
+        return self._load(sources[name])
+
+    def values(self) -> ValuesView[T]:
+        """Return what stands on the shelf and can be loaded."""
+        return _SoundValues(self)
+
+    def items(self) -> ItemsView[str, T]:
+        """Return names and things that can be loaded."""
+        return _SoundItems(self)
+
+    def sound(self) -> Iterator[tuple[str, T]]:
+        """Yield name and thing of all that can be loaded; what is a part of suchus must be."""
+        for name, source in self.sources().items():
+            try:
+                yield name, self._load(source)
+            except SuchusError:
+                if source.shipped:
+                    raise
+
+    def _load(self, source: Source) -> T:
+        """Return what a source declares.
+
+        Raises:
+            BrokenFile: it is the user's, and loading it fails.
+            InvalidDesign: it declares something else than stands on this shelf.
+        """
+        thing = self._described(source) if not source.module else self._declared(source)
+        name = self._named(thing) if self._named else source.name
+        if name != source.name:
+            raise InvalidDesign(
+                f"{source.place} declares the {self.kind} {name!r}, which must have the name by which it stands on the "
+                f"shelf, {source.name!r}."
+            )
+        return thing
+
+    def _described(self, source: Source) -> Any:
+        """Return what a TOML file says; the same value until the file changes."""
+        assert source.file is not None
+        assert self._read is not None
+        changed = source.file.stat().st_mtime_ns
+        if self._from_files.get(source.file, (None,))[0] != changed:
+            if source.name in self._begun.names:
+                raise BrokenFile(f"{source.place} starts from itself.")
+            self._begun.names.add(source.name)
+            try:
+                self._from_files[source.file] = changed, self._read(source.file)
+            except SuchusError as error:
+                raise BrokenFile(f"{source.place} cannot be loaded: {error}") from error
+            finally:
+                self._begun.names.discard(source.name)
+        return self._from_files[source.file][1]
+
+    def _declared(self, source: Source) -> Any:
+        """Return what a module declares."""
+        module = _imported(source, "" if source.attribute else self.kind)
+        try:
+            thing: Any = attrgetter(source.attribute or self.kind)(module)
+        except AttributeError:
+            thing = None
+        wanted = self._wanted()
+        fits = isinstance(thing, type) and issubclass(thing, wanted) if self._classes else isinstance(thing, wanted)
+        if not fits:
+            wanted_as = f"subclass of {_name(wanted)}" if self._classes else _name(wanted)
+            declared = "nothing" if thing is None else f"a {type(thing).__name__}"
+            raise InvalidDesign(
+                f"{source.place} must declare `{source.attribute or self.kind}`, a {wanted_as}, "
+                f"but declares {declared}; add it or move the file off the shelf."
+            )
+        return thing
+
+    def file(self, value: Any, place: str | Path = Path()) -> Path | None:
+        """Return the file that a value names, None where it names none.
+
+        A path does, and a text that is not on the shelf, if it ends in .toml or a file has that name.
+
+        Args:
+            value: as a user gives it.
+            place: the folder from which paths are read.
+        """
+        if not isinstance(value, (str, Path)) or self._read is None or (isinstance(value, str) and value in self):
+            return None
+        path = Path(place) / value
+        return path if path.suffix == ".toml" or there(path) else None
+
+    def resolve(self, value: Any, place: str | Path = Path()) -> T:
+        """Return what a value stands for: itself, what carries its name on the shelf, or what a TOML file describes.
+
+        Args:
+            value: the thing, its name, or the path of its file.
+            place: the folder from which paths are read.
+
+        Raises:
+            UnknownName: a name that is not on the shelf.
+            UnreadableFile: there is no such file, or it is no TOML.
+            MistakenFile: the file describes nothing that can be.
+            InvalidDesign: neither a name nor what stands on this shelf.
+        """
+        path = self.file(value, place)
+        if path is not None and self._read is not None:
+            found: T = self._read(path)
+            return found
+        if isinstance(value, str):
+            return self[value]
+        wanted = self._wanted()
+        if not isinstance(value, wanted):
+            raise InvalidDesign(f"{show(value)} is no {self.kind}; a {_name(wanted)} or a name of one is needed.")
+        return value
+
+    def beside(self, name: str, attribute: str, default: Any, *, module: str = "") -> Any:
+        """Return what else a module declares, such as the reasons for its numbers, or ``default``.
+
+        A TOML file declares nothing else, nor does a module of the user's that cannot be loaded.
+
+        Args:
+            name: on the shelf.
+            attribute: by which it is declared.
+            default: what is returned where nothing is declared.
+            module: of a folder in which it is looked for, if there is one; the others are then not imported.
+
+        Raises:
+            UnknownName: a name that is not on the shelf.
+        """
+        sources = self.sources()
+        if name not in sources:
+            raise UnknownName(self.kind, name, sources)
+        source = sources[name]
+        try:
+            return getattr(_imported(source, module), attribute, default) if source.module else default
+        except BrokenFile:
+            return default
+
+    def _wanted(self) -> Any:
+        path, _, cls = self._declares.partition(":")
+        wanted: Any = getattr(import_module(path), cls)
+        return wanted
+
+    def __repr__(self) -> str:
+        return f"Catalog({self.kind}: {', '.join(self)})"
+
+
+class _SoundValues(ValuesView[T]):
+    """The things on a shelf that can be loaded, one after the other."""
+
+    def __init__(self, shelf: Catalog[T]) -> None:
+        super().__init__(shelf)
+        self._shelf = shelf
+
+    def __iter__(self) -> Iterator[T]:
+        return (thing for _, thing in self._shelf.sound())
+
+
+class _SoundItems(ItemsView[str, T]):
+    """Names and things on a shelf that can be loaded, one after the other."""
+
+    def __init__(self, shelf: Catalog[T]) -> None:
+        super().__init__(shelf)
+        self._shelf = shelf
+
+    def __iter__(self) -> Iterator[tuple[str, T]]:
+        return self._shelf.sound()
+
+
+class _Begun(local):
+    """Names of the files that a thread is reading."""
+
+    def __init__(self) -> None:
+        self.names: set[str] = set()
+
+
+def _name(wanted: Any) -> str:
+    """Return the name of a type, or of each of a union."""
+    return " or ".join(one.__name__ for one in get_args(wanted) or (wanted,))
+
+
+def _imported(source: Source, part: str) -> ModuleType:
+    """Return the module that declares a part of a source: its file; in a folder that of the part, if there is one.
+
+    Another project's module of that name gives way.
+
+    Raises:
+        BrokenFile: it is the user's, and importing it fails.
+    """
+    loaded = sys.modules.get(source.module)
+    if source.file and loaded and not source.shipped and not _is_of(loaded, source.file):
+        for name in [name for name in sys.modules if f"{name}.".startswith(f"{source.module}.")]:
+            del sys.modules[name]
+    try:
+        module = import_module(source.module)
+        inside = f"{source.module}.{part}"
+        return import_module(inside) if part and hasattr(module, "__path__") and find_spec(inside) else module
+    except (Exception, SystemExit) as error:
+        if source.shipped:
+            raise
+        raise BrokenFile(f"{_where(source, error)} cannot be loaded: {_why(error)}") from error
+
+
+def _is_of(module: ModuleType, file: Path) -> bool:
+    return module.__file__ in (str(file), str(file.parent / "__init__.py"))
+
+
+def _where(source: Source, error: BaseException) -> str:
+    """Return which line of the user's an error comes from: the last one in the folder of the module."""
+    if isinstance(error, SyntaxError) and error.filename:
+        return f"{_shown(Path(error.filename))}, line {error.lineno},"
+    frames = [(Path(f.filename), f.lineno) for f in traceback.extract_tb(error.__traceback__)]
+    ours = (Path(__file__).parents[1], Path(importlib.__file__).parent)
+    theirs = [(file, line) for file, line in frames if file.is_absolute() and not any(map(file.is_relative_to, ours))]
+    if source.file:  # of a project, which may lie inside our own folder
+        root = source.file.parent
+        theirs = [(file, line) for file, line in frames if file.is_relative_to(root)]
+    elif theirs:
+        root = theirs[0][0].parent
+        theirs = [(file, line) for file, line in theirs if file.is_relative_to(root)]
+    if not theirs:
+        return source.place
+    file, line = theirs[-1]
+    return f"{_shown(file)}, line {line},"
+
+
+def _shown(file: Path) -> str:
+    project = current()
+    return project.shown(file) if project else str(file)
+
+
+def _why(error: BaseException) -> str:
+    """Return what went wrong as a sentence; our own errors are sentences already."""
+    if isinstance(error, SuchusError):
+        return str(error)
+    text = error.msg if isinstance(error, SyntaxError) else str(error)
+    return f"{type(error).__name__}{': ' * bool(text)}{' '.join(text.split())}."

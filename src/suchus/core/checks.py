@@ -1,0 +1,168 @@
+"""How a design refuses impossible numbers: all that are wrong in one part, named at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf, isfinite
+from types import TracebackType
+from typing import Any
+
+from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import misfits, show
+
+Course = float | tuple[tuple[float, float], ...]
+"""A number, or a table of time since the beginning of the run [s] and number; straight between, steady beyond."""
+
+
+@dataclass(frozen=True, slots=True)
+class Complaint:
+    """What is wrong with one field, or with several together."""
+
+    field: str
+    """Name of the field; empty where the fault lies in several together."""
+    text: str
+    """What was found and what is allowed, ready to follow the field's name."""
+
+
+class InvalidFields(InvalidDesign):
+    """A part of a design with impossible fields.
+
+    Attributes:
+        complaints: one for each mistake.
+    """
+
+    def __init__(self, owner: str, complaints: tuple[Complaint, ...]) -> None:
+        self.complaints = complaints
+        super().__init__("; ".join(f"{owner}.{c.field} {c.text}" if c.field else c.text for c in complaints) + ".")
+
+
+class Checks:
+    """Collects what is wrong with a frozen value and raises once, on leaving the ``with`` block.
+
+    Fields that hold another kind of thing than they declare are complained of too, whatever else is checked.
+
+    Args:
+        owner: what the value is called, for the message.
+        design: the value whose fields are checked.
+
+    Raises:
+        InvalidFields: on leaving the block, if anything was wrong.
+    """
+
+    def __init__(self, owner: str, design: object) -> None:
+        self._owner = owner
+        self._design = design
+        self._complaints: list[Complaint] = []
+
+    def __enter__(self) -> "Checks":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if error is None or isinstance(error, (TypeError, ValueError, AttributeError, OverflowError)):
+            complained = {complaint.field.partition("[")[0] for complaint in self._complaints}
+            self._complaints += [Complaint(*misfit) for misfit in misfits(self._design) if misfit[0] not in complained]
+            if self._complaints:
+                raise InvalidFields(self._owner, tuple(self._complaints)) from error
+
+    def number(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not a finite number of ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        if not _within(value, low, high):
+            self._complain(field, f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed")
+
+    def each(self, field: str, names: Sequence[str], low: float, high: float, unit: str) -> None:
+        """Refuse a row that has not one finite number of ``low`` to ``high`` for each name."""
+        row = getattr(self._design, field)
+        if not isinstance(row, (tuple, list)):
+            return  # reported as a misfit
+        if len(row) != len(names):
+            self._complain(field, f"has {len(row)} numbers; {', '.join(names)} need one each")
+            return
+        for i, value in enumerate(row):
+            if not _within(value, low, high):
+                self._complain(
+                    f"{field}[{i}]", f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
+                )
+
+    def whole(self, field: str, low: int, high: int) -> None:
+        """Refuse what is not a whole number of ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        if not (isinstance(value, int) and _within(value, low, high)):
+            self._complain(field, f"is {_show(value)}; a whole number of {low} to {high} is allowed")
+
+    def range(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not an increasing pair within ``low`` to ``high``."""
+        value = getattr(self._design, field)
+        pair = isinstance(value, tuple) and len(value) == 2 and all(_within(end, low, high) for end in value)
+        if not (pair and value[0] < value[1]):
+            limits = f"{_show(low)} to {_show(high, unit)}"
+            self._complain(field, f"is {_show(value, unit)}; an increasing pair within {limits} is allowed")
+
+    def rising(self, field: str, low: float, high: float, unit: str) -> None:
+        """Refuse what is not a row of at least one number, each greater than the one before, within the bounds."""
+        value = getattr(self._design, field)
+        row = isinstance(value, tuple) and value and all(_within(item, low, high) for item in value)
+        if not (row and all(a < b for a, b in pairwise(value))):
+            limits = f"{_show(low)} to {_show(high, unit)}"
+            self._complain(field, f"is {_show(value)}; increasing numbers within {limits} are needed, at least one")
+
+    def course(
+        self, field: str, low: float, high: float, unit: str, *, over: str = "time", start: float = -inf
+    ) -> None:
+        """Refuse what is neither a number within the bounds nor a table of rising times with such numbers.
+
+        Args:
+            field: holds a ``Course``.
+            low: least number.
+            high: greatest number.
+            unit: of the number.
+            over: what stands in the place of a time.
+            start: least time.
+        """
+        value = getattr(self._design, field)
+        if isinstance(value, (int, float)):
+            return self.number(field, low, high, unit)
+        rows = value if isinstance(value, tuple) else ()
+        pairs = bool(rows) and all(isinstance(row, tuple) and len(row) == 2 for row in rows)
+        times = [row[0] for row in rows] if pairs else []
+        within = pairs and all(_within(time, start, inf) and isfinite(time) for time in times)
+        within = within and all(_within(number, low, high) for _, number in rows)
+        if not (within and all(a < b for a, b in pairwise(times))):
+            limits, first = f"{_show(low)} to {_show(high, unit)}", "" if start == -inf else f" from {start:g} on"
+            self._complain(
+                field,
+                f"is {show(value)}; a number of {limits}, or pairs of a {over} and such a number are allowed, the "
+                f"{over}s rising{first}",
+            )
+        return None
+
+    def that(self, holds: bool, text: str) -> None:
+        """Refuse a combination of fields that does not hold, with a clause that says why."""
+        if not holds:
+            self._complain("", text)
+
+    def _complain(self, field: str, text: str) -> None:
+        self._complaints.append(Complaint(field, text))
+
+
+def require(owner: str, field: str, value: float, low: float, high: float, unit: str) -> None:
+    """Refuse a lone number outside its range, or one that is not a number.
+
+    Raises:
+        InvalidFields: the value is not finite, below ``low`` or above ``high``.
+    """
+    if not _within(value, low, high):
+        text = f"is {_show(value, unit)}; {_show(low)} to {_show(high, unit)} is allowed"
+        raise InvalidFields(owner, (Complaint(field, text),))
+
+
+def _within(value: Any, low: float, high: float) -> bool:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return number and low <= value <= high  # no comparison holds for what is not a number
+
+
+def _show(value: Any, unit: str = "") -> str:
+    plain = f"{value:g}" if isinstance(value, float) else show(value)
+    return f"{plain} {unit}".rstrip()

@@ -1,0 +1,171 @@
+"""Where a result comes from: what was asked, with which software, on what machine, how long it took. No dates."""
+
+import ast
+import hashlib
+import json
+import math
+import platform
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path, PurePath
+from typing import Any
+
+from suchus.core import machine
+
+_PACKAGE = Path(__file__).parents[2]
+_NO_SYNTAX = frozenset({"lineno", "col_offset", "end_lineno", "end_col_offset", "ctx", "kind", "type_ignores"})
+"""Attributes of nodes of syntax trees that are positions, or follow from the other nodes."""
+_PACKAGES = ("suchus", "mujoco", "numpy", "scipy", "numba", "xarray", "h5netcdf", "matplotlib")
+
+
+def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]:
+    """Return where a result comes from; equal runs differ in ``seconds`` at most.
+
+    Args:
+        settings: the fields of the experiment; ``seed`` among them, if it has one.
+        seconds: how long the run took, its last part where it went on from what was kept [s].
+    """
+    return {
+        "config_hash": digest(settings),
+        "versions": versions(),
+        "machine": machine.provenance(),
+        "code": package_digest(),
+        "seed": plain(settings.get("seed")),
+        "seconds": round(seconds, 3),
+    }
+
+
+def digest(settings: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of the settings, the same on every machine and in any order of keys."""
+    text = json.dumps(plain(settings), sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def versions() -> dict[str, str]:
+    """Return the version of Python and of every package that can change a number or a picture."""
+    found = {"python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+MEASURED = "measured"
+"""Folders of what was measured of contestants, which the league compares predictions with."""
+
+
+@cache
+def code_digest(*rooms: str) -> str:
+    """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
+
+    Comments, docstrings and line breaks change nothing.
+
+    Args:
+        rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
+    """
+    text = hashlib.sha256()
+    for room in rooms:
+        place = _PACKAGE / room
+        for file in [place] if place.is_file() else sorted([*place.rglob("*.py"), *place.rglob("*.toml")]):
+            source = file.read_bytes() if file.suffix == ".toml" else syntax_of(file.read_bytes())
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")
+    return text.hexdigest()
+
+
+def syntax_of(source: bytes) -> bytes:
+    """Return the syntax tree of a module as text, without docstrings: equal for sources that do the same.
+
+    The text is the same under every version of Python that has the same grammar: fields that are empty are left out,
+    since ``ast.dump`` writes them in some versions only.
+
+    Raises:
+        SyntaxError: the source is no Python.
+    """
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            node.body = [part for part in node.body if not _is_text(part)]
+    text: list[str] = []
+    _write(tree, text.append)
+    return "".join(text).encode()
+
+
+def _is_text(statement: ast.stmt) -> bool:
+    """Return whether a statement is a text alone: a docstring of a module, class, function or field."""
+    return (
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Constant)
+        and isinstance(statement.value.value, str)
+    )
+
+
+def _write(node: ast.AST, put: Callable[[str], None]) -> None:
+    """Write a syntax tree without positions."""
+    put(f"{type(node).__name__}(")
+    for name, value in node.__dict__.items():
+        if name in _NO_SYNTAX or value is None or value == []:
+            continue
+        put(f"{name}=")
+        for part in value if isinstance(value, list) else (value,):
+            if isinstance(part, ast.AST):
+                _write(part, put)
+            else:
+                put(repr(part))
+            put(",")
+    put(")")
+
+
+@cache
+def package_digest() -> str:
+    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results.
+
+    Files of ``MEASURED`` are left out: no result may depend on them, and nothing opens them before it is sealed.
+    """
+    text = hashlib.sha256()
+    for file in sorted(_PACKAGE.rglob("*")):
+        if not {"__pycache__", MEASURED} & {*file.relative_to(_PACKAGE).parts} and file.is_file():
+            text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return text.hexdigest()[:12]
+
+
+def made_alike(stored: Mapping[str, Any], settings: Mapping[str, Any]) -> bool:
+    """Return whether a result has these settings, code, versions and arithmetic, so that a run would repeat it.
+
+    Args:
+        stored: what ``provenance`` returned for it.
+        settings: the fields of the experiment.
+    """
+    now, there = provenance(settings, seconds=0.0), stored.get("machine")
+    same_arithmetic = isinstance(there, dict) and there.get("arithmetic") == now["machine"]["arithmetic"]
+    return same_arithmetic and all(stored.get(name) == now[name] for name in ("config_hash", "versions", "code"))
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON can hold it: dataclasses as objects, arrays and tuples as lists.
+
+    Numbers that are not finite become the words ``nan``, ``inf`` and ``-inf``.
+
+    Raises:
+        TypeError: the value has no such form.
+    """
+    if value is None or isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else str(float(value))
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(item) for item in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted((plain(item) for item in value), key=repr)
+    if isinstance(value, PurePath):
+        return value.as_posix()
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    raise TypeError(f"a {type(value).__name__} cannot be written as JSON: {value!r}")

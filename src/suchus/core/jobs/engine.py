@@ -1,0 +1,152 @@
+"""The engine: every piece of a job that is not in its store yet, wherever it is done, each kept as it is finished."""
+
+import time
+from collections.abc import Callable
+from contextlib import closing
+
+from suchus.core.errors import SuchusError
+from suchus.core.jobs.job import Died, Item, Job, Result, ResultStore
+from suchus.core.jobs.places import HERE, Place
+from suchus.core.progress import Progress, silent
+
+
+class ProcessDied(SuchusError, ChildProcessError):
+    """A piece of a job whose processes died again and again."""
+
+
+def finish(
+    job: Job[Item, Result],
+    store: ResultStore[Result],
+    *,
+    place: Place = HERE,
+    progress: Progress = silent,
+    each: Callable[[int], Progress] | None = None,
+    finished: Callable[[int, Result], None] | None = None,
+) -> None:
+    """Do every piece of a job that is not in its store yet, and keep each result as soon as it is there.
+
+    Whatever stops the program, Ctrl-C and a kill included, only the pieces that were under way are lost. Started again
+    it goes on. Where the pieces are done, and how many at once, changes no byte.
+
+    Args:
+        job: what is to be done.
+        store: where the results stay.
+        place: where the pieces are done, and how many at once.
+        progress: told how much of the whole job is done.
+        each: returns what is told how far a piece is; called with its number when the piece is begun.
+        finished: called with the number of a piece and its result, when that is kept.
+
+    Raises:
+        SuchusError: what the work of a piece raised.
+        Unwritable: a result cannot be kept.
+        ProcessDied: the processes at a piece died as often as it was begun.
+        NoCluster: the cluster was lost.
+        IncompatibleRecord: a worker has other versions, so that its bytes could differ.
+    """
+    numbers = range(len(job.items))
+    missing = [number for number in numbers if not store.has(number)]
+    there = sorted(set(numbers) - set(missing))
+    tally = Tally(
+        sum(job.size(number) for number in numbers),
+        job.unit,
+        progress,
+        done=sum(job.size(number) for number in there),
+        failed=0 if job.failures is None else sum(job.failed(store.get(number)) for number in there),
+    )
+
+    def begun(i: int) -> Progress:
+        number = missing[i]
+        own = silent if each is None else each(number)
+
+        def tell(stage: str, share: float) -> None:
+            own(stage, share)
+            tally.under_way(number, share * job.size(number))
+
+        return tell
+
+    with closing(place.results(job, [job.items[number] for number in missing], begun)) as results:
+        for i, made in results:
+            number = missing[i]
+            result = _of_the_dead(job, number, made) if isinstance(made, Died) else made
+            store.put(number, result)
+            tally.finished(number, job.size(number), failed=job.failed(result))
+            if finished is not None:
+                finished(number, result)
+
+
+def _of_the_dead(job: Job[Item, Result], number: int, died: Died) -> Result:
+    """Return the result of a piece whose processes died.
+
+    Raises:
+        ProcessDied: the job has none.
+    """
+    if job.died is not None:
+        return job.died(job.items[number], died.exit_code)
+    raise ProcessDied(
+        f"the process at {job.piece} {number} of {job.kind} {job.name!r} ended with exit code {died.exit_code}, "
+        f"{job.tries} times; what was finished is kept: where memory was short, fewer processes (--jobs) or smaller "
+        "pieces take less of it."
+    )
+
+
+class Tally:
+    """Counts what is done of a whole, of earlier starts too, and the time of this one.
+
+    Args:
+        total: all that is to be done, in units [-].
+        unit: what is counted, as ``runs``.
+        progress: told, whenever the count changes, the count, the rate and the time that is left as a stage, and the
+            share of the total that is done.
+        done: of an earlier start [-].
+        failed: of those that are done, how many failed [-].
+    """
+
+    def __init__(
+        self, total: float, unit: str, progress: Progress = silent, *, done: float = 0.0, failed: int = 0
+    ) -> None:
+        self.done, self.failed = done, failed
+        self.note = ""
+        """What else is told, behind the count."""
+        self._total, self._unit, self._progress = total, unit, progress
+        self._before, self._start = done, time.perf_counter()
+        self._under_way: dict[int, float] = {}
+
+    def under_way(self, number: int, units: float) -> None:
+        """Tell how many units of a piece are done [-]; several pieces may be under way at once."""
+        self._under_way[number] = units
+        self._tell()
+
+    def finished(self, number: int, units: float, *, failed: int = 0, fresh: bool = True) -> None:
+        """Count a piece.
+
+        Args:
+            number: of the piece.
+            units: all that it has [-].
+            failed: how many of them failed [-].
+            fresh: whether this start did it; what an earlier one did says nothing of the rate.
+        """
+        self._under_way.pop(number, None)
+        self.done += units
+        self.failed += failed
+        self._before += 0.0 if fresh else units
+        self._tell()
+
+    def _tell(self) -> None:
+        done = self.done + sum(self._under_way.values())
+        seconds = time.perf_counter() - self._start
+        rate = (done - self._before) / seconds if seconds > 0 else 0.0
+        words = [f"{int(done)} of {self._total:g} {self._unit}"]
+        if rate > 0:
+            words.append(f"{rate:.1f}/s" if rate >= 0.1 else f"{3600 * rate:.1f}/h")
+            words.append(f"{_duration(max(self._total - done, 0.0) / rate)} left")
+        if self.failed:
+            words.append(f"{self.failed} failed")
+        if self.note:
+            words.append(self.note)
+        self._progress(", ".join(words), min(done / self._total, 1.0))
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

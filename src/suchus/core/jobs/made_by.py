@@ -1,0 +1,41 @@
+"""What makes the bytes of a result: versions of libraries, and the digest of our own source."""
+
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from suchus.core.files import code_digest, versions
+from suchus.core.sources import current
+
+_DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
+MADE_BY = (
+    "blueprint", "catalog.py", "control", "design", "fault.py", "faults", "gaits", "hydro", "kinds.py", "kinematics",
+    "land", "metrics", "model", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py",
+    "sources.py", *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+)  # fmt: skip
+"""Whose code decides the numbers of a run on land."""
+FLOW = (
+    "blueprint", "catalog.py", "design", "fingerprint.py", "flow", "hydro", "isosurface.py", "kinds.py", "kinematics",
+    "metrics", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
+)  # fmt: skip
+"""Whose code decides the numbers of a swim by CFD."""
+
+
+def deciding(rooms: Sequence[str] = MADE_BY, libraries: Sequence[str] = ()) -> dict[str, str]:
+    """Return the versions of what makes the bytes of a result, the files of the user's project among them.
+
+    Args:
+        rooms: whose source decides, see ``record.code_digest``.
+        libraries: further packages whose versions decide.
+    """
+    found = versions()
+    makers = {name: found.get(name, "not installed") for name in _DECIDING}
+    makers["source"] = code_digest(*rooms)[:12]
+    project = current()
+    if project is not None:
+        makers["project"] = project.digest()
+    for name in libraries:
+        try:
+            makers[name] = version(name)
+        except PackageNotFoundError:
+            makers[name] = "not installed"
+    return makers

@@ -1,0 +1,222 @@
+"""Where the pieces of a job are done: in this process, in processes of this machine, or on a Dask cluster."""
+
+import sys
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from itertools import count
+from queue import SimpleQueue
+from threading import Event, Thread
+from typing import Any, NamedTuple, Protocol
+
+from suchus.core import threads
+from suchus.core.errors import OutsideLimits
+from suchus.core.jobs import cluster, processes
+from suchus.core.jobs.job import AnyJob, Died
+from suchus.core.progress import Progress, silent
+
+Begun = Callable[[int], Progress]
+"""Called with the number of a piece that is begun; returns what is told how far it is."""
+Results = Generator[tuple[int, Any], None, None]
+"""Numbers of pieces and their results, ``Died`` where there is none, as they are finished, in any order."""
+_SWITCH = 5e-4  # [s]; Python's own 5 ms are two physics steps of a batch, for which another thread would wait each time
+
+
+class Place(Protocol):
+    """Does pieces of work, some at once; which and how many changes no result."""
+
+    @property
+    def at_once(self) -> int:
+        """Pieces that are done at once [-]."""
+
+    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+        """Do the work of a job for each item, and yield each result as it is finished.
+
+        What was begun and is not finished is stopped when the iteration ends early, by an error, Ctrl-C or ``close``.
+
+        Raises:
+            SuchusError: what the work of a piece raised, or that the place is lost.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class ThisProcess:
+    """Pieces in this process, side by side in threads that share those of the physics.
+
+    Two of a study at once keep both cores of a machine busy: one is built, measured and packed by Python, which runs
+    in one thread at a time, while MuJoCo steps the other.
+    """
+
+    at_once: int = 1
+    """Pieces that are done at once [-]; with one all is done in the thread that asks."""
+
+    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+        """Yield the results, with one piece at once in the order of the items; see ``Place``."""
+        side_by_side = min(self.at_once, len(items), threads.count())
+        if side_by_side > 1:
+            yield from _in_threads(job, items, begun, side_by_side)
+        else:
+            yield from ((i, job.work(item, begun(i))) for i, item in enumerate(items))
+
+
+@dataclass(frozen=True, slots=True)
+class Processes:
+    """Pieces in processes of this machine, which take one piece after the other.
+
+    Each imports the module that was started, as all of Python's own processes do: a script that asks for them needs
+    its ``if __name__ == "__main__":``.
+    """
+
+    at_once: int
+    """Number of processes [-]."""
+    each: int | None = None
+    """Threads that each of them takes [-]; an equal share of all if None."""
+
+    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+        """Yield the results; a process that dies takes its piece with it and nothing else, see ``Place``."""
+        told: dict[int, Progress] = {}
+        with closing(processes.side_by_side(job.work, items, self.at_once, tries=job.tries, each=self.each)) as heard:
+            for number, said in heard:
+                if isinstance(said, processes.Begun):
+                    told[number] = begun(number)
+                elif isinstance(said, processes.Far):
+                    told[number](*said)
+                else:
+                    yield number, said if isinstance(said, Died) else said.value
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """Pieces on the workers of a Dask cluster, which are told of when they are finished and not before."""
+
+    client: Any
+    """A ``distributed.Client``."""
+
+    @property
+    def at_once(self) -> int:
+        """Pieces that the workers do at once [-]."""
+        return cluster.cores(self.client)
+
+    def results(self, job: AnyJob, items: Sequence[Any], begun: Begun) -> Results:
+        """Yield the results; a worker that is lost loses its piece, which another one begins again, see ``Place``."""
+        del begun
+        work = partial(_silently, job.work)
+        yield from cluster.spread(work, items, self.client, name=job.name, versions=job.versions, retries=job.tries)
+
+
+HERE = ThisProcess()
+"""One piece after the other, in this process."""
+
+
+def place_for(what: str, *, client: Any = None, jobs: int = 1, each: int | None = None, here: Place = HERE) -> Place:
+    """Return where a job is done.
+
+    Args:
+        what: what the job is called in messages, as ``a study``.
+        client: a ``distributed.Client``, whose workers then do it; None for this machine.
+        jobs: number of processes of this machine; with 1 this process does it [-].
+        each: threads that each of several processes takes [-]; an equal share of all if None.
+        here: how this process does it.
+
+    Raises:
+        OutsideLimits: less than one process is asked for, or several beside a cluster.
+    """
+    if jobs < 1:
+        raise OutsideLimits(f"{what} in {jobs} processes cannot be; at least 1 is needed.")
+    if jobs > 1 and client is not None:
+        raise OutsideLimits(f"{what} takes a cluster or {jobs} processes of this machine, not both; choose one.")
+    if client is not None:
+        return Cluster(client)
+    return Processes(jobs, each) if jobs > 1 else here
+
+
+def _silently(work: Callable[[Any, Progress], Any], item: Any) -> Any:
+    return work(item, silent)
+
+
+# --- threads of this process --------------------------------------------------------------------------------------
+
+
+class _Stopped(BaseException):
+    """A thread is to leave its piece; no piece catches it, since it is no ``Exception``."""
+
+
+class _News(NamedTuple):
+    """What a thread says of the piece that it is at."""
+
+    number: int
+    """Of the piece."""
+    kind: str
+    """``begun``, ``far``, ``done`` or ``raised``."""
+    value: Any = None
+    """Nothing, the stage and the share, the result, or the error."""
+
+
+def _in_threads(job: AnyJob, items: Sequence[Any], begun: Begun, side_by_side: int) -> Results:
+    """Do pieces in threads; everything is told, and every result yielded, in the thread that asks."""
+    news, stop, numbers = SimpleQueue[_News](), Event(), count()
+    workers = [
+        Thread(target=_work, args=(job.work, items, numbers, news, stop, side_by_side), daemon=True)
+        for _ in range(side_by_side)
+    ]
+    told: dict[int, Progress] = {}
+    finished = 0
+    with _quick_switches():
+        try:
+            for worker in workers:
+                worker.start()
+            while finished < len(items):
+                number, kind, value = news.get()
+                if kind == "begun":
+                    told[number] = begun(number)
+                elif kind == "far":
+                    told[number](*value)
+                elif kind == "done":
+                    finished += 1
+                    yield number, value
+                else:
+                    raise value
+        finally:
+            stop.set()
+            for worker in workers:
+                worker.join()
+
+
+def _work(
+    work: Callable[[Any, Progress], Any],
+    items: Sequence[Any],
+    numbers: Iterator[int],
+    news: "SimpleQueue[_News]",
+    stop: Event,
+    side_by_side: int,
+) -> None:
+    """Do one piece after the other until none is left; the threads of the physics are shared by all that do so."""
+    alone = len(items) - len(items) % side_by_side  # of the pieces from here on there are fewer than threads
+
+    def tell(number: int, stage: str, share: float) -> None:
+        if stop.is_set():
+            raise _Stopped
+        news.put(_News(number, "far", (stage, share)))
+
+    while not stop.is_set() and (number := next(numbers)) < len(items):
+        news.put(_News(number, "begun"))
+        try:
+            with threads.shared(side_by_side if number < alone else len(items) - alone):
+                news.put(_News(number, "done", work(items[number], partial(tell, number))))
+        except _Stopped:
+            return
+        except BaseException as error:  # to be raised where the work was asked for
+            news.put(_News(number, "raised", error))
+            return
+
+
+@contextmanager
+def _quick_switches() -> Iterator[None]:
+    """Let a thread that comes back from the physics go on soon, whatever Python the others are at."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(min(before, _SWITCH))
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)

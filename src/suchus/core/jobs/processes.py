@@ -1,0 +1,217 @@
+"""Pieces of work side by side, in a few processes of this machine that take one after the other."""
+
+import os
+import signal
+import time
+import warnings
+from collections import Counter
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import get_context, resource_tracker
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any, NamedTuple
+
+from suchus.core import threads
+from suchus.core.errors import Doubtful, NoMemory, SuchusError
+from suchus.core.jobs.job import Died
+from suchus.core.progress import Progress
+from suchus.core.stopping import end_with_parent
+
+_EVERY = 0.1  # [s]; between two reports of one stage
+_PATIENCE = 10.0  # [s]; for a process that was told to stop
+_GONE = (EOFError, ConnectionError)  # what a pipe says when the other end has died
+
+
+class Begun(NamedTuple):
+    """A process has taken a piece."""
+
+
+class Far(NamedTuple):
+    """How far a piece is."""
+
+    stage: str
+    """What it is at."""
+    share: float
+    """Of the stage [-]."""
+
+
+class Done(NamedTuple):
+    """A piece is finished."""
+
+    value: Any
+    """The result of the piece."""
+
+
+class _Refused(NamedTuple):
+    """A piece ended with one of our own errors."""
+
+    error: SuchusError
+    """The refusal, to be raised where the work was asked for."""
+
+
+class _Warned(NamedTuple):
+    """A piece warns."""
+
+    warning: Warning
+    """Of what; it is said where the work was asked for, so that what many pieces say is said once."""
+
+
+@dataclass(slots=True, kw_only=True)
+class Worker:
+    """A process, and what it is doing."""
+
+    process: BaseProcess
+    """The process."""
+    pipe: Connection
+    """To talk with it."""
+    piece: int | None = None
+    """The number of the piece that it is at; None: it waits for one."""
+
+
+def side_by_side(
+    work: Callable[[Any, Progress], Any], items: Sequence[Any], jobs: int, *, tries: int = 1, each: int | None = None
+) -> Generator[tuple[int, Begun | Far | Done | Died], None, None]:
+    """Do one piece of work for each item in a few processes, and yield what is heard of the pieces as it is heard.
+
+    Pieces are begun in the order given. A process that dies takes its piece with it and nothing else. When the
+    iteration ends early, by Ctrl-C, an error or ``close``, busy processes are killed; those of a process that was
+    killed itself end with their piece, whose result is lost.
+
+    Args:
+        work: makes the result of an item, and tells how far it is; it, items and results travel as pickles.
+        items: what differs between the pieces.
+        jobs: number of processes.
+        tries: how often a piece is begun at most, whose process dies [-].
+        each: threads that each process takes [-]; an equal share of all if None.
+
+    Yields:
+        The number of a piece, and what is heard of it: each ends with ``Done`` or ``Died``.
+
+    Raises:
+        SuchusError: what the work of a piece raised.
+    """
+    left, begun = list(range(len(items))), Counter[int]()
+    jobs = min(jobs, len(left))
+    mine = max(threads.count() // max(jobs, 1), 1) if each is None else each
+    workers = [hire(work, mine) for _ in range(jobs)]
+
+    def give(worker: Worker) -> int:
+        worker.piece = left.pop(0)
+        begun[worker.piece] += 1
+        with suppress(*_GONE):  # it is heard of then
+            worker.pipe.send(items[worker.piece])
+        return worker.piece
+
+    try:
+        for worker in workers:
+            yield give(worker), Begun()
+        while busy := {worker.pipe: worker for worker in workers if worker.piece is not None}:
+            for pipe in wait(list(busy)):
+                worker = busy[pipe]  # type: ignore[index]  # only connections are waited for
+                piece, said = worker.piece, _heard(worker)
+                assert piece is not None
+                if isinstance(said, _Refused):
+                    raise said.error
+                if isinstance(said, _Warned):
+                    warnings.warn(said.warning, stacklevel=2)
+                    continue
+                if isinstance(said, Died) and begun[piece] < tries:
+                    left.insert(0, piece)
+                else:
+                    yield piece, said
+                if isinstance(said, Far):
+                    continue
+                worker.piece = None
+                if left and isinstance(said, Died):
+                    workers.remove(worker)
+                    workers.append(worker := hire(work, mine))
+                if left:
+                    yield give(worker), Begun()
+    finally:
+        dismiss(workers)
+
+
+def hire(work: Callable[[Any, Progress], Any], each: int) -> Worker:
+    """Start a process that takes ``each`` threads."""
+    spawning = get_context("spawn")
+    here, there = spawning.Pipe()
+    process = spawning.Process(target=_work, args=(there, work, each), daemon=True)
+    with deaf():
+        process.start()
+    there.close()
+    return Worker(process=process, pipe=here)
+
+
+def dismiss(workers: Sequence[Worker]) -> None:
+    """Let all processes end: the idle by themselves, the busy at once."""
+    for worker in workers:
+        worker.pipe.close()
+        if worker.piece is not None:
+            worker.process.kill()
+    for worker in workers:
+        worker.process.join(_PATIENCE)
+
+
+def _heard(worker: Worker) -> Far | Done | Died | _Refused | _Warned:
+    """Return what a busy worker says."""
+    try:
+        said: Far | Done | _Refused | _Warned = worker.pipe.recv()
+    except _GONE:
+        worker.process.join(_PATIENCE)
+        return Died(worker.process.exitcode)
+    return said
+
+
+@contextmanager
+def deaf() -> Iterator[None]:
+    """Let processes that are started inside never hear Ctrl-C, which a terminal tells to all of them at once."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # which would let them hear it again, were it started with the first of them
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+# --- in the process of its own ---------------------------------------------------------------------------------
+
+
+def _work(pipe: Connection, work: Callable[[Any, Progress], Any], each: int) -> None:
+    """Take one piece after the other until the other end of the pipe is closed."""
+    os.environ["SUCHUS_THREADS"] = str(each)
+    end_with_parent()
+    with suppress(*_GONE), warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_, **__: pipe.send(_Warned(_as_warning(message)))
+        while True:
+            item = pipe.recv()
+            try:
+                said: Done | _Refused = Done(work(item, _sender(pipe)))
+            except SuchusError as error:
+                said = _Refused(error)
+            except MemoryError:
+                said = _Refused(NoMemory())
+            pipe.send(said)
+
+
+def _as_warning(message: Warning | str) -> Warning:
+    """Return a warning that the other process can read, whatever class of the user's it is."""
+    return message if isinstance(message, Doubtful) else UserWarning(str(message))
+
+
+def _sender(pipe: Connection) -> Progress:
+    """Return what tells the other process now and then."""
+    last_stage, last = "", -_EVERY
+
+    def tell(stage: str, share: float) -> None:
+        nonlocal last_stage, last
+        now = time.monotonic()
+        if stage != last_stage or now - last > _EVERY:
+            last_stage, last = stage, now
+            pipe.send(Far(stage, share))
+
+    return tell

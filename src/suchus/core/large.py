@@ -1,0 +1,85 @@
+"""Work that is larger than the machine bears, or than somebody may have meant: estimated and refused before it begins.
+
+An estimate is of the size of the thing, not exact. What cannot be held is refused; what takes more than half of the
+memory, or more than a day of a processor, waits until somebody says ``--large``.
+"""
+
+import os
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from suchus.core.errors import InvalidDesign
+
+OPTION = "--large"
+"""Option of every command that lets large work begin."""
+WANTED = "SUCHUS_LARGE"
+"""Environment variable that says the same, to the processes that help too."""
+SHARE = 0.5
+"""Share of the memory from which on it is asked for [-]."""
+LONG = 86400.0
+"""Processor time from which on it is asked for [s]."""
+
+
+@contextmanager
+def allowing(asked: bool = True) -> Iterator[None]:
+    """While the block runs, let large work begin, if asked."""
+    before = os.environ.get(WANTED)
+    if asked:
+        os.environ[WANTED] = "1"
+    try:
+        yield
+    finally:
+        if asked:
+            os.environ.pop(WANTED)
+            os.environ.update({} if before is None else {WANTED: before})
+
+
+def allowed() -> bool:
+    """Return whether large work may begin."""
+    return os.environ.get(WANTED, "") not in ("", "0")
+
+
+def memory() -> int | None:
+    """Return the memory of this process at most: the machine's, or less by ``ulimit``; None where none says [bytes]."""
+    try:
+        whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        whole = None
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    found = [size for size in (whole, None if limit == resource.RLIM_INFINITY else limit) if size is not None]
+    return min(found, default=None)
+
+
+def check_memory(what: str, need: float, remedy: str) -> None:
+    """Refuse what the memory cannot hold, or not beside much else unless it is allowed.
+
+    Args:
+        what: what takes the memory, as the subject of a sentence in the singular.
+        need: an estimate [bytes].
+        remedy: what to do instead.
+
+    Raises:
+        InvalidDesign: with both numbers.
+    """
+    have = memory()
+    if have is None or need <= SHARE * have or (allowed() and need <= have):
+        return
+    said = f"{what} takes some {need / 1e9:.3g} GB of memory, and this machine has {have / 1e9:.3g} GB"
+    raise InvalidDesign(f"{said}; {remedy}{'' if need > have else f', or say {OPTION} to begin all the same'}.")
+
+
+def check_work(what: str, seconds: float, remedy: str) -> None:
+    """Refuse what would compute for more than a day, unless it is allowed.
+
+    Args:
+        what: what computes, as the subject of a sentence in the singular.
+        seconds: an estimate of the processor time [s].
+        remedy: what to do instead.
+
+    Raises:
+        InvalidDesign: with the estimate.
+    """
+    if seconds > LONG and not allowed():
+        said = f"{what} takes some {seconds / LONG:.3g} days of a processor"
+        raise InvalidDesign(f"{said}; {remedy}, or say {OPTION} to begin all the same.")

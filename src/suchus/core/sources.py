@@ -1,0 +1,437 @@
+"""Where things on the shelves come from: the package, a project folder of the user's, other packages of the user's.
+
+A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
+``controllers`` and ``measures`` hold files as the shelves of the package do; ``suchus.toml`` names files
+that stand elsewhere in the folder. A file is read, or a module run, when its name is asked for.
+
+Modules of a project are imported as modules of the shelf, ``suchus.sim.faults.tired``, so that values travel between
+processes as pickles, and a file means the same in the package and in a project.
+"""
+
+import ast
+import hashlib
+import os
+import re
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from functools import cache, lru_cache
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec, spec_from_file_location
+from pathlib import Path
+from pkgutil import iter_modules
+from types import ModuleType
+from typing import Any
+
+from suchus.core.errors import AmbiguousName, UnreadableFile
+from suchus.core.reading import read_toml
+
+VARIABLE = "SUCHUS_PROJECT"
+"""Variable of the environment that names the project folder; empty for none."""
+SETTINGS = "suchus.toml"
+"""File that makes a folder a project."""
+SHELVES: Mapping[str, str] = {
+    "robots": "suchus.robot.robots",
+    "gaits": "suchus.robot.gaits",
+    "faults": "suchus.sim.faults",
+    "experiments": "suchus.experiments.catalog",
+    "controllers": "suchus.robot.control",
+    "measures": "suchus.sim.metrics",
+    "contestants": "suchus.contestants",
+}
+"""The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robot.robots`` and so on."""
+AS_TOML = ("robots", "gaits")
+"""Shelves on which a TOML file can stand."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """Where one thing on a shelf comes from."""
+
+    name: str
+    """On the shelf."""
+    place: str
+    """The file or the entry point, as messages name it."""
+    module: str = ""
+    """Dotted name of the module that declares it; empty for a TOML file."""
+    attribute: str = ""
+    """Name in the module; empty for what the shelf's modules declare."""
+    file: Path | None = None
+    """The file, where there is one that is known."""
+    shipped: bool = False
+    """Whether it is a part of suchus."""
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """A folder of the user's own robots, gaits, faults, experiments, controllers and measures."""
+
+    folder: Path
+    """The folder, absolute."""
+    named: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
+    """Files that ``suchus.toml`` names, by shelf."""
+
+    def files(self, shelf: str) -> Iterator[tuple[str, Path]]:
+        """Yield name and file of all that stands on a shelf, the files of modules that begin with ``_`` included.
+
+        Args:
+            shelf: one of ``SHELVES``.
+        """
+        folder = self.folder / shelf
+        inside = sorted(folder.iterdir()) if folder.is_dir() else []
+        for path in (*inside, *self.named.get(shelf, ())):
+            if path.suffix in _suffixes(shelf) and path.is_file():
+                yield path.stem, path
+            elif (path / "__init__.py").is_file():
+                yield path.name, _declaring(path, shelf.removesuffix("s"))
+
+    def shown(self, path: Path) -> str:
+        """Return a path as messages name it: from the project's folder on."""
+        return path.relative_to(self.folder).as_posix() if path.is_relative_to(self.folder) else str(path)
+
+    def digest(self) -> str:
+        """Return the first 12 digits of the SHA-256 of all its shelves' files."""
+        text = hashlib.sha256()
+        for shelf in SHELVES:
+            for name, file in self.files(shelf):
+                for part in sorted(file.parent.rglob("*.py")) if _is_folder(name, file) else [file]:
+                    text.update(self.shown(part).encode() + b"\0" + part.read_bytes() + b"\0")
+        return text.hexdigest()[:12]
+
+
+def project(folder: str | os.PathLike[str] | None) -> Project | None:
+    """Let the shelves hold what stands in a project folder, in this process and in those that it starts.
+
+    Without a call the project is the folder that the variable ``SUCHUS_PROJECT`` names, else the working folder if it
+    has a ``suchus.toml``.
+
+    Args:
+        folder: the project's; None for none.
+
+    Raises:
+        UnreadableFile: there is no such folder, or its ``suchus.toml`` says what cannot be.
+    """
+    if folder is None:
+        os.environ[VARIABLE] = ""
+        return None
+    opened = _opened(Path(folder))
+    os.environ[VARIABLE] = str(opened.folder)
+    return opened
+
+
+def current() -> Project | None:
+    """Return the project of this process; None where there is none.
+
+    Raises:
+        UnreadableFile: the folder is not there, or its ``suchus.toml`` says what cannot be.
+    """
+    told = os.environ.get(VARIABLE)
+    if told is not None:
+        return _opened(Path(told)) if told else None
+    return _opened(Path()) if Path(SETTINGS).is_file() else None
+
+
+@contextmanager
+def within(folder: str | None) -> Iterator[None]:
+    """Let a project folder be that of this process while the block runs; with None the project stays.
+
+    Raises:
+        UnreadableFile: there is no such folder, or its ``suchus.toml`` says what cannot be.
+    """
+    before = os.environ.get(VARIABLE)
+    if folder is not None:
+        project(folder)
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop(VARIABLE, None)
+        else:
+            os.environ[VARIABLE] = before
+
+
+class Carried:
+    """A value that takes the project of this process along when it is sent to another process as a pickle.
+
+    There the project is opened before the value is read, whose types may stand in it. A process that was told a project
+    by ``SUCHUS_PROJECT`` when it started keeps that one, as on a machine where the folder has another path.
+
+    Args:
+        value: what is sent.
+    """
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        opened = current()
+        return _arrived, (_Opening(str(opened.folder) if opened else None), self.value)
+
+
+@dataclass(frozen=True, slots=True)
+class _Opening:
+    """A project folder that is opened where this is read from a pickle."""
+
+    folder: str | None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _open_here, (self.folder,)
+
+
+_AT_START = os.environ.get(VARIABLE)
+
+
+def _open_here(folder: str | None) -> None:
+    if _AT_START is None:
+        project(folder)
+
+
+def _arrived(_: None, value: Any) -> Any:
+    return value
+
+
+def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Source]:
+    """Return all that stands on a shelf by name, sorted by name; nothing is imported.
+
+    Args:
+        kind: what each module declares, as ``robot``; the shelf's folder in a project is ``robots``.
+        package: dotted name of the shelf's package.
+        scattered: whether things have names of their own, and modules that declare none stand beside them.
+
+    Raises:
+        AmbiguousName: two things have the same name.
+        UnreadableFile: the project's folder is not there, or its ``suchus.toml`` says what cannot be.
+    """
+    there: dict[str, Source] = {}
+    for source in (*_shipped(package, kind, scattered), *_of_project(package, kind, scattered), *_plugged(kind)):
+        if source.name in there:
+            raise AmbiguousName(kind, source.name, there[source.name].place, source.place)
+        there[source.name] = source
+    return dict(sorted(there.items()))
+
+
+def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
+    """Yield what the package itself has on a shelf."""
+    if not scattered:
+        yield from _one_each(package, kind, _stamped(package))
+        return
+    for name, file in _modules(package, kind).items():
+        if not name.startswith("_"):
+            for thing, attribute in _names(file, kind):
+                yield _of_package(package, name, file, thing, attribute)
+
+
+@lru_cache(maxsize=64)
+def _one_each(package: str, kind: str, stamped: "_Stamped") -> tuple[Source, ...]:
+    """Return what the modules of a package declare, one thing each."""
+    files = _files(kind, stamped).items()
+    return tuple(_of_package(package, name, file, name, "") for name, file in files if not name.startswith("_"))
+
+
+def _of_package(package: str, name: str, file: Path, thing: str, attribute: str) -> Source:
+    place = f"{package.replace('.', '/')}/{f'{name}/{file.name}' if _is_folder(name, file) else file.name}"
+    return Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file, shipped=True)
+
+
+def _modules(package: str, kind: str) -> Mapping[str, Path]:
+    """Return the files of a package's modules by name, those of folders that declare the kind; nothing is imported."""
+    return _files(kind, _stamped(package))
+
+
+_Stamped = tuple[tuple[str, int, tuple[int, ...]], ...]
+"""Folders of a package, when each was changed and when those in it were [ns]: what lies in them is as it was then."""
+
+
+def _stamped(package: str) -> _Stamped:
+    if package in sys.modules:
+        folders = list(sys.modules[package].__path__)
+    else:
+        spec = find_spec(package)
+        folders = list(spec.submodule_search_locations or ()) if spec else []
+    found = []
+    for folder in folders:
+        changed = os.stat(folder).st_mtime_ns  # noqa: PTH116  a shelf is asked some thousand times a minute
+        inside = (os.stat(f"{folder}/{name}").st_mtime_ns for name, is_folder in _listed(folder, changed) if is_folder)  # noqa: PTH116
+        found.append((folder, changed, tuple(inside)))
+    return tuple(found)
+
+
+@lru_cache(maxsize=64)
+def _files(kind: str, stamped: _Stamped) -> Mapping[str, Path]:
+    return {
+        name: _declaring(Path(place) / name, kind) if is_folder else Path(place) / f"{name}.py"
+        for place, changed, _ in stamped
+        for name, is_folder in _listed(place, changed)
+    }
+
+
+@lru_cache(maxsize=64)
+def _listed(folder: str, _: int) -> tuple[tuple[str, bool], ...]:
+    """Return the modules of a package's folder, and which are folders; read anew when the folder has changed."""
+    return tuple((info.name, info.ispkg) for info in iter_modules([folder]))
+
+
+def _declaring(folder: Path, kind: str) -> Path:
+    """Return the file of a folder that declares a kind: its module of that name, or its own."""
+    inside = folder / f"{kind}.py"
+    return inside if inside.is_file() else folder / "__init__.py"
+
+
+def _is_folder(name: str, file: Path) -> bool:
+    """Return whether what has a name is a folder, of which the file is a module."""
+    return file.stem == "__init__" or (file.parent.name == name != file.stem)
+
+
+def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
+    """Yield what the project has on a shelf.
+
+    Raises:
+        AmbiguousName: a module has the name of one of the package, which would be imported in its place.
+    """
+    opened = current()
+    if opened is None:
+        return
+    taken = _modules(package, kind)
+    for name, file in opened.files(f"{kind}s"):
+        place = opened.shown(file)
+        if file.suffix == ".py" and name in taken:
+            raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", place)
+        if file.suffix == ".toml":
+            yield Source(name=name, place=place, file=file)
+        elif not name.startswith("_"):
+            for thing, attribute in _names(file, kind) if scattered else ((name, ""),):
+                yield Source(name=thing, place=place, module=f"{package}.{name}", attribute=attribute, file=file)
+
+
+def _plugged(kind: str) -> Iterator[Source]:
+    """Yield what other installed packages put on a shelf by their entry points."""
+    for point in _entry_points().get(f"suchus.{kind}s", ()):
+        owner = point.dist.name if point.dist else "an installed package"
+        place = f"the entry point {point.name} = {point.value!r} of {owner}"
+        yield Source(name=point.name, place=place, module=point.module, attribute=point.attr)
+
+
+@cache
+def _entry_points() -> Mapping[str, Sequence[Any]]:
+    """Return the entry points of the shelves by group; reading those of all packages takes 20 ms."""
+    from importlib.metadata import entry_points  # noqa: PLC0415  half of the start of a program that has no shelf
+
+    every = entry_points()
+    return {group: tuple(every.select(group=group)) for group in (f"suchus.{shelf}" for shelf in SHELVES)}
+
+
+def snake(name: str) -> str:
+    """Return the name on a shelf of a class or a function: ``lost_foot`` for ``LostFoot``."""
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
+def _names(file: Path, kind: str) -> tuple[tuple[str, str], ...]:
+    """Return what a module of a scattered shelf declares: names on the shelf, and names in the module.
+
+    A project's file that cannot be read stands under its own name, so that its mistake is told when it is asked for.
+    """
+    stat = file.stat()
+    return _declared(file, kind, stat.st_mtime_ns, stat.st_size)
+
+
+@lru_cache(maxsize=1024)
+def _declared(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ...]:
+    text = file.read_text(encoding="utf-8", errors="replace")
+    if not re.search(rf"^{kind}s? *[:=]", text, re.M):
+        return ()
+    try:
+        body = ast.parse(text).body
+    except (SyntaxError, ValueError):
+        return ((file.stem, ""),)
+    found: list[tuple[str, str]] = []
+    for line in body:
+        target = line.targets[0] if isinstance(line, ast.Assign) else getattr(line, "target", None)
+        value = getattr(line, "value", None)
+        if isinstance(target, ast.Name) and target.id in (kind, f"{kind}s"):
+            parts = value.elts if isinstance(value, (ast.Tuple, ast.List)) else [value]
+            found += [(snake(part.id), part.id) for part in parts if isinstance(part, ast.Name)]
+    return tuple(found)
+
+
+def _suffixes(shelf: str) -> tuple[str, ...]:
+    return (".py", ".toml") if shelf in AS_TOML else (".py",)
+
+
+# --- the folder ------------------------------------------------------------------------------------------------
+
+
+def _opened(folder: Path) -> Project:
+    """Return the project of a folder.
+
+    Raises:
+        UnreadableFile: there is no such folder, or its ``suchus.toml`` says what cannot be.
+    """
+    try:
+        folder = folder.absolute()
+        if not folder.is_dir():
+            raise UnreadableFile(f"there is no folder {folder}; a project is a folder with a {SETTINGS}.")
+        stat = (folder / SETTINGS).stat()
+    except FileNotFoundError:
+        return Project(folder)
+    except (OSError, ValueError) as error:
+        raise UnreadableFile(f"the project folder {str(folder)!r} cannot be read: {error}.") from error
+    return _read(folder, stat.st_mtime_ns, stat.st_size)
+
+
+@lru_cache(maxsize=8)
+def _read(folder: Path, *_: int) -> Project:
+    told, where = read_toml(folder / SETTINGS), folder / SETTINGS
+    unknown = [key for key in told if key not in SHELVES]
+    if unknown:
+        near = [close[0] for key in unknown if (close := get_close_matches(key, SHELVES, n=1))]
+        hint = f" Did you mean {', '.join(map(repr, near))}?" if near else ""
+        them = "which is" if len(unknown) == 1 else "which are"
+        raise UnreadableFile(
+            f"{where} has {', '.join(map(repr, unknown))}, {them} not known; there is {', '.join(SHELVES)}.{hint}"
+        )
+    return Project(folder, {shelf: tuple(_named(folder, shelf, files)) for shelf, files in told.items()})
+
+
+def _named(folder: Path, shelf: str, files: Any) -> Iterator[Path]:
+    """Yield the files that ``suchus.toml`` names for a shelf.
+
+    Raises:
+        UnreadableFile: they are no list of files in the folder.
+    """
+    if not isinstance(files, list) or not all(isinstance(file, str) for file in files):
+        raise UnreadableFile(f"{folder / SETTINGS} has {shelf} = {files!r}; a list of files is needed.")
+    for file in files:
+        path = folder / file
+        if not path.resolve().is_relative_to(folder.resolve()):
+            raise UnreadableFile(f"{folder / SETTINGS} names {file!r} among {shelf}, which is not in its folder.")
+        if path.suffix not in _suffixes(shelf) or not path.is_file():
+            kinds = " or ".join(_suffixes(shelf))
+            raise UnreadableFile(f"{folder / SETTINGS} names {file!r} among {shelf}; there is no such {kinds} file.")
+        yield path
+
+
+class _ProjectFinder:
+    """Finds modules of the project for the import system, after its own finders: ``suchus.sim.faults.tired``."""
+
+    @staticmethod
+    def find_spec(name: str, path: object = None, target: ModuleType | None = None) -> ModuleSpec | None:
+        """Return how a module of the project is loaded; None for any other module."""
+        del path, target
+        package, _, last = name.rpartition(".")
+        shelf = next((shelf for shelf, home in SHELVES.items() if home == package), None)
+        opened = current() if shelf else None
+        if shelf is None or opened is None:
+            return None
+        for stem, file in opened.files(shelf):
+            if stem == last and file.suffix == ".py":
+                if not _is_folder(stem, file):
+                    return spec_from_file_location(name, file)
+                inner = [str(file.parent)]
+                return spec_from_file_location(name, file.parent / "__init__.py", submodule_search_locations=inner)
+        return None
+
+
+if not any(isinstance(finder, _ProjectFinder) for finder in sys.meta_path):
+    sys.meta_path.append(_ProjectFinder())

@@ -1,0 +1,452 @@
+"""How high does the robot reach when it crawls, and when it stands on hind legs and tail?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import OpenLoop
+from suchus.robot.control.standing import BALANCE, Balance, Standing
+from suchus.robot.design import STANDING, Robot
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period, scaled
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.bipedal_reach.figure import (
+    draw_angles,
+    draw_ceiling,
+    draw_heights,
+    draw_limits,
+    draw_pushes,
+    draw_side_views,
+)
+from suchus.experiments.catalog.bipedal_reach.variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, Tolerances, simulate
+from suchus.sim.land.push_search import smallest_pushes
+from suchus.sim.metrics import held, lead, peak_torque, reach, static_margin
+from suchus.robot.motion import START, Gait, hip_height
+from suchus.robot.motion.rising import LEAD, cantilever_torque, size_of, stretched, tallest
+from suchus.article.paper import CLAIMS
+from suchus.robot.robots import ROBOTS
+
+_COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
+_UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
+_DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
+_LIFTED = 0.37
+"""Share of the stretched length beyond which the reach shows that the front has left the ground [-].
+
+Lying or crawling a robot reaches a fifth of it, the trunk bent up like a cobra's two fifths and more.
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BipedalReach(Experiment):
+    """From the crawl to standing on hind legs and tail, and down again into the crawl.
+
+    The height that the robot reaches is that of the highest point of head and trunk, whatever part that is; legs and
+    tail do not count. For the crawl it is the highest such point over a cycle, for standing the lowest while it
+    stands. Pushes act on the thorax for 0.2 s.
+    """
+
+    title = "How high does it reach, crawling and standing on two legs?"
+    shows = "Section IV.D, Figs 22 to 24"
+    answers = ("reach_crawl", "reach_standing", "reach_ratio", "held_share", "push_lateral_on")
+    needs = ("tables", *STANDING)
+    judged_with = ("robot", "gait", "balance", "least")
+    judged_from: ClassVar[Mapping[str, float]] = {"hold": 10.0, "repeats": 6, "hips": 3}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that stands up."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl before and after."""
+    straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
+    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
+    ahead."""
+    balance: Balance = BALANCE
+    """The feedback by which it keeps its balance when it stands."""
+    hold: float = 60.0
+    """Duration of standing [s]."""
+    least: float = 0.64
+    """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
+    repeats: int = 6
+    """Robots that are built of the design and stand up: the heights are the middle of theirs [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much they and their grounds differ from it."""
+    torques: tuple[float, ...] = (2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
+    """Torques of the trunk's pitch servos on the map [N m]."""
+    forebodies: tuple[float, ...] = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+    """Masses of thorax and head together on the map [kg]; the pelvis takes the rest, as if the battery moved."""
+    hips: tuple[float, ...] = (0.07, 0.09, 0.11, 0.125, 0.135)
+    """Heights of the hips in the crawls that show what the legs decide [m]; the last is near what the legs allow."""
+    leads: tuple[float, ...] = (0.015, 0.025, 0.035)
+    """Further distances of the centre of mass behind the feet that are commanded, to see how much height a safe
+    stand costs [m]."""
+    pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
+    """Forces that are tried, before finer ones between two of them [N]."""
+    finer: int = 4
+    """Number of forces between two of them [-]."""
+    wait: float = 3.0
+    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    timestep: float = 0.002
+    """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
+    longer: float = 0.05
+    """Fraction by which legs, spine and head are lengthened, one after another [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("hold", 0.1, 3600.0, "s")
+            check.number("least", 0.001, 100.0, "m")
+            check.whole("repeats", 1, 1000)
+            check.whole("finer", 0, 100)
+            check.that(len(self.hips) > 1, f"{self.name()}.hips has {len(self.hips)} heights; two at least are needed")
+            check.number("wait", 0.01, 60.0, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+            check.number("longer", 0.001, 0.2, "")
+
+    def quick(self) -> "BipedalReach":
+        """A short stand, the corners of the map, few pushes."""
+        return replace(
+            self,
+            hold=1.0,
+            repeats=1,
+            torques=(2.0, 5.0),
+            forebodies=(0.4, 0.9),
+            hips=(0.09, 0.125),
+            leads=(),
+            pushes=(2.0, 25.0),
+            finer=0,
+            wait=1.5,
+            timestep=_COARSE,
+        )
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the gaits of a robot of another size, and the balance rule in that size."""
+        return Experiment.gaits_on(self, robot) | {
+            "balance": scaled(self.balance, length_factor=size_of(robot) / size_of(self.robot))
+        }
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl, stand, sit, crawl; then what it takes and what it bears."""
+        standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
+        record = self._story(standing, staged(progress, "standing", 0.0, 0.2))
+        for study, stage, start, end in (
+            (self._limits, "torque and mass", 0.2, 0.4),
+            (self._pushed, "pushes", 0.4, 0.85),
+            (self._lengths, "lengths", 0.85, 1.0),
+        ):
+            record = record.merge(study(staged(progress, stage, start, end)))
+        record = record.merge(self._ceiling()).assign_attrs(self._facts())
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _facts(self) -> dict[str, float]:
+        """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
+        plausible = {chosen.field: chosen.high for chosen in GAITS.beside("belly_crawl", "chosen", ())}
+        return {
+            "least": self.least,
+            "hold": self.hold,
+            "stretched": stretched(self.robot),
+            "cantilever": cantilever_torque(self.robot),
+            "pitch_torque": self.robot.spine.pitch_servo.torque,
+            "hip_height": hip_height(self.robot, self.gait),
+            "hip_height_plausible": plausible["height"] * length(self.robot, "leg"),
+            "up": _UP * stretched(self.robot),
+            "commanded_lead": self._lead,
+        }
+
+    @property
+    def _lead(self) -> float:
+        """How far the centre of mass is commanded behind the feet where nothing else is said [m]."""
+        return LEAD * size_of(self.robot)
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
+        _, rise_at, up, leave, down, _ = record.attrs["stages"]
+        facts, height, margin = record.attrs, record.reach.isel(run=0), record.margin.isel(run=0)
+        highest = int(np.argmax(record.crawl_reach.values))
+        measures = Measures(
+            _heights(record),
+            {
+                "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
+                "margin_rising": Measure(least_lead(record), "m"),
+                "reach_after": Measure(float(height.sel(time=slice(down, None)).max()), "m"),
+                "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down), "m"),
+                "stretched_length": Measure(facts["stretched"], "m"),
+                "ceiling": Measure(float(record.ceiling.max()), "m"),
+                "reach_high_crawl": Measure(float(record.crawl_reach[highest]), "m"),
+                "distance_high_crawl": Measure(float(record.crawl_way[highest]), "m"),
+                "hip_height": Measure(facts["hip_height"], "m"),
+                "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
+                "cantilever_torque": Measure(facts["cantilever"], "N m"),
+                "pitch_torque": Measure(facts["pitch_torque"], "N m"),
+                "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
+            },
+        )
+        for name, torque in zip(
+            record.servo.values, peak_torque(record.isel(run=0), rise_at, leave).values, strict=True
+        ):
+            measures[f"torque_rising_{name}"] = Measure(float(torque), "N m")
+        return measures | _pushes(record) | _gains(record)
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "standing_replay.html",
+            record,
+            self.robot,
+            labels=("standing up",),
+            title="Standing up",
+            caption="From the crawl up on hind legs and tail, and down again into the crawl.",
+        )
+
+    def _story(self, standing: Standing, progress: Any) -> xr.Dataset:
+        """Return the run of the figures, and the heights of its repeats."""
+        duration = standing.down_from(self.robot) + self.gait.period
+        calm = Run(robot=self.robot, gait=self.gait, control=standing)
+        record = simulate(
+            [calm], duration=duration, timestep=self.timestep, every=2, progress=staged(progress, "", 0.0, 0.5)
+        )
+        blind = replace(calm, control=replace(standing, balance=None))
+        built = self.tolerances.repeats((calm, blind), self.repeats)
+        repeats = simulate(
+            built, duration=duration, timestep=_COARSE, every=10, progress=staged(progress, "", 0.5, 1.0)
+        )
+        heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
+        record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
+        data = record.assign(
+            {"repeat_reach": (("feedback", "repeat", "repeat_time"), heights, {"units": "m"})}
+        ).assign_coords(feedback=["on", "off"], repeat_time=("repeat_time", repeats.time.values, {"units": "s"}))
+        stages = (START, standing.at, standing.upright_from(self.robot), standing.upright_until(self.robot))
+        data.attrs["stages"] = [*stages, standing.down_from(self.robot), duration]
+        return data
+
+    def _settled(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
+        """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
+        controls = [
+            stand_soon(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
+        ]
+        able = [control is not None for control in controls]
+        found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
+        runs = [
+            Run(robot=robot, gait=self.straight, control=control)
+            for robot, control in zip(robots, controls, strict=True)
+            if control is not None
+        ]
+        if not runs:
+            return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
+        duration = max(up_at(robot) for robot, stands in zip(robots, able, strict=True) if stands) + self.wait
+        record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
+        last = record.sel(time=slice(duration - 0.5, None))
+        for i, case in enumerate(np.flatnonzero(able)):
+            one = last.isel(run=i)
+            found["reach"][case] = float(reach(runs[i].robot, one).min())
+            found["lead"][case] = float(lead(one).mean())
+        return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
+
+    def _limits(self, progress: Any) -> xr.Dataset:
+        """Return what robots with other trunk servos and other forebodies reach."""
+        cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
+        found = self._settled(cells, [self._lead] * len(cells), progress)
+        shape = len(self.torques), len(self.forebodies)
+        cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
+        data = xr.Dataset(
+            {
+                "map_reach": (("torque", "forebody"), found.reach.values.reshape(shape), {"units": "m"}),
+                "map_cantilever": ("forebody", cantilever, {"units": "N m"}),
+            },
+            coords={"torque": list(self.torques), "forebody": list(self.forebodies)},
+        )
+        data.torque.attrs.update(units="N m", long_name="torque of the trunk's pitch servos")
+        data.forebody.attrs.update(units="kg", long_name="mass of thorax and head")
+        return data
+
+    def _pushed(self, progress: Any) -> xr.Dataset:
+        """Return the smallest pushes that topple, with feedback and without, over the lead."""
+        leads = sorted({*self.leads, self._lead})
+        balances = {"on": self.balance, "off": None}
+        stood = self._settled([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
+        runs = [
+            Run(robot=self.robot, gait=self.straight, control=control or OpenLoop())
+            for balance in balances.values()
+            for control in (stand_soon(self.robot, lead, balance, size_of(self.robot)) for lead in leads)
+        ]
+        forces = smallest_pushes(
+            runs,
+            list(_DIRECTIONS.values()),
+            at=round(up_at(self.robot) + self.wait, 2),
+            levels=self.pushes,
+            finer=self.finer,
+            wait=self.wait,
+            fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
+            timestep=_COARSE,
+            progress=staged(progress, "", 0.1, 1.0),
+        ).reshape(len(balances), len(leads), len(_DIRECTIONS))
+        stands = stood.reach.values > _UP * stretched(self.robot)
+        return xr.Dataset(
+            {
+                "push": (
+                    ("feedback", "commanded", "direction"),
+                    np.where(stands[:, None], forces, 0.0),
+                    {"units": "N"},
+                ),
+                "lead_reach": ("commanded", np.where(stands, stood.reach, np.nan), {"units": "m"}),
+                "lead_found": ("commanded", np.where(stands, stood.lead, np.nan), {"units": "m"}),
+            },
+            coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
+        )
+
+    def _lengths(self, progress: Any) -> xr.Dataset:
+        """Return how crawling and standing reach change with the lengths of legs, spine and head."""
+        robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
+        stood = self._settled(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
+        leg = length(self.robot, "leg")
+        crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
+        crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
+        runs = [Run(robot=robot, gait=gait) for robot, gait in crawls]
+        record = simulate(
+            runs,
+            duration=START + self.gait.period,
+            timestep=_COARSE,
+            every=5,
+            progress=staged(progress, "", 0.5, 1.0),
+        ).sel(time=slice(START, None))
+        heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
+        walking = heights[len(self.hips) :]
+        longer = np.array(
+            [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
+        )
+        changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
+        ahead = record.centre_of_mass.sel(xyz="x")
+        return xr.Dataset(
+            {
+                "crawl_reach": ("hip_height", heights[: len(self.hips)], {"units": "m"}),
+                "crawl_way": (
+                    "hip_height",
+                    (ahead[: len(self.hips), -1] - ahead[: len(self.hips), 0]).values,
+                    {"units": "m"},
+                ),
+                "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),
+            },
+            coords={"hip_height": list(self.hips), "part": list(PARTS), "pose": ["crawling", "standing"]},
+        )
+
+    def _ceiling(self) -> xr.Dataset:
+        """Return how high any posture could reach over the distance of the centre of mass behind the feet."""
+        behind = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
+        return xr.Dataset(
+            {"ceiling": ("behind", tallest(self.robot, behind), {"units": "m"})},
+            coords={"behind": ("behind", behind, {"units": "m"})},
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw postures, angles and heights over time, and what decides them."""
+        record = outcome.record
+        return {
+            "side_views": draw_side_views(self.robot, record),
+            "angles": draw_angles(self.robot, record),
+            "height_over_time": draw_heights(record, self.hold),
+            "torque_and_mass": draw_limits(self.robot, record, _UP * stretched(self.robot)),
+            "ceiling": draw_ceiling(self.robot, record),
+            "pushes": draw_pushes(record, record.attrs["commanded_lead"]),
+        }
+
+
+def _heights(record: xr.Dataset) -> Measures:
+    """Return what robots as built reach crawling and standing, their ratio, and for how long they stand."""
+    start, rise_at, up, leave, _, _ = record.attrs["stages"]
+    reached = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
+    crawl = reached.sel(time=slice(start, rise_at)).max("time")
+    stand = reached.sel(time=slice(up, leave)).min("time")
+    stood = held(reached, record.attrs["least"])
+    return (
+        estimated("reach_crawl", crawl, "m")
+        | estimated("hips_at_printed_height", _hips_at(record, CLAIMS["height_crawl"].value or 0.0, crawl.values), "m")
+        | estimated("reach_standing", stand, "m")
+        | estimated("reach_ratio", stand / crawl, "-")
+        | estimated("held", stood, "s")
+        | estimated("held_share", stood / record.attrs["hold"], "-")
+    )
+
+
+def _pushes(record: xr.Dataset) -> Measures:
+    """Return how many robots as built stay up, and the smallest pushes that topple it, with feedback and without."""
+    _, _, up, leave, _, _ = record.attrs["stages"]
+    measures = Measures()
+    for feedback in ("on", "off"):
+        reach = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
+        stays = (reach > record.attrs["least"]).all("repeat_time")
+        measures[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
+        for direction in record.direction.values:
+            force = record.push.sel(feedback=feedback, commanded=record.attrs["commanded_lead"], direction=direction)
+            measures[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
+    return measures
+
+
+def _gains(record: xr.Dataset) -> Measures:
+    """Return by how much the heights grow with the lengths of legs, spine and head [-]."""
+    gains = Measures(
+        {
+            f"gain_{part}_{pose}": Measure(float(record.gain.sel(part=part, pose=pose)), "-")
+            for part in record.part.values
+            for pose in record.pose.values
+        }
+    )
+    others = record.gain.sel(pose="crawling", part=["spine", "head"])
+    gains["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
+    gains["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")
+    return gains
+
+
+def least_lead(record: xr.Dataset) -> float:
+    """Return the least distance of the centre of mass behind the feet from lifting the front to standing [m].
+
+    Not a number for a robot whose front does not leave the ground before it should stand.
+    """
+    _, rise_at, up, *_ = record.attrs["stages"]
+    rising = record.isel(run=0).sel(time=slice(rise_at, up))
+    off = np.flatnonzero(rising.reach.values > _LIFTED * record.attrs["stretched"])
+    return float(rising.lead[off[0] :].min()) if off.size else float("nan")
+
+
+def _distance(place: xr.DataArray, since: float) -> float:
+    """Return how far a place moves forward from a time on [m]."""
+    x = place.sel(xyz="x", time=slice(since, None))
+    return float(x[-1] - x[0])
+
+
+def _decided_by_torque(record: xr.Dataset) -> float:
+    """Return for which share of the robots on the map the cantilever's torque alone decides whether they stand [-]."""
+    stands = record.map_reach > record.attrs["up"]
+    return float((stands == (record.torque > record.map_cantilever)).mean())
+
+
+def _hips_at(record: xr.Dataset, height: float, built: np.ndarray) -> np.ndarray:
+    """Return the height of the hips at which each robot as built would reach a height when it crawls [m].
+
+    By a line through the crawls of the design at other heights of the hips, moved to what the robot as built reaches
+    with hips at their own height.
+
+    Args:
+        record: of the experiment.
+        height: that is to be reached [m].
+        built: what robots as built reach in the crawl, any shape [m].
+    """
+    hips, reached = record.hip_height.values, record.crawl_reach.values
+    higher = built - np.polyval(np.polyfit(hips, reached, 1), record.attrs["hip_height"])
+    at: np.ndarray = np.polyval(np.polyfit(reached, hips, 1), height - higher)
+    return at
+
+
+experiment = BipedalReach()

@@ -1,0 +1,382 @@
+"""Standing up on hind legs and tail: postures and angles, how high it reaches, what limits it, and what topples it."""
+
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from suchus.core import rotation
+from suchus.robot.design import Robot, layout
+from suchus.visual.figures.gait_diagram import stretches
+from suchus.visual.figures.posture import draw_posture, skeleton
+from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
+from suchus.sim.metrics import loaded, tilt
+from suchus.article.paper import CLAIMS
+
+_FEEDBACK = {"on": COLOURS["ours"], "off": COLOURS["limbs_only"]}
+
+
+def draw_heights(record: xr.Dataset, hold: float) -> Figure:
+    """Draw the height that the robot reaches over time, with robots as built and the article's two heights.
+
+    Args:
+        record: of the experiment.
+        hold: how long it stands [s].
+    """
+    _, at, up, leave, _, end = record.attrs["stages"]
+    with styled():
+        figure, axes = panels(1, 3, width=12.5, height=4.6, width_ratios=[1, 1.35, 1])
+        rising, whole, standing = axes[0]
+        for ax, begin, stop in ((rising, at - 2.0, up + 2.0), (whole, 0.0, end)):
+            _lay_heights(ax, record, begin, stop)
+            for key in ("height_crawl", "height_standing"):
+                ax.axhline(CLAIMS[key].value or 0.0, **LINES["printed"])
+            ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
+        _lay_heights(standing, record, up + 0.02 * (leave - up), leave)  # on a scale of its own, to show the scatter
+        for ax in axes[0]:
+            ax.set_ylabel("height of the highest point [m]")
+        whole.yaxis.label.set_visible(False)  # the same scale as beside it; its name is for the table of the figure
+        for ax, title in zip(axes[0], ("standing up", "the whole run", "standing, magnified"), strict=True):
+            ax.set_title(title)
+            ax.set_xlabel("time [s]")
+        handles, labels = whole.get_legend_handles_labels()
+        shown = dict(zip(labels, handles, strict=True))  # both heights of the article are one entry
+        figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=4, fontsize=11)
+    return captioned(
+        figure,
+        f"Height of the highest point of head and trunk. The robot crawls, stands for {hold:.0f} s, sits down and "
+        "crawls on. Dashed: the article's two heights, "
+        + " and ".join(f"{CLAIMS[key].value or 0.0:.2f} m" for key in ("height_crawl", "height_standing"))
+        + ". Bands: robots built of the design.",
+    )
+
+
+def _lay_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> None:
+    """Draw the heights of the quiet run, and the range of the noisy ones, from one time to another."""
+    shown = record.repeat_reach.sel(repeat_time=slice(begin, stop))
+    for feedback, colour in _FEEDBACK.items():
+        band = shown.sel(feedback=feedback)
+        label = f"noisy servos, feedback {feedback}"
+        ax.fill_between(
+            band.repeat_time, band.min("repeat"), band.max("repeat"), color=colour, alpha=0.3, linewidth=0, label=label
+        )
+    part = record.reach.isel(run=0).sel(time=slice(begin, stop))
+    ax.plot(part.time, part, color=COLOURS["ours"], label="as designed")
+    ax.set_xlim(begin, stop)
+
+
+def draw_limits(robot: Robot, record: xr.Dataset, up: float) -> Figure:
+    """Draw which robots stand up, over the torque of the trunk's servos and the mass of the forebody.
+
+    Args:
+        robot: the robot of the other figures, marked by a star.
+        record: of the experiment.
+        up: reach from which a robot counts as standing [m].
+    """
+    found = record.map_reach
+    masses, torques = found.forebody.values, found.torque.values
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=7.6, height=4.8)
+        ax = axes[0, 0]
+        most = max(0.7, float(found.max()))
+        mesh = ax.pcolormesh(masses, torques, found, cmap=SEQUENTIAL, vmin=0.0, vmax=most, shading="nearest")
+        for j, torque in enumerate(torques):
+            for i, mass in enumerate(masses):
+                value = float(found[j, i])
+                colour = "black" if value > 0.57 * most else "white"
+                weight = "bold" if value > up else "normal"
+                ax.text(mass, torque, f"{value:.2f}", ha="center", va="center", color=colour, fontweight=weight)
+        fine = np.linspace(masses[0] - 0.1, masses[-1] + 0.1, 50)
+        line = np.poly1d(np.polyfit(masses, record.map_cantilever, 1))(fine)
+        ax.plot(fine, line, color=COLOURS["limbs_only"], linewidth=2.6, label="torque that lifts the level forebody")
+        own = robot.thorax.mass + robot.head.mass
+        ax.plot(
+            own + 0.37 * np.diff(masses).min(),
+            robot.spine.pitch_servo.torque,
+            "*",
+            color="white",
+            markeredgecolor="black",
+            markersize=15,
+        )
+        step = (np.diff(masses).min() / 2, np.diff(torques).min() / 2)
+        ax.set_xlim(masses[0] - step[0], masses[-1] + step[0])
+        ax.set_ylim(torques[0] - step[1], torques[-1] + step[1])
+        ax.set_xlabel("mass of thorax and head [kg]")
+        ax.set_ylabel("torque of the trunk's pitch servos [N m]")
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2)
+        figure.colorbar(mesh, ax=ax, label="reach after standing up [m]")
+    return captioned(
+        figure,
+        "Who stands up: the height that robots with other trunk servos and other forebodies reach; the pelvis makes up "
+        "for the mass. Line: what it takes to lift the level forebody off the ground. Star: the robot of the other "
+        "figures.",
+    )
+
+
+def draw_ceiling(robot: Robot, record: xr.Dataset) -> Figure:
+    """Draw the lengths that make up the greatest reach, and what is left of it for a stand that is safe.
+
+    Args:
+        robot: whose lengths they are.
+        record: of the experiment.
+    """
+    leg = robot.hind_leg
+    lengths = (
+        ("sole", leg.foot_radius, COLOURS["neutral"]),
+        ("hind leg", leg.femur + leg.tibia, COLOURS["LH"]),
+        ("spine", robot.spine.length, COLOURS["spine"]),
+        ("head", robot.head.snout, COLOURS["RH"]),
+    )
+    printed = CLAIMS["height_standing"].value or 0.0
+    with styled():
+        figure, axes = panels(1, 2, width=10.0, height=4.6, width_ratios=[1, 1.6])
+        ax = axes[0, 0]
+        bottom = 0.0
+        for name, length, colour in lengths:
+            look: dict[str, Any] = {"facecolor": colour, "edgecolor": "white", "alpha": 0.75, "label": name}
+            ax.add_patch(Rectangle((-0.3, bottom), 0.6, length, **look))
+            ax.text(0.36, max(bottom + length / 2, 0.02), f"{name}  {1000 * length:.1f} mm", va="center")
+            bottom += length
+        ax.axhline(printed, **(dict(LINES["printed"]) | {"label": None}))
+        ax.text(1.55, printed - 0.012, f"as printed: {printed:.2f} m", ha="right", va="top")
+        line = sum(length for name, length, _ in lengths if name != "sole")
+        ax.text(-0.3, bottom + 0.012, f"{line:.3f} m, with the sole {bottom:.3f} m", fontsize=11)
+        ax.set_xlim(-0.4, 1.6)
+        ax.set_ylim(0.0, 1.1 * max(bottom, printed))
+        ax.set_xticks([])
+        ax.set_ylabel("height above the ground [m]")
+        ax.set_title("lengths in one line")
+        ax = axes[0, 1]
+        ax.plot(1000 * record.behind, record.ceiling, color=COLOURS["neutral"], label="no posture reaches higher")
+        ax.axhline(printed, **LINES["printed"])
+        ax.plot(
+            1000 * record.lead_found, record.lead_reach, "o", color=COLOURS["ours"], markersize=7, label="simulated"
+        )
+        ax.set_xlabel("centre of mass behind the feet [mm]")
+        ax.set_ylabel("reach [m]")
+        shown = [printed, *record.ceiling.values, *record.lead_reach.values[np.isfinite(record.lead_reach.values)]]
+        ax.set_ylim(min(shown) - 0.01, max(shown) + 0.01)
+        ax.set_title("what a safe stand costs")
+        ax.legend(loc="lower left")
+    chosen = (
+        f"; the head, which the article does not give, was chosen so that they sum up to the printed {printed:g} m"
+        if abs(line - printed) <= CLAIMS["height_standing"].rounding
+        else f", {line:.3f} m without the sole; dashed, the printed {printed:g} m"
+    )
+    return captioned(
+        figure,
+        f"What the height is made of. Left: hind leg, spine and head in one line{chosen}; the bar stands on the sole, "
+        f"which makes it {bottom:.3f} m. Right: the greatest height "
+        "of the snout over the distance of the centre of mass behind the feet, torques aside, and what is simulated.",
+    )
+
+
+def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
+    """Draw the smallest pushes that topple the standing robot, with feedback and without, and over its lead.
+
+    Args:
+        record: of the experiment.
+        commanded: lead of the stand of the other figures [m].
+    """
+    with styled():
+        figure, axes = panels(1, 2, width=12.0, height=4.3)
+        ax = axes[0, 0]
+        directions = [str(w) for w in record.direction.values]
+        shown = record.push.isel(commanded=int(np.argmin(np.abs(record.commanded.values - commanded))))
+        for shift, feedback in ((-0.2, "off"), (0.2, "on")):
+            forces = shown.sel(feedback=feedback).values
+            heights = np.where(np.isfinite(forces), forces, 0.0)
+            colour = _FEEDBACK[feedback]
+            bars = ax.bar(np.arange(len(directions)) + shift, heights, 0.36, color=colour, label=f"feedback {feedback}")
+            ax.bar_label(bars, [f"{f:.1f}" if np.isfinite(f) else "none" for f in forces], padding=2)
+        ax.set_xticks(range(len(directions)), directions)
+        ax.grid(axis="x", visible=False)
+        ax.set_ylabel("smallest push that topples [N]")
+        ax.set_title("push of 0.2 s on the thorax")
+        ax.margins(y=0.18)
+        ax.legend(loc="upper left")
+        ax = axes[0, 1]
+        for direction, marker in zip(directions, "osD", strict=False):
+            for feedback, colour in _FEEDBACK.items():
+                pushes = record.push.sel(direction=direction, feedback=feedback)
+                dashes = (0, (3, 1.5)) if feedback == "off" else "-"
+                label = f"{direction}, feedback {feedback}"
+                ax.plot(
+                    1000 * record.lead_found,
+                    pushes.where(np.isfinite(pushes)),
+                    color=colour,
+                    linestyle=dashes,
+                    marker=marker,
+                    markersize=6,
+                    label=label,
+                )
+        ax.set_xlabel("centre of mass behind the feet [mm]")
+        ax.set_ylabel("smallest push that topples [N]")
+        ax.set_title("pushes over the distance behind the feet")
+        ax.set_ylim(bottom=0.0)
+        ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=10)
+    return captioned(
+        figure,
+        "The smallest push of 0.2 s on the thorax that topples the standing robot, with feedback of pitch and tail "
+        "load and without. Left: in the stand of the other figures. Right: over the distance of the centre of mass "
+        "behind the feet, dashed without feedback.",
+    )
+
+
+_TOUCHES = 0.5  # [N]; less is no support
+_DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))  # of the trunk's second pitch joint, and of those after it
+_GAP = 0.06  # [m] between two robots of the strip
+
+
+def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
+    """Draw the robot from its right side at five times while it rises, with mass, support and reach.
+
+    Args:
+        robot: whose record it is.
+        record: of the experiment; its first run and its ``stages`` are used.
+    """
+    start, at, up, leave, *_ = record.attrs["stages"]
+    rise = up - at
+    times = {
+        "crawling": start + 0.25,
+        "feet ahead": at + 0.33 * rise,
+        "trunk up": at + 0.555 * rise,
+        "half up": at + 0.72 * rise,
+        "standing": min(up + 2.0, (up + leave) / 2),
+    }
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=13.0, height=3.5)
+        ax = axes[0, 0]
+        edge = 0.0
+        for name, time in times.items():
+            one = record.isel(run=0).sel(time=[time], method="nearest")
+            if name != "crawling":  # in the crawl the pelvis swings, and the robot walks along x
+                one = _facing_right(one)
+            behind, ahead = _extent(robot, one, time)
+            x = edge + behind
+            edge = x + ahead + _GAP
+            here = one.assign({n: one[n] + _shift(one, x) for n in _PLACES})
+            draw_posture(ax, robot, here, time, view="side")
+            _mark_support(ax, here.isel(time=0))
+            ax.text(x, -0.045, name, ha="center", va="top")
+            ax.text(x, -0.125, f"{time - at:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
+            height = float(one.reach[0])
+            ax.plot([x - 0.16, x + _REACHED], [height, height], **_REACH)
+            ax.text(x + _REACHED, height + 0.008, f"{height:.2f} m", color=COLOURS["ours"], va="bottom", ha="right")
+        ax.set_xlim(-_GAP, edge)
+        ax.set_ylim(-0.2, 0.74)
+        ax.set_yticks(np.arange(0.0, 0.71, 0.1))
+        ax.set_ylabel("height above the ground [m]")
+        ax.set_xticks([])
+        ax.set_xlabel("place along the strip [m]", visible=False)  # for the table of the figure
+        ax.spines["bottom"].set_visible(False)
+    return captioned(
+        figure,
+        "From the crawl to standing on hind legs and tail, from the right side; times since the crawl stopped. Red: "
+        "the centre of mass and its projection. Triangles: what carries the robot. Blue: the height of its highest "
+        "point.",
+    )
+
+
+_LABEL = 0.34  # [m] width of the words under a robot
+_REACHED = 0.2  # [m] length of the line of the height, ahead of the hind feet
+_PLACES = ("position", "centre_of_mass", "foot_position", "tail_tip")
+_REACH: dict[str, Any] = {"color": COLOURS["ours"], "linewidth": 1.6, "linestyle": (0, (5, 2)), "zorder": 6}
+
+
+def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
+    """Return what brings the hind feet's middle to a place and keeps heights."""
+    now = record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean(("leg", "time"))
+    return xr.DataArray([x - float(now), 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
+
+
+def _extent(robot: Robot, record: xr.Dataset, time: float) -> tuple[float, float]:
+    """Return how far the robot extends behind and ahead of the middle of its hind feet [m]."""
+    bones = skeleton(robot, record, time)
+    x = np.concatenate([part[:, 0] for part in (bones.trunk, bones.tail, *bones.legs)])
+    middle = float(record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean())
+    label = _LABEL / 2  # the words under a robot that is narrower than they are
+    return max(middle - float(x.min()), label), max(float(x.max()) - middle, _REACHED, label)
+
+
+def _facing_right(record: xr.Dataset) -> xr.Dataset:
+    """Return a moment of a record turned about the vertical, so that the pelvis faces along x."""
+    now = record.orientation.isel(time=0).values.astype(float)
+    left = rotation.matrix(now)[:, 1]  # which stays level
+    turn = float(np.arctan2(left[0], left[1]))
+    c, s = np.cos(turn), np.sin(turn)
+    R = xr.DataArray([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dims=("to", "xyz"), coords={"xyz": record.xyz})
+    turned = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _PLACES}
+    q = rotation.multiply(rotation.about(np.array([0.0, 0.0, 1.0]), turn), now)
+    return record.assign(turned).assign(orientation=(("time", "wxyz"), [q]))
+
+
+def _mark_support(ax: Axes, now: xr.Dataset) -> None:
+    points = [
+        now.foot_position.sel(leg=leg, xyz="x") for leg in now.leg if now.foot_force.sel(leg=leg, xyz="z") > _TOUCHES
+    ]
+    if float(now.tail_force.sel(xyz="z")) > _TOUCHES:
+        points.append(now.tail_tip.sel(xyz="x"))
+    x = [float(p) for p in points]
+    ax.plot(x, [-0.012] * len(x), "^", color="#B8860B", markersize=7, zorder=6, clip_on=False)
+
+
+def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
+    """Draw the angles of pelvis, trunk and tail over time, down positive, and which feet stand, up and down again.
+
+    Args:
+        robot: who stands up.
+        record: of the experiment; its first run and its ``stages`` are used.
+    """
+    _, at, up, leave, down, _ = record.attrs["stages"]
+    one = record.isel(run=0)
+    place = layout(robot)
+    first, *others = place.trunk_pitch
+    lines: list[tuple[str, xr.DataArray, dict[str, Any]]] = [
+        ("pelvis against the ground", tilt(one)["pitch"], {"color": COLOURS["ours"]}),
+        ("trunk, first pitch joint", one.servo_angle[:, first], {"color": COLOURS["spine"]}),
+    ]
+    for number, (servo, dashes) in enumerate(zip(others, cycle(_DASHES), strict=False), 2):
+        word = {2: "second", 3: "third"}.get(number, f"{number}th")
+        style = {"color": COLOURS["spine"], "linestyle": dashes}
+        lines.append((f"trunk, {word} pitch joint", one.servo_angle[:, servo], style))
+    lines.append(("tail, pitch joint", one.servo_angle[:, place.tail_pitch[0]], {"color": COLOURS["tail"]}))
+    with styled():
+        figure, axes = panels(2, 2, width=10.0, height=5.4, sharex="col", sharey="row", height_ratios=[3.4, 1.0])
+        for ax, bars, begin, end, zero, title, since in (
+            (*axes[:, 0], at - 0.5, up + 2.0, at, "standing up", "time since the crawl stopped [s]"),
+            (*axes[:, 1], leave - 2.0, down + 0.5, leave, "sitting down", "time since the stand ended [s]"),
+        ):
+            for label, values, style in lines:
+                part = values.sel(time=slice(begin, end))
+                ax.plot(part.time - zero, np.degrees(part), label=label, **style)
+            ax.set_title(title)
+            ax.set_xlim(begin - zero, end - zero)
+            _draw_stances(bars, one.sel(time=slice(begin, end)), zero)
+            bars.set_xlabel(since)
+        axes[0, 0].set_ylabel("angle, front end or tip down [deg]")
+        axes[0, 1].legend(loc="upper right", bbox_to_anchor=(1.0, min(0.93 + 0.07 * (len(lines) - 4), 1.0)))
+    return captioned(
+        figure,
+        "Angles of pelvis, trunk and tail while standing up (left) and sitting down (right), up negative as in the "
+        "article. The trunk bends up first, "
+        "then the pelvis pitches up while the trunk straightens; the tail's joint makes room for the pelvis. Bars: a "
+        "foot stands. The article took its angles and foot phases from a film of an animal; no such film is published "
+        "as numbers, so that none stands beside.",
+    )
+
+
+def _draw_stances(ax: Axes, part: xr.Dataset, zero: float) -> None:
+    """Draw a bar wherever a foot stands, over the time since ``zero`` [s]."""
+    legs = [str(leg) for leg in part.leg.values]
+    for row, stands in enumerate(loaded(part).transpose("leg", "time").values):
+        spans = [(begin, end - begin) for begin, end in stretches(part.time.values - zero, stands)]
+        ax.broken_barh(spans, (row - 0.36, 0.72), facecolor=COLOURS["neutral"])
+    ax.set_yticks(range(len(legs)), legs)
+    ax.set_ylim(len(legs) - 0.5, -0.5)
+    ax.tick_params(axis="y", length=0)
+    ax.grid(False)

@@ -1,0 +1,229 @@
+"""Does it crawl more steadily with spine and tail than without?"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design.scale import coarse_step
+from suchus.experiments.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
+from suchus.robot.gaits import conditions_of
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import (
+    displacement,
+    duty_factor,
+    height_peak_to_peak,
+    height_std,
+    line_distance,
+    line_distance_max,
+    loaded,
+    roll_peak_to_peak,
+    spine_sine_share,
+    support_distance,
+    tail_load_share,
+    tilt,
+    two_feet_alone_share,
+)
+from suchus.robot.motion import START, FootPath, longest_strokes
+from suchus.article.paper import SNAPSHOT_TIMES
+
+_EQUAL = "limbs_only_equal_displacement"
+_SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
+"""Conditions whose snapshots are looked at."""
+_CHANGES = (
+    ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
+    ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
+    ("com_height_pp_change_equal_displacement", "com_height_pp", "coordinated", _EQUAL),
+    ("wagging_pp_change", "com_height_pp", "coordinated", "tail_still"),
+    ("tail_contact_pp_change", "com_height_pp", "tail_still", "spine_only"),
+    ("tail_contact_pp_change_limbs_only", "com_height_pp", "limbs_only", "limbs_tail_lifted"),
+    ("spine_swing_pp_change", "com_height_pp", "coordinated", "tail_drag"),
+    ("com_height_std_change", "com_height_std", "coordinated", "limbs_only"),
+    ("roll_pp_change", "roll_pp", "coordinated", "limbs_only"),
+)
+"""Relative changes: name, of which number, condition, what it is compared with."""
+_OF_ALL = (*(name for name, *_ in _CHANGES), "stroke_equal_displacement", "spine_sine_r2")
+"""Measures that are not of the robots as built in one condition."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CrawlStability(TwoGroups):
+    """The height of the centre of mass over time, for every combination of spine and tail.
+
+    The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
+    conditions stand side by side here, and the group without spine and tail walks once more with strokes long enough to
+    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that
+    the article's Fig. 15 shows: the highest less the lowest height.
+    """
+
+    title = "Does it crawl more steadily with spine and tail than without?"
+    shows = "Section IV.A, Figs 13 to 15"
+    answers = (
+        "com_height_pp_change_tail_lifted",
+        "com_height_pp_change",
+        "com_height_pp_coordinated",
+        "com_height_pp_limbs_only",
+        "roll_pp_coordinated",
+        "roll_pp_limbs_only",
+    )
+    needs = ("limbs", "axis")
+
+    def quick(self) -> "CrawlStability":
+        """One cycle, two repeats."""
+        return replace(self, cycles=1, repeats=2)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl in every condition, and as far with the legs alone, as designed and with robots as built."""
+        end = START + self.cycles * self.gait.period
+        arms = conditions_of(self.robot, self.gait, self.control_group)
+        runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
+        first = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
+        share = self._equal_stroke(first, end, staged(progress, "equal displacement", 0.1, 0.4))
+        runs.append(Run(robot=self.robot, gait=self.control_group.strode(share), label=_EQUAL))
+        record = simulate(runs, duration=end, progress=staged(progress, "as designed", 0.4, 0.5))
+        built = staged(progress, "robots as built", 0.5, 1.0)
+        record = record.merge(self.repeated(runs, _numbers, _UNITS | _looked_at(), end, built))
+        record.attrs["equal_stroke"] = share * self._stroke()
+        return Simulated(record=record, replays=self._replays(record))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least; of single conditions no other condition walks."""
+        if any(name.startswith(_OF_ALL) or _EQUAL in name for name in wanted):
+            return super(CrawlStability, self).measured(wanted, progress)
+        arms = conditions_of(self.robot, self.gait, self.control_group)
+        named = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in wanted)}
+        runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in named.items()]
+        end = START + self.cycles * self.gait.period
+        record = self.repeated(runs, _numbers, _UNITS | _looked_at(), end, progress)
+        return of_repeats(record, _UNITS) | self._snapshots(record)
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "stability_replay.html",
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=-1),
+            labels=("spine and tail", "legs alone, as far"),
+            title="Two ways to get as far",
+            caption="With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far.",
+        )
+
+    def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
+        """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.
+
+        In strokes of the gait.
+        """
+        strokes = np.linspace(1.0, longest_strokes(self.robot, self.control_group), 10)
+        runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
+        tried = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
+        reached = displacement(tried).sel(xyz="x").values
+        wanted = float(displacement(record).sel(xyz="x")[0])
+        return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
+
+    def _stroke(self) -> float:
+        """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
+        girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
+        return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
+        measures = of_repeats(record, _UNITS)
+        for name, quantity, arm, without in _CHANGES:
+            values = record[f"repeated_{quantity}"]
+            if {arm, without} <= set(values.condition.values):
+                change = values.sel(condition=arm, drop=True) / values.sel(condition=without, drop=True) - 1
+                measures |= estimated(name, change, "-")
+        measures |= {
+            "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
+            "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
+        }
+        return measures | self._snapshots(record)
+
+    def _snapshots(self, record: xr.Dataset) -> Measures:
+        """Return what the snapshots of the conditions show that are looked at."""
+        measures = Measures()
+        for name in self._shown(list(record.condition.values)):
+            looked = {number: record[f"repeated_{number}"].sel(condition=name) for number in _looked_at()}
+            for number, unit in _looked_at().items():
+                moment = number.removesuffix("_ms").rpartition("_")
+                called = f"{moment[0]}_{name}_{moment[2]}_ms" if number.endswith("_ms") else f"{number}_{name}"
+                measures |= _of_most(called, looked[number], unit)
+        return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the dragged tail, its swing and the trunk's swing each do to the height's fluctuation."""
+        return self.told(measures, stroke=self._stroke())
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw height over time, the snapshots, the spread."""
+        arms = [str(arm) for arm in outcome.record.condition.values][:-1]
+        return {
+            "height_of_mass": draw_heights(outcome.record, arms),
+            "fluctuation": draw_spreads(outcome.record, arms),
+            "snapshots": draw_snapshots(self.robot, outcome.record, self._shown(arms), SNAPSHOT_TIMES),
+        }
+
+    @staticmethod
+    def _shown(arms: Sequence[str]) -> dict[str, int]:
+        """Return the conditions whose snapshots are looked at, and their runs."""
+        return {name: arms.index(name) for name in _SHOWN if name in arms}
+
+
+_UNITS = {
+    "com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-",
+    "hind_duty": "-",
+}  # fmt: skip
+"""Numbers of every condition, and their units."""
+_AT = {"support_distance": "m", "line_distance": "m", "standing_feet": "-", "lean": "rad", "lean_on_two_feet": "rad"}
+"""Numbers of each of the article's three snapshots, and their units."""
+
+
+def _looked_at() -> dict[str, str]:
+    """Return the numbers of what the article's snapshots show, and their units: of the whole crawl, then of moments."""
+    whole = {"line_distance_max": "m", "two_feet_alone_share": "-"}
+    return whole | {f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _AT.items()}
+
+
+def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the numbers of each run by the names of ``_UNITS`` and of what the snapshots show."""
+    numbers = {
+        "com_height_pp": height_peak_to_peak(record),
+        "com_height_std": height_std(record),
+        "roll_pp": roll_peak_to_peak(record),
+        "forward": displacement(record).sel(xyz="x"),
+        "tail_load_share": tail_load_share(record),
+        "hind_duty": duty_factor(record).sel(leg=record.leg.values[-2:]).max("leg"),
+        "line_distance_max": line_distance_max(record),
+        "two_feet_alone_share": two_feet_alone_share(record),
+    }
+    moments = xr.Dataset(
+        {"line_distance": line_distance(record), "standing_feet": loaded(record).sum("leg"), "lean": _lean(record)}
+    )
+    moments["lean_on_two_feet"] = moments.lean.where(moments.standing_feet == 2)
+    for time in SNAPSHOT_TIMES:
+        now = moments.sel(time=time, method="nearest")
+        each = [support_distance(record.isel(run=i), time) for i in range(record.sizes["run"])]
+        now["support_distance"] = ("run", each)
+        numbers |= {f"{name}_{1000 * time:.0f}_ms": now[name] for name in _AT}
+    return numbers
+
+
+def _lean(record: xr.Dataset) -> xr.DataArray:
+    """Return over time the angle between the pelvis's vertical and the world's [rad]."""
+    tilted = tilt(record)
+    upright = np.cos(tilted["roll"].values) * np.cos(tilted["pitch"].values)
+    return tilted["roll"].copy(data=np.arccos(upright))
+
+
+def _of_most(name: str, values: xr.DataArray, unit: str) -> Measures:
+    """Return the middle of the robots of which there is a number, where that are most of them."""
+    there = values.values[np.isfinite(values.values)]
+    return estimated(name, there if 2 * there.size > values.size else values, unit)
+
+
+experiment = CrawlStability()

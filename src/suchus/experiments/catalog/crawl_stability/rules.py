@@ -1,0 +1,218 @@
+"""When the claims on a steady crawl count as what (section IV.A, Figs 13 to 15)."""
+
+from math import nan, radians
+
+from suchus.article.verdict.judging import Examples
+from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
+
+_STEADIER = "steadier is a smaller fluctuation"
+_STEPS = Clause(
+    "hind_duty_limbs_tail_lifted", "<=", 0.85, "feet that hardly leave the ground walk in no gait, and rise with none"
+)
+_IN_THE_AIR = ControlGroup(
+    group="limbs_tail_lifted",
+    why="Section IV.A: only the limbs move, the tail is lifted off the ground, spine and tail are fixed.",
+    needs=(_STEPS,),
+)
+
+RULES = (
+    Rule(
+        claim="com_fluctuation",
+        experiment="crawl_stability",
+        measure="com_height_pp_change_tail_lifted",
+        holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADIER),),
+        control=_IN_THE_AIR,
+        spread=("com_height_pp_change_tail_lifted", "hind_duty_limbs_tail_lifted"),
+        of=BUILT,
+        why="Highest less lowest height: {com_height_pp_coordinated:mm.1f} mm with spine and tail, "
+        "{com_height_pp_limbs_tail_lifted:mm.1f} mm with limbs only and the tail in the air, a change of "
+        "{com_height_pp_change_tail_lifted:+.0%} ({com_height_pp_change_tail_lifted_low:+.0%} to "
+        "{com_height_pp_change_tail_lifted_high:+.0%}). That group's hind feet stand {hind_duty_limbs_tail_lifted:.0%} "
+        "of the time. With limbs only and the tail lying still it is {com_height_pp_limbs_only:mm.1f} mm, a change of "
+        "{com_height_pp_change:+.0%}. The standard deviation changes by {com_height_std_change:+.0%}, the roll by "
+        "{roll_pp_change:+.0%}.",
+    ),
+    Rule(
+        claim="com_on_support_line",
+        experiment="crawl_stability",
+        measure="line_distance_max_limbs_tail_lifted",
+        holds=(
+            Clause(
+                "line_distance_max_limbs_tail_lifted", "<=", 0.024, "a foot is 24 mm wide: farther off is off the line"
+            ),
+        ),
+        control=_IN_THE_AIR,
+        spread=("line_distance_max_limbs_tail_lifted", "hind_duty_limbs_tail_lifted"),
+        of=BUILT,
+        why="The article speaks of two feet that carry alone. With limbs only and the tail in the air they do so for "
+        "{two_feet_alone_share_limbs_tail_lifted:.0%} of the time; with the tail on the ground, which carries "
+        "{tail_load_share_limbs_only:.0%} of the weight, for {two_feet_alone_share_limbs_only:.0%}.",
+    ),
+    Rule(
+        claim="tilt_limbs_only",
+        experiment="crawl_stability",
+        measure="lean_on_two_feet_limbs_tail_lifted_1200_ms",
+        holds=(
+            Clause("lean_limbs_tail_lifted_1200_ms", ">=", radians(1.0), "the least tilt that a screenshot shows"),
+            Clause(
+                "lean_limbs_tail_lifted_1200_ms", ">", "lean_coordinated_1200_ms", "the article shows it of this group"
+            ),
+            Clause("line_distance_limbs_tail_lifted_1200_ms", ">", 0.024, "a foot's width off the line"),
+        ),
+        control=_IN_THE_AIR,
+        spread=(
+            "hind_duty_limbs_tail_lifted",
+            "lean_on_two_feet_limbs_tail_lifted_1200_ms",
+            "lean_limbs_tail_lifted_1200_ms",
+            "lean_coordinated_1200_ms",
+            "line_distance_limbs_tail_lifted_1200_ms",
+        ),
+        of=BUILT,
+        why="At 1.2 s {standing_feet_limbs_tail_lifted_1200_ms:.0f} feet stand with limbs only and the tail in the air "
+        "and the pelvis leans by {lean_limbs_tail_lifted_1200_ms:deg.1f} degrees, against "
+        "{lean_coordinated_1200_ms:deg.1f} with spine and tail and {lean_limbs_only_1200_ms:deg.1f} on "
+        "{standing_feet_limbs_only_1200_ms:.0f} feet with limbs only and the tail lying still; a line of support needs "
+        "two feet.",
+    ),
+    Rule(
+        claim="tail_supports",
+        experiment="crawl_stability",
+        measure="tail_contact_pp_change",
+        holds=(
+            Clause(
+                "tail_load_share_coordinated",
+                ">=",
+                0.05,
+                "less than a twentieth of the weight supports nothing",
+            ),
+            Clause("tail_contact_pp_change", "<", 0.0, _STEADIER),
+        ),
+        control=ControlGroup(
+            group="spine_only",
+            why="What lies on the ground supports: the same crawl with the tail in the air, unswung.",
+        ),
+        spread=("tail_contact_pp_change", "tail_load_share_coordinated"),
+        of=BUILT,
+        why="On the ground the tail carries {tail_load_share_coordinated:.1%} of the weight "
+        "({tail_load_share_coordinated_low:.1%} to {tail_load_share_coordinated_high:.1%}) and changes the fluctuation "
+        "by {tail_contact_pp_change:+.0%} against the same crawl with the tail in the air ("
+        "{tail_contact_pp_change_low:+.0%} to {tail_contact_pp_change_high:+.0%}), by "
+        "{tail_contact_pp_change_limbs_only:+.0%} with the trunk straight.",
+    ),
+    Rule(
+        claim="wagging_balances",
+        experiment="crawl_stability",
+        measure="wagging_pp_change",
+        holds=(Clause("wagging_pp_change", "<", 0.0, _STEADIER),),
+        control=ControlGroup(
+            group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
+        ),
+        spread=("wagging_pp_change",),
+        of=BUILT,
+        why="Against a tail that is dragged without a swing wagging changes the fluctuation by "
+        "{wagging_pp_change:+.0%} ({wagging_pp_change_low:+.0%} to {wagging_pp_change_high:+.0%}).",
+    ),
+    Rule(
+        claim="spine_sinusoidal",
+        experiment="crawl_stability",
+        measure="spine_sine_r2",
+        kind="construction",
+        holds=(Clause("spine_sine_r2", ">=", 0.95, "a triangle has 0.986 of its variance in a sine, a square 0.81"),),
+        why="A sine is commanded; {spine_sine_r2:.1%} of the variance of the joints' angles follow it.",
+    ),
+)
+
+VARIED = Varied(claims=("tilt_limbs_only",), designs=("robot", "gait"), samples=128)
+
+_HEIGHT = {
+    "com_height_pp_change_tail_lifted": -0.1,
+    "com_height_pp_change_tail_lifted_low": -0.2,
+    "com_height_pp_change_tail_lifted_high": -0.001,
+    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    "com_height_pp_coordinated": 0.0038,
+    "com_height_pp_limbs_only": 0.0042,
+    "com_height_pp_limbs_tail_lifted": 0.004,
+    "com_height_pp_change": -0.05,
+    "com_height_std_change": -0.1,
+    "roll_pp_change": 0.1,
+}
+_SHUFFLES = between("hind_duty_limbs_tail_lifted", 0.851, 1.0)
+_HARDLY = between("hind_duty_limbs_tail_lifted", 0.8, 0.851)
+_LINE = {
+    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    "two_feet_alone_share_limbs_only": 0.0,
+    "two_feet_alone_share_limbs_tail_lifted": 0.0,
+    "tail_load_share_limbs_only": 0.05,
+}
+_TILT = {
+    **between("hind_duty_limbs_tail_lifted", 0.7, 0.845),
+    **between("lean_on_two_feet_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
+    **between("lean_limbs_tail_lifted_1200_ms", radians(1.01), radians(1.1)),
+    **between("lean_coordinated_1200_ms", radians(0.9), radians(1.0)),
+    "lean_limbs_only_1200_ms": 0.1,
+    **between("line_distance_limbs_tail_lifted_1200_ms", 0.0241, 0.03),
+    "standing_feet_limbs_tail_lifted_1200_ms": 2,
+    "standing_feet_limbs_only_1200_ms": 4,
+}
+_TAIL = {
+    "tail_contact_pp_change": -0.1,
+    "tail_contact_pp_change_low": -0.2,
+    "tail_contact_pp_change_high": -0.001,
+    "tail_contact_pp_change_limbs_only": -0.4,
+    **between("tail_load_share_coordinated", 0.0505, 0.06),
+}
+_WAG = {"wagging_pp_change": -0.1, "wagging_pp_change_low": -0.2, "wagging_pp_change_high": -0.001}
+
+EXAMPLES: Examples = {
+    "com_fluctuation": [
+        (_HEIGHT, "reproduced"),
+        (_HEIGHT | {"com_height_pp_change_tail_lifted_high": 0.001}, "undecided"),
+        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1), "contradicted"),
+        (_HEIGHT | _HARDLY, "undecided"),
+        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1) | _HARDLY, "undecided"),
+        (_HEIGHT | _SHUFFLES, "not testable"),
+        (_HEIGHT | between("com_height_pp_change_tail_lifted", 0.001, 0.1) | _SHUFFLES, "not testable"),
+    ],
+    "com_on_support_line": [
+        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239), "reproduced"),
+        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0241), "undecided"),
+        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.0241, 0.03), "contradicted"),
+        (_LINE | between("line_distance_max_limbs_tail_lifted", nan, nan), "not testable"),  # never on two feet alone
+        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _HARDLY, "undecided"),
+        (_LINE | between("line_distance_max_limbs_tail_lifted", 0.01, 0.0239) | _SHUFFLES, "not testable"),
+    ],
+    "tilt_limbs_only": [
+        (_TILT, "reproduced"),
+        (_TILT | {"lean_on_two_feet_limbs_tail_lifted_1200_ms": nan}, "not testable"),
+        (
+            _TILT
+            | between("lean_limbs_tail_lifted_1200_ms", radians(0.9), radians(0.99))
+            | between("lean_coordinated_1200_ms", 0.0, 0.0),
+            "contradicted",
+        ),
+        (_TILT | between("lean_limbs_tail_lifted_1200_ms", radians(0.99), radians(1.02)), "undecided"),
+        (_TILT | between("lean_coordinated_1200_ms", radians(0.9), radians(1.02)), "undecided"),
+        (_TILT | between("lean_coordinated_1200_ms", radians(1.12), radians(1.2)), "contradicted"),
+        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.0239, 0.03), "undecided"),
+        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239), "contradicted"),
+        (_TILT | _HARDLY, "undecided"),
+        (_TILT | _SHUFFLES, "not testable"),
+        (_TILT | between("line_distance_limbs_tail_lifted_1200_ms", 0.01, 0.0239) | _SHUFFLES, "not testable"),
+    ],
+    "tail_supports": [
+        (_TAIL, "reproduced"),
+        (_TAIL | between("tail_load_share_coordinated", 0.0495, 0.06), "undecided"),
+        (_TAIL | between("tail_load_share_coordinated", 0.04, 0.0495), "contradicted"),
+        (_TAIL | {"tail_contact_pp_change_high": 0.001}, "undecided"),
+        (_TAIL | between("tail_contact_pp_change", 0.001, 0.1), "contradicted"),
+    ],
+    "wagging_balances": [
+        (_WAG, "reproduced"),
+        (_WAG | {"wagging_pp_change_high": 0.001}, "undecided"),
+        (_WAG | between("wagging_pp_change", 0.001, 0.1), "contradicted"),
+    ],
+    "spine_sinusoidal": [
+        ({"spine_sine_r2": 0.951}, "by construction"),
+        ({"spine_sine_r2": 0.949}, "contradicted"),
+    ],
+}

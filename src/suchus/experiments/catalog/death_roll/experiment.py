@@ -1,0 +1,262 @@
+"""How fast does it roll about its long axis, and with what?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import OpenLoop
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.catalog.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
+from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
+from suchus.sim.metrics import between, peak_torque, roll_rate, whole
+from suchus.sim.model import longest_step
+from suchus.robot.motion import Gait, roll
+from suchus.core.progress import portion
+from suchus.robot.robots import ROBOTS
+
+_NEARLY = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
+_MEDIA = ("vacuum", "water")
+_ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeathRoll(Experiment):
+    """The crocodile's roll, without ground and gravity, from rest; limbs folded back.
+
+    A bend that goes around the body once in a cycle turns the body the other way. In vacuum nothing acts from
+    outside, so that the angular momentum must stay zero while the body turns; water adds MuJoCo's ellipsoid drag,
+    which knows no wake and not all of the added mass. The rate is the twist about the mean long axis over whole
+    cycles, after a first cycle in which the bends grow.
+    """
+
+    title = "How fast does it roll about its long axis, and with what?"
+    shows = "The roll that section I names; beyond the article"
+    answers = (
+        "rate_trunk_vacuum",
+        "rate_tail_vacuum",
+        "rate_c_shape_vacuum",
+        "rate_c_shape_water",
+        "power_c_shape_water",
+    )
+    needs = ("trunk", "trunk_pitch", "tail_yaw", "tail_pitch")
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that rolls."""
+    frequency: float = 1.0
+    """Frequency of the bends [Hz], 0.05 to 5."""
+    trunk: float = radians(60)
+    """Amplitude of both bends of the trunk [rad]."""
+    tail_lateral: float = radians(60)
+    """Amplitude of the tail's lateral bend [rad]; the servo of the cable must be fast enough for it."""
+    tail_vertical: float = radians(40)
+    """Amplitude of the tail's pitch joint [rad]; the cable's end bends no more than this at the root."""
+    cycles: int = 3
+    """Number of cycles that are simulated; the first, in which the bends grow, is not measured [-]."""
+    phases: tuple[float, ...] = (-0.25, -0.125, 0.0, 0.125, 0.25, 0.375, 0.5)
+    """Phase lags of the trunk's vertical bend behind its lateral one, for the curve [cycle]."""
+    bends: tuple[float, ...] = (radians(30), radians(60), radians(90))
+    """Amplitudes of the trunk's bends, for the curve [rad]."""
+    frequencies: tuple[float, ...] = (0.7, 1.0, 1.5, 2.0)
+    """Frequencies of the trunk's bends, for the curve [Hz]; at 60 degrees the pitch servos allow 2.1 Hz."""
+    timestep: float = 0.001
+    """Time step of the physics [s]; the cable's servo is stiff, and beyond 1 ms Runge-Kutta steps do not hold it."""
+    coarse_timestep: float = 0.002
+    """Time step of the runs in which only the trunk bends [s]."""
+    timesteps: tuple[float, ...] = (0.0025, 0.00125, 0.000625)
+    """Time steps, falling, for the check of the angular momentum and the rate [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("death_roll", self) as check:
+            check.whole("cycles", 2, 100)
+            check.number("frequency", 0.05, 5.0, "Hz")
+            check.that(min(self.frequencies) * self._duration >= 2.0, "every frequency needs two cycles in the run")
+
+    def quick(self) -> "DeathRoll":
+        """Two short cycles, one or two points on each curve."""
+        return replace(
+            self,
+            frequency=2.0,
+            cycles=2,
+            trunk=radians(50),
+            tail_lateral=radians(25),
+            tail_vertical=radians(25),
+            phases=(0.0, 0.25),
+            bends=(radians(30),),
+            frequencies=(2.0,),
+            timesteps=(0.0025, 0.00125),
+        )
+
+    def on(self, robot: Robot) -> "DeathRoll":
+        """Return the same question for another robot, in time steps that hold its joints as they hold those of now."""
+        asked = super(DeathRoll, self).on(robot)  # a class with slots has no short form
+        finer, longest = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
+        while finer * max(asked.timesteps) > _NEARLY * longest:
+            finer /= 2  # control periods stay whole numbers of steps
+        steps = tuple(finer * step for step in asked.timesteps)
+        timestep, coarse = finer * asked.timestep, finer * asked.coarse_timestep
+        return replace(asked, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
+
+    @property
+    def _duration(self) -> float:
+        return self.cycles / self.frequency
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Roll in vacuum and in water, and over phase, amplitude, frequency and time step."""
+        arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
+        record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
+        record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
+        return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
+
+    def _roll(self, *, frequency: float | None = None, **changes: Any) -> Gait:
+        """Return the roll with the trunk alone, or with what is changed."""
+        return roll(self.robot, period=1.0 / (frequency or self.frequency), **({"trunk": (self.trunk,) * 2} | changes))
+
+    def _arms(self) -> dict[str, Gait]:
+        tail = (self.tail_lateral, self.tail_vertical)
+        return {
+            "trunk": self._roll(),
+            "tail": self._roll(trunk=(0.0, 0.0), tail=tail),
+            "c_shape": self._roll(tail=tail),
+            "s_shape": self._roll(tail=tail, tail_lag=0.5),
+            "lateral_only": self._roll(trunk=(self.trunk, 0.0)),
+            "vertical_only": self._roll(trunk=(0.0, self.trunk)),
+            "reversed": self._roll(lag=-0.25),
+        }
+
+    def _simulate(
+        self, rolls: Mapping[str, Gait], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
+    ) -> xr.Dataset:
+        """Simulate rolls, all of them in one medium after the other."""
+        runs = [self._afloat(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
+        record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
+        return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
+
+    def _afloat(self, gait: Gait, arm: str, medium: str) -> Run:
+        afloat: Afloat = VACUUM if medium == "vacuum" else WATER
+        grows = OpenLoop(begin=0.0, ramp=gait.period)
+        return Run(robot=self.robot, gait=gait, control=grows, afloat=afloat, label=arm)
+
+    def _window(self, frequency: float) -> float:
+        """Return where the measurement begins: whole cycles before the end, after the first cycle [s]."""
+        measured = int(frequency * self._duration + 1e-9) - 1
+        return self._duration - measured / frequency
+
+    def _rates(self, record: xr.Dataset, frequency: float) -> np.ndarray:
+        return np.asarray(roll_rate(record, self._window(frequency)).values / (2 * pi))
+
+    def _curves(self, progress: Any) -> xr.Dataset:
+        """Return the rate over phase, amplitude and frequency of the trunk's bends [Hz]."""
+        phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
+        bends = {f"bend {b}": self._roll(trunk=(b, b)) for b in self.bends}
+        speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
+        lagging = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
+        both = self._simulate(bends | speeds, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
+        by_medium = [both.isel(run=both.medium.values == medium) for medium in _MEDIA]
+        count = len(bends)
+        bent = [self._rates(part.isel(run=slice(0, count)), self.frequency) for part in by_medium]
+        fast = [
+            [self._rates(part.isel(run=[count + i]), f)[0] for i, f in enumerate(self.frequencies)]
+            for part in by_medium
+        ]
+        data = xr.Dataset(
+            {
+                "rate_by_phase": ("late", self._rates(lagging, self.frequency), {"units": "Hz"}),
+                "rate_by_bend": (("fluid", "bend"), np.array(bent), {"units": "Hz"}),
+                "rate_by_frequency": (("fluid", "frequency"), np.array(fast), {"units": "Hz"}),
+            },
+            coords={
+                "late": list(self.phases),
+                "bend": list(self.bends),
+                "frequency": list(self.frequencies),
+                "fluid": list(_MEDIA),
+            },
+        )
+        for name, unit in (("late", "1"), ("bend", "rad"), ("frequency", "Hz")):
+            data[name].attrs["units"] = unit
+        return data
+
+    def _steps(self, progress: Any) -> xr.Dataset:
+        """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
+        left, rate, count = [], [], len(self.timesteps)
+        for i, step in enumerate(self.timesteps):
+            rolled = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
+            left.append(float(abs(rolled.angular_momentum).max()))
+            rate.append(float(self._rates(rolled, self.frequency)[0]))
+        data = xr.Dataset(
+            {
+                "momentum_by_timestep": ("timestep", left, {"units": "kg m2/s"}),
+                "rate_by_timestep": ("timestep", rate, {"units": "Hz"}),
+            },
+            coords={"timestep": list(self.timesteps)},
+        )
+        data.timestep.attrs["units"] = "s"
+        return data
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return rate, power and loads of each roll, and what is left of the angular momentum."""
+        start = self._window(self.frequency)
+        torque, measured = peak_torque(record, start), between(record, start)
+        power = (measured.servo_torque * measured.servo_velocity).clip(min=0.0).sum("servo").mean("time")
+        speed = abs(measured.servo_velocity).max("time")
+        measures = Measures()
+        for medium in _MEDIA:
+            for arm in _ARMS:
+                run = int(np.flatnonzero((record.label == arm) & (record.medium == medium))[0])
+                measures[f"rate_{arm}_{medium}"] = Measure(float(record.rate[run]), "Hz")
+                if arm in ("trunk", "tail", "c_shape", "s_shape"):
+                    measures[f"power_{arm}_{medium}"] = Measure(float(power[run]), "W")
+                if arm == "c_shape":
+                    for group, servos in servo_groups(self.robot).items():
+                        for what, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
+                            greatest = float(values.isel(run=run).sel(servo=list(servos)).max())
+                            measures[f"{what}_peak_{group}_{medium}"] = Measure(greatest, unit)
+        free = record.medium == "vacuum"
+        trunk, tail, both = (measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape"))
+        return measures | {
+            "share_trunk": Measure(trunk / both, "-"),
+            "share_tail": Measure(tail / both, "-"),
+            "momentum_left_vacuum": Measure(float(abs(record.angular_momentum.isel(run=free.values)).max()), "kg m2/s"),
+            "momentum_exchanged_water": Measure(
+                float(abs(record.angular_momentum.isel(run=~free.values)).max()), "kg m2/s"
+            ),
+            "drift_vacuum": Measure(_drift(record.isel(run=free.values)), "m"),
+            "rate_change_with_timestep": Measure(
+                float(abs(record.rate_by_timestep[-1] / record.rate_by_timestep[-2] - 1.0)), "-"
+            ),
+        }
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
+        return self.told(measures, **{what: self._load(measures, what) for what in ("speed", "torque")})
+
+    def _load(self, measures: Mapping[str, float], what: str) -> float:
+        """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
+        return max(
+            measures[f"{what}_peak_{group}_{medium}"] / min(getattr(self.robot.servo(servo), what) for servo in servos)
+            for group, servos in servo_groups(self.robot).items()
+            for medium in _MEDIA
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw one roll, what decides its rate, and what it costs."""
+        record = outcome.record
+        return {
+            "death_roll": draw_roll(self.robot, record),
+            "death_roll_rate": draw_rates(record),
+            "death_roll_cost": draw_cost(self.robot, record, self._window(self.frequency)),
+        }
+
+
+def _drift(record: xr.Dataset) -> float:
+    """Return how far the centre of mass moves at most [m]."""
+    moved = record.centre_of_mass - record.centre_of_mass.isel(time=0)
+    return float(((moved**2).sum("xyz") ** 0.5).max())
+
+
+experiment = DeathRoll()

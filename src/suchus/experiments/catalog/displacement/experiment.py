@@ -1,0 +1,241 @@
+"""How far does the robot crawl, with spine and tail and without?"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import layout
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import coarse_step
+from suchus.core.errors import InvalidDesign
+from suchus.experiments.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
+from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
+from suchus.sim.metrics import displacement as displacement_of
+from suchus.robot.motion import START, FootPath, Gait, suits
+from suchus.article.paper import CLAIMS, CYCLES
+
+_GROUPS = CONDITIONS[:2]
+_CRAWL = belly_crawl.metres
+"""The crawl for which strokes and bends of the map are chosen."""
+_LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Displacement(TwoGroups):
+    """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.
+
+    Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
+    the beginning of the first cycle to the end of the last. The control group's tail lies still on the ground; with its
+    tail in the air it is simulated beside. Of another body those conditions are run that its parts make possible, and
+    of the map as much as its limbs reach.
+    """
+
+    title = "How far does it crawl, with spine and tail and without?"
+    shows = "Section IV.B, Fig. 16"
+    answers = (
+        "forward_coordinated",
+        "forward_limbs_only",
+        "forward_ratio",
+        "gain_spine_swing",
+        "gain_tail_swing",
+        "gain_tail_contact",
+    )
+    needs = ("limbs", "axis")
+
+    strokes: tuple[float, ...] = tuple(
+        stroke / _CRAWL.stroke for stroke in (0.01, 0.02, _CRAWL.stroke, 0.04, 0.055, 0.07, 0.085)
+    )
+    """Strokes of the limbs on the map, over those of the gait [-]; of the crawl from 10 to 85 mm."""
+    bends: tuple[float, ...] = tuple(bend / _CRAWL.trunk_bend for bend in (0.0, 0.3, 0.6, 0.9, _CRAWL.trunk_bend, 1.5))
+    """Bends of the axis on the map, over those of the gait [-]; of the crawl's trunk up to 1.5 rad."""
+    pitches: tuple[float, ...] = (0.1, 0.15, 0.2, 0.25, 0.3)
+    """Steady angles of the tail's pitch joint, down positive, over its plausible range [rad]."""
+    phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
+    """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
+
+    def check(self, check: Checks) -> None:
+        """Check what the map is drawn over."""
+        check.rising("strokes", 0.0, 20.0, "")
+        check.rising("bends", 0.0, 20.0, "")
+        check.rising("pitches", -1.0, 1.0, "rad")
+        check.rising("phases", -1.0, 1.0, "cycle")
+
+    def quick(self) -> "Displacement":
+        """One cycle, two repeats, four corners of the map."""
+        strokes = tuple(stroke / _CRAWL.stroke for stroke in (0.02, 0.06))
+        bends = tuple(bend / _CRAWL.trunk_bend for bend in (0.6, 1.2))
+        corners = replace(self, strokes=strokes, bends=bends, pitches=(0.1, 0.3))
+        return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl in every condition, as designed and with robots as built, and map what decides."""
+        duration = START + self.cycles * self.gait.period
+        gaits = conditions_of(self.robot, self.gait, self.control_group)
+        runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
+        record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
+        built = staged(progress, "robots as built", 0.1, 0.5)
+        record = record.merge(self.repeated(runs, _numbers, _UNITS, duration, built))
+        record = record.merge(self._mapped(duration, staged(progress, "map", 0.5, 1.0)))
+        record.attrs["least"] = _LEAST * self.robot.length
+        return Simulated(record=record, replays=self._replays(record))
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "crawl_replay.html",
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=1),
+            labels=("spine and tail", "limbs only"),
+            title="Crawling with spine and tail, and without",
+            caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
+        )
+
+    def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
+        """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
+        strokes, bends, pitches = self._grid()
+        limbs = [self.control_group.strode(s) for s in strokes]
+        bent = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
+        pitched = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
+        lagging = [self.gait.lagged(p) for p in self.phases]
+        runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *lagging)]
+        reached = _forward(
+            simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
+        ).values
+        cut = np.split(reached, np.cumsum([len(limbs), len(bent), len(pitched)]))
+        metres = {"units": "m"}
+        data = xr.Dataset(
+            {
+                "map_limbs_only": ("stroke", cut[0], metres),
+                "map_coordinated": (("stroke", "bend"), cut[1].reshape(len(strokes), -1), metres),
+                "pitched": (("group", "pitch"), cut[2].reshape(2, -1), metres),
+                "late_coordinated": ("late", cut[3], metres),
+            },
+            coords={
+                "stroke": list(strokes),
+                "bend": list(bends),
+                "group": list(_GROUPS),
+                "pitch": list(pitches),
+                "late": list(self.phases),
+            },
+        )
+        for name, unit, what in (
+            ("stroke", "1", "strokes over those of the gait"),
+            ("bend", "1", "bends over those of the gait"),
+            ("pitch", "rad", "pitch of the tail, down positive"),
+            ("late", "1", "phase lag of the trunk's bend, in cycles"),
+        ):
+            data[name].attrs.update(units=unit, long_name=what)
+        return data
+
+    def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
+        strides, lifts = self.gait.has("strokes"), self.gait.has("steering") and layout(self.robot).tail_pitch
+        strokes = self._followed(self.strokes, self.gait.strode) if strides else ()
+        bends = self._followed(self.bends, self.gait.bent)
+        pitches = self._followed(self.pitches, self.gait.lifted) if lifts else ()
+        return strokes or (1.0,), bends or (1.0,), pitches
+
+    def _followed(self, numbers: Sequence[float], change: Callable[[float], Gait]) -> tuple[float, ...]:
+        """Return the numbers that make a gait, and one that the body can follow."""
+
+        def follows(number: float) -> bool:
+            try:
+                return suits(self.robot, change(number))
+            except InvalidDesign:
+                return False  # as a stroke beyond the limbs' reach
+
+        return tuple(number for number in numbers if follows(number))
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return what each condition does and what each part adds, of the robots as built, and the map."""
+        measures = of_repeats(record, _UNITS)
+        forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
+        for name, arm, without in _GAINS:
+            if {arm, without} <= set(forward):
+                measures |= estimated(f"gain_{name}", forward[arm] - forward[without], "m")
+        for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
+            if control in forward:
+                measures |= estimated(name, forward["coordinated"] / forward[control], "-")
+        measures |= ends("ratio_on_map", _ratio(record), "-")
+        measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
+        if record.sizes["pitch"]:
+            measures |= ends("forward_over_tail_pitch", record.pitched.sel(group="coordinated"), "m")
+        return measures
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the crawls, what each part adds, the displacement over time and what decides it."""
+        record, printed = outcome.record, {arm: CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _GROUPS}
+        article = self._article()
+        full = self.cycles == CYCLES and not self.unjudged()
+        return {
+            "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
+            "parts": draw_parts(record, _forward(record), printed if article else {}),
+            "displacement_over_time": draw_course(record, _GROUPS, printed if full else {}),
+            "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=article),
+        }
+
+    def _stroke(self) -> float:
+        """Return half the distance that a front foot moves back in stance [m]."""
+        girdles = zip(self.robot.girdles, self.gait.limbs, strict=True)
+        return next((girdle.limb.reach * limb.stroke for girdle, limb in girdles if isinstance(limb, FootPath)), 0.0)
+
+    def _article(self) -> bool:
+        """Whether the article's numbers are for this robot and its gaits."""
+        shelf = type(self)()
+        return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control_group"))
+
+
+def _forward(record: xr.Dataset) -> xr.DataArray:
+    return displacement_of(record).sel(xyz="x")
+
+
+_UNITS = {
+    "forward": "m",
+    "sideways": "m",
+    "heading_drift": "rad",
+    "slip": "-",
+    "cost_of_transport": "-",
+    "hind_duty": "-",
+    "hind_clearance": "m",
+    "two_feet_share": "-",
+}
+"""Numbers of every condition, and their units."""
+
+
+def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the numbers of each run by the names of ``_UNITS``; of the hind feet those of the worse one."""
+    hind = {"leg": record.leg.values[-2:]}
+    return {
+        "forward": _forward(record),
+        "sideways": displacement_of(record).sel(xyz="y"),
+        "heading_drift": heading_change(record),
+        "slip": slip(record),
+        "cost_of_transport": cost_of_transport(record),
+        "hind_duty": duty_factor(record).sel(hind).max("leg"),
+        "hind_clearance": foot_clearance(record).sel(hind).min("leg"),
+        "two_feet_share": two_feet_share(record),
+    }
+
+
+_GAINS = (
+    ("spine_swing", "coordinated", "tail_drag"),
+    ("tail_swing", "coordinated", "tail_still"),
+    ("tail_contact", "tail_still", "spine_only"),
+    ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
+)
+"""What two conditions differ in: name, the condition with it, the one without it."""
+
+
+def _ratio(record: xr.Dataset) -> xr.DataArray:
+    return record.map_coordinated / record.map_limbs_only.clip(min=record.attrs["least"])
+
+
+experiment = Displacement()

@@ -1,0 +1,248 @@
+"""Crawls side by side from above, what each part of the axis adds to the displacement, and what decides it."""
+
+from collections.abc import Mapping, Sequence
+from math import degrees
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from suchus.robot.design import Robot
+from suchus.visual.figures.data import carry
+from suchus.visual.figures.posture import draw_strip
+from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
+from suchus.visual.figures.timeseries import draw_lines, mark_cycles, mark_printed
+from suchus.robot.motion import START, Gait
+from suchus.article.paper import CLAIMS
+from suchus.robot.robots import ROBOTS
+
+_USUAL = ROBOTS["caiman"].length
+"""Length of the robot for which distances between the strips are [m]."""
+_SHOWN = "crawl of the other figures"
+
+
+def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
+    """Draw one robot per run from above at the beginning, between and at the end of its walk.
+
+    Args:
+        robot: whose record it is.
+        record: with one run per arm.
+        arms: roles of ``style.LINES``.
+    """
+    end = float(record.time[-1])
+    times = [START, (START + end) / 2, end]
+    size = robot.length / _USUAL
+    wide = _width(record.sel(time=times, method="nearest"), size)
+    apart = 2 * wide + 0.04 * size
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=10.5, height=5.2)
+        ax = axes[0, 0]
+        ahead = record.centre_of_mass.sel(xyz="x")
+        for i, role in enumerate(arms):
+            run, aside = record.isel(run=i), -apart * i
+            draw_strip(ax, robot, run, times, role=role, aside=aside)
+            start, stop = (float(ahead.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            dim = aside - wide - 0.02 * size
+            ax.annotate(
+                "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}
+            )
+            ax.update_datalim([(start, dim - 0.06 * size)])
+            ax.text(
+                max(stop, start + 0.02 * size) + 0.03 * size,
+                dim,
+                f"{stop - start:.{2 if size > 0.5 else 4}f} m, {LINES[role]['label']}",
+                color=COLOURS[role],
+                va="center",
+                fontsize=13,
+            )
+        ax.autoscale_view()
+        ax.set_axis_off()
+    return captioned(
+        figure,
+        f"Two crawls from above with identical leg commands, at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with "
+        "the track of the centre of mass: above spine and tail take part, below the legs work alone. Filled feet "
+        "stand.",
+    )
+
+
+def _width(shown: xr.Dataset, size: float) -> float:
+    """Return how far a strip reaches to either side: to the farthest foot with its toes, at least to the usual [m]."""
+    feet = np.abs(shown.foot_position.sel(xyz="y").values).max(initial=0.0)
+    return max(0.19 * size, float(feet) + 0.06 * size)
+
+
+def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed: Mapping[str, float]) -> Figure:
+    """Draw how far each condition gets, of the robots as built and as designed.
+
+    Args:
+        record: of the experiment.
+        designed: displacement of each condition of the robot as designed [m].
+        printed: the article's displacements by condition [m]; empty for another robot or gait.
+    """
+    arms = [str(arm) for arm in record.condition.values]
+    with styled():
+        figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
+        ax = axes[0, 0]
+        for i, arm in enumerate(arms):
+            built, here = record.repeated_forward.sel(condition=arm), len(arms) - i
+            middle = float(built.median())
+            labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
+            ax.plot(built, [here] * built.size, "|", color=COLOURS[arm], markersize=13, alpha=0.6, label=labels[0])
+            ax.plot(middle, here, "o", color=COLOURS[arm], markersize=9, label=labels[1])
+            ax.plot(float(designed[i]), here, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
+            ax.annotate(f"{middle:.3g} m", (middle, here), (0, 10), ha="center", fontsize=11,
+                        textcoords="offset points")  # fmt: skip
+        for i, (arm, metres) in enumerate(printed.items()):
+            ax.plot(metres, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
+                    markeredgecolor="black", label=None if i else "article")  # fmt: skip
+        ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
+        ax.set_ylim(0.4, len(arms) + 0.8)
+        ax.set_xlim(left=min(0.0, float(record.repeated_forward.min())))
+        ax.set_xlabel("displacement forward [m]")
+        ax.legend(loc="lower right")
+    return captioned(
+        figure,
+        f"What each part of spine and tail adds: {record.sizes['repeat']} robots built of the design, whose servos' "
+        "zeros, play, masses and friction differ from it within their tolerances, and the design itself. All "
+        "conditions command the same legs.",
+    )
+
+
+def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, float]) -> Figure:
+    """Draw the displacement over time with all of the axis and without, and where the robots as built end.
+
+    Args:
+        record: of the experiment, the two conditions first.
+        arms: names of the two conditions.
+        printed: the article's displacements by condition [m]; empty where they are not for this run.
+    """
+    with styled():
+        figure, axes = panels(1, 1, height=4.2)
+        ax = axes[0, 0]
+        x = record.centre_of_mass.isel(run=[0, 1]).sel(xyz="x")
+        x = x - x.sel(time=START, method="nearest")
+        draw_lines(ax, x, arms)
+        end = float(record.time[-1])
+        for i, arm in enumerate(arms):
+            built, label = record.repeated_forward.sel(condition=arm), None if i else "each robot as built"
+            ax.plot([end] * built.size, built, "_", color=COLOURS[arm], markersize=11, clip_on=False, label=label)
+        cycles = (end - START) / float(record.period[0])
+        mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
+        if printed:
+            mark_printed(ax, printed, end)
+        ax.set_ylabel("displacement forward [m]")
+        ax.legend(loc="upper left")
+    diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if printed else ""
+    return captioned(
+        figure,
+        f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands, as designed."
+        f"{diamonds} Marks at the end: {record.sizes['repeat']} robots built of the design.",
+    )
+
+
+def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: float, *, article: bool) -> Figure:
+    """Draw the ratio over stroke and bend, and the displacement over the tail's pitch and the trunk's phase lag.
+
+    Args:
+        record: of the experiment.
+        ratio: of the displacements with all of the axis and without, shape (stroke, bend) [-].
+        gait: the crawl of the other figures.
+        stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
+        article: whether the article's numbers are for this robot and its gaits.
+    """
+    pitched = record.sizes["pitch"] > 0
+    absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
+    with styled(axes__grid=False):
+        ratios = [1.35, 1, 1] if pitched else [1.35, 1]
+        figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
+        star = (1.0, 1.0)
+        if absolute:
+            star = 1000 * stroke, degrees(gait.number("trunk_bend"))
+            ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
+            ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
+            ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
+        printed = CLAIMS["displacement_ratio"].value if article else None
+        ax = axes[0, 0]
+        if min(ratio.shape) > 1:
+            label = "ratio of displacements [-]"
+            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed, form="%.3g")
+            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_SHOWN)
+        else:  # of the strokes or the bends the body can follow one only
+            over = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
+            ax.plot(ratio[over], ratio.squeeze("bend" if over == "stroke" else "stroke"), marker="o")
+            ax.axvline(star[over == "bend"], color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
+            ax.set_xlabel(f"{ratio[over].attrs['long_name']} [{ratio[over].attrs['units']}]")
+            ax.set_ylabel("ratio of displacements [-]")
+        ax.legend(loc="upper right", fontsize=10)
+        ax.set_title("spine and tail over limbs only")
+        if pitched:
+            ax = axes[0, 1]
+            for arm in record.group.values:
+                ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[str(arm)])
+            ours = degrees(gait.number("tail_pitch"))
+            ax.axvline(ours, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
+            ax.set_xlabel("pitch of the tail, down [deg]")
+            ax.set_ylabel("displacement forward [m]")
+            ax.set_ylim(bottom=0.0)
+            ax.legend(loc="center right")
+            ax.set_title("pitch of the tail")
+        ax = axes[0, -1]
+        ax.axhline(0.0, color="#999999", linewidth=0.8)
+        ax.plot(record.late, record.late_coordinated, marker="o", **(dict(LINES["coordinated"]) | {"label": None}))
+        ax.set_xlabel("phase lag of the trunk [cycle]")
+        ax.set_ylabel("displacement forward [m]")
+        ax.set_title("phase lag of the trunk")
+    line = ", the orange line the article's ratio" if article else ""
+    shown = "star" if min(ratio.shape) > 1 else "dotted line"
+    what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
+    middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
+    return captioned(
+        figure,
+        f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
+        f"{shown} is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
+        "the legs, with spine and tail.",
+    )
+
+
+def draw_map(
+    ax: Axes,
+    values: xr.DataArray,
+    *,
+    levels: Sequence[float],
+    label: str,
+    emphasised: float | None = None,
+    form: str = "%g",
+) -> None:
+    """Draw filled contours of a positive quantity on a logarithmic scale, with labelled lines.
+
+    Args:
+        ax: to draw on; its labels come from the ``long_name`` and ``units`` of the coordinates.
+        values: two-dimensional, the first dimension up, the second to the right.
+        levels: of the lines, increasing; doubled on from the last until none of the values lies above them.
+        label: of the colour bar.
+        emphasised: level to draw thick.
+        form: how a level is written.
+    """
+    up, right = (values[d] for d in values.dims)
+    known = values.values.astype(float)
+    greatest = float(np.max(known, where=np.isfinite(known), initial=levels[0]))
+    while levels[-1] < greatest:
+        levels = (*levels, 2 * levels[-1])
+    least, most = levels[0], levels[-1]
+    data = np.ma.masked_invalid(np.clip(known, 0.5 * least, most))
+    filled = ax.contourf(right, up, data, levels=np.geomspace(least, most, 40), cmap=SEQUENTIAL,
+                         norm=LogNorm(least, most), extend="min" if (known < least).any() else "neither")  # fmt: skip
+    carry(filled, values.values, right.values, up.values)
+    lines = ax.contour(right, up, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
+    ax.clabel(lines, fmt=form, fontsize=11)
+    if emphasised is not None:
+        thick = ax.contour(right, up, data, levels=[emphasised], colors="#D55E00", linewidths=2.6)
+        ax.clabel(thick, fmt=form, fontsize=12)
+    for axis, coordinate in ((ax.set_xlabel, right), (ax.set_ylabel, up)):
+        axis(f"{coordinate.attrs['long_name']} [{coordinate.attrs['units']}]")
+    assert ax.figure is not None
+    bar = ax.figure.colorbar(filled, ax=ax, ticks=list(levels), format=form)
+    bar.set_label(label)
+    bar.minorticks_off()

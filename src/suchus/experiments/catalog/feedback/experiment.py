@@ -1,0 +1,489 @@
+"""Do the three feedback rules coordinate the robot, and what are they good for?"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import radians
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, Runs
+from suchus.robot.control.topology import topology
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import coarse_step, control_period
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances, simulate
+from suchus.sim.metrics import heading
+from suchus.sim.metrics.coordination import WITHIN, cycles_until, phase_error
+from suchus.robot.motion import START, Gait, movement
+from suchus.robot.robots import ROBOTS
+
+_ALONE: Mapping[str, Any] = {"spine": None, "tail": None}
+STARTS: Mapping[str, Coordinated] = {
+    **{law: Coordinated(limbs=LAWS[law], random_start=True, **_ALONE) for law in LAWS},
+    "closed_noisy": Coordinated(random_start=True, load_noise=0.3),
+    "isolated_noisy": Coordinated(random_start=True, load_noise=0.3, sharing=False),
+}
+"""What brings random limb phases in order: each law alone, then all rules with noisy feet, sharing and not sharing."""
+_DISTANCES = ("closed_noisy", "isolated_noisy")
+"""Whose distances are measured; of the others the phases are."""
+ARMS: Mapping[str, Coordinated] = {
+    "open": Coordinated(limbs=LAWS["off"], **_ALONE),
+    "limbs": Coordinated(**_ALONE),
+    "spine": Coordinated(limbs=LAWS["off"], tail=None),
+    "tail": Coordinated(limbs=LAWS["off"], spine=None),
+    "closed": Coordinated(),
+    "steered": Coordinated(heading=HeadingRule()),
+}
+"""Who is disturbed: no rule, each rule alone, all three, all three with the heading loop."""
+DISTURBANCES = (
+    "none",
+    "kick",
+    "locked_spine",
+    "uphill",
+    "downhill",
+    "side_slope",
+    "other_side",
+    "push",
+    "limp_yaw",
+    "load_noise",
+)
+"""What happens after one cycle; a slope is there from the beginning."""
+_LAWS_OF_CLAIMS = ("off", "cross_load", "wrong_sign", *_DISTANCES)
+_DISTURBANCES_OF_CLAIMS = ("none", "locked_spine", "uphill")
+_OF_CLAIMS = {
+    *(f"{name}{end}" for name in ("converged_cross_load", "converged_wrong_sign", "way_gain_shared", "way_shared",
+      "way_isolated") for end in ("", "_low", "_high")),
+    "way_shared_least", "way_isolated_least", "distortion", "spine_lacking_spine", "spine_lacking_open",
+    "spine_lacking_growth", "kept_undisturbed_spine", "tail_load_tail", "tail_load_open", "tail_pitch_drift",
+    "kept_undisturbed_tail", "locked_spine_loss_closed", "locked_spine_loss_open",
+}  # fmt: skip
+"""What the claims rest on, which these laws and disturbances are enough for."""
+SHOWN = ("open", "closed", "steered")
+"""The arms whose measures are named."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Feedback(Experiment):
+    """Random limb phases under every law, then nine disturbances with and without the rules.
+
+    Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
+    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the distance
+    forward, along the heading at the start, over ``after`` cycles from the disturbance on. Drift is the distance down a
+    slope to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches
+    it.
+    """
+
+    title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
+    shows = "Sections II.B and III.D, Fig. 10"
+    answers = (
+        "converged_cross_load",
+        "cycles_to_converge",
+        "kick_kept_open",
+        "kick_kept_closed",
+        "uphill_gain_closed",
+        "turning_limp_yaw_steered",
+    )
+    needs = ("limbs", "trunk")
+    judged_with = ("robot", "gait", "kick", "slope", "push", "noise")
+    judged_from: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12, "hold": 2.0, "after": 5}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that crawls."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait of the robot; its limbs must form diagonal pairs."""
+    starts: int = 32
+    """Random initial limb phases, the same for all laws [-]."""
+    cycles: int = 12
+    """Duration for which each start is followed [cycle]."""
+    hold: float = 2.0
+    """Duration for which the limbs must stay coordinated until the end [cycle]."""
+    after: int = 5
+    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
+    kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
+    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
+    from the gait."""
+    slope: float = radians(10)
+    """Slope of the ground [rad]."""
+    push: tuple[float, float, float] = (0.0, 20.0, 0.0)
+    """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
+    noise: float = 0.3
+    """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots of the starts, each built of the design, and their grounds differ from it."""
+    seed: int = 0
+    """Seed of the first start and its robot; the others follow."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("starts", 1, 1000)
+            check.whole("cycles", 1, 1000)
+            check.number("hold", 0.1, 1000.0, "cycle")
+            check.whole("after", 1, 1000)
+            check.each("kick", layout(self.robot).limb_names, -1.0, 1.0, "cycle")
+            check.number("slope", 0.0, 0.5, "rad")
+            check.each("push", ("forward", "left", "up"), -1e3, 1e3, "N")
+            check.number("noise", 0.0, 10.0, "")
+            check.whole("seed", 0, 2**31)
+
+    def quick(self) -> "Feedback":
+        """Two starts, few and short cycles."""
+        return replace(self, gait=replace(self.gait, period=2.0), starts=2, cycles=2, hold=0.5, after=1)
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the robot's own gait, and a kick for each of its limbs.
+
+        Raises:
+            OutsideLimits: its own gait has measured curves.
+        """
+        own = own_gait(robot)
+        own.needs_steering(self.name())
+        kick = (*self.kick, *(0.0,) * len(own.limb_phases))[: len(own.limb_phases)]
+        return {"gait": own, "kick": kick}
+
+    def _suited(self, control: Coordinated) -> Coordinated:
+        return control.suited(self.robot, self.gait)
+
+    @property
+    def _arms(self) -> dict[str, Coordinated]:
+        """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
+        return {
+            name: self._suited(one)
+            for name, one in ARMS.items()
+            if name != "tail" or self._suited(one).tail is not None
+        }
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl from random starts, then disturb a robot whose phases are right."""
+        starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
+        record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
+        return Simulated(record=record, replays=self._replays(pair))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least; for those of the claims fewer laws and disturbances."""
+        if not set(wanted) <= _OF_CLAIMS:
+            return super(Feedback, self).measured(wanted, progress)
+        starts, _ = self._starts(staged(progress, "random starts", 0.0, 0.8), _LAWS_OF_CLAIMS)
+        found = start_measures(starts, self.gait, self.hold, self.cycles)
+        if not set(wanted) <= found.keys():
+            disturbed = self._disturbed(staged(progress, "disturbances", 0.8, 1.0), _DISTURBANCES_OF_CLAIMS)
+            found |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
+        return Measures({name: found[name] for name in wanted})
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how many starts converge, and what each rule makes of each disturbance."""
+        return start_measures(record, self.gait, self.hold, self.cycles) | disturbed_measures(
+            record, self.gait, self.hold, self.after
+        )
+
+    def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "feedback_replay.html",
+            pair.isel(run=0),
+            self.robot,
+            ghost=pair.isel(run=1),
+            labels=("feeling its loads", "without feedback"),
+            title="Finding the gait",
+            caption=(
+                "From limbs out of step: loads felt across the body bring them into the gait, and, half transparent, "
+                "without feedback they stay as they are."
+            ),
+        )
+
+    @property
+    def _front(self) -> str:
+        """The segment of the foremost girdle."""
+        return self.robot.girdles[0].segment
+
+    @property
+    def _pushed(self) -> float:
+        """How long the push lasts: 0.3 s for a body as long as the article's [s]."""
+        period = control_period(self.robot)
+        return max(1, round(0.3 * (self.robot.length / ROBOTS["caiman"].length) ** 0.5 / period)) * period
+
+    @property
+    def _at(self) -> float:
+        """Time at which the disturbance begins [s]."""
+        return START + self.gait.period
+
+    def _starts(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
+        """Return limb phases and distances for every law and start, and one start as a record under two laws.
+
+        NaN where a law is not asked for.
+        """
+        controls = {law: self._suited(STARTS[law]) for law in laws}
+        deaf = [law for law, control in controls.items() if not control.feels and law not in _DISTANCES]
+        cells = [(law, i) for law in laws for i in range(self.starts) if i == 0 or law not in deaf]
+        runs = [
+            self.tolerances.built(
+                Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
+            )
+            for law, i in cells
+        ]
+        duration = START + self.cycles * self.gait.period
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        shape = (len(STARTS), self.starts, record.sizes["time"])
+        phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
+        for law in deaf:
+            phase[list(STARTS).index(law)] = self._phases(controls[law], record.time.values)
+        walked = tuple(np.array([(list(STARTS).index(law), i) for law, i in cells]).T)
+        phase[walked] = record.limb_phase.transpose("run", "time", "leg").values
+        distance[walked] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
+        pair = record.isel(run=[cells.index((law, 0)) for law in ("cross_load", "off")])
+        dims, metre = ("law", "start", "start_time"), {"units": "m"}
+        data = xr.Dataset(
+            {
+                "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
+                "start_way": (dims, distance, metre | {"long_name": "displacement of the centre of mass along x"}),
+            },
+            coords={
+                "law": list(STARTS),
+                "start_time": ("start_time", record.time.values, {"units": "s"}),
+                "leg": record.leg.values,
+            },
+        )
+        return data, pair
+
+    def _phases(self, control: Coordinated, time: np.ndarray) -> np.ndarray:
+        """Return the limb phases of every start under a law that feels nothing, shape (start, time, limb) [cycle].
+
+        Nothing that happens to the body changes them, so that nothing is simulated for them.
+        """
+        period, count = control_period(self.robot), self.starts
+        ticks = np.round(time / period).astype(int)
+        seeds = tuple(range(self.seed, self.seed + count))
+        runs = Runs((control,) * count, (self.robot,) * count, (self.gait,) * count, seeds, int(ticks[-1]) + 1)
+        controller = control.start(runs, period)
+        return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
+
+    def _disturbed(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
+        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition.
+
+        NaN where a disturbance is not asked for.
+        """
+        arms, place = self._arms, layout(self.robot)
+        runs = [self._disturb(control, name) for name in names for control in arms.values()]
+        duration = self._at + self.after * self.gait.period
+        record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
+        dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
+        track = record.centre_of_mass.transpose("run", "time", "xyz").values
+        phase = record.limb_phase.transpose("run", "time", "leg").values
+        facing = heading(record).transpose("run", "time").values
+        bent = record.servo_angle.isel(servo=list(place.trunk_yaw)).sum("servo").transpose("run", "time").values
+        self.gait.needs_steering(self.name())
+        asked = movement(self.robot, self.gait)
+        lacking = asked.bend_of("trunk", asked.axis_phase(phase)) - bent
+        data = xr.Dataset(
+            {
+                "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),
+                "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "distance to the left"}),
+                "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
+                "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
+                "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),
+            },
+            coords={
+                "disturbance": list(names),
+                "arm": list(arms),
+                "time": ("time", record.time.values, {"units": "s"}),
+                "leg": record.leg.values,
+            },
+        )
+        if "tail" in arms:
+            at = place.tail_pitch[0]
+            pitch, torque = (
+                one.isel(servo=at).transpose("run", "time").values.reshape(shape)
+                for one in (record.servo_target, record.servo_torque)
+            )
+            data["tail_pitch"] = (dims, pitch, {"units": "rad", "long_name": "commanded, down positive"})
+            data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
+        return data.reindex(disturbance=list(DISTURBANCES))
+
+    def _disturb(self, control: Coordinated, name: str) -> Run:
+        run = Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed, label=name)
+        place = layout(self.robot)
+        match name:
+            case "kick":
+                return replace(run, control=replace(control, kicks=(Kick(self._at, self.kick),)))
+            case "load_noise":
+                return replace(run, control=replace(control, load_noise=self.noise))
+            case "locked_spine":
+                return replace(
+                    run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),)
+                )
+            case "limp_yaw":
+                return replace(run, faults=(Limp(place.servos[place.limbs[0].servos][0], at=self._at),))
+            case "push":
+                return replace(
+                    run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),)
+                )
+            case "uphill" | "downhill":
+                return replace(run, ground=Ground(uphill=self.slope if name == "uphill" else -self.slope))
+            case "side_slope" | "other_side":
+                return replace(run, ground=Ground(sideways=self.slope if name == "side_slope" else -self.slope))
+        return run
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the starts, one of them as a gait diagram, what each rule gains, the tracks."""
+        record = outcome.record
+        error = phase_error(record.start_phase, self.gait).rename(start_time="time")
+        cycles = (error.time - START) / self.gait.period
+        part = record.sel(time=slice(self._at - 1e-9, None))
+        return {
+            "random_starts": draw_fans(error.assign_coords(time=cycles), WITHIN),
+            "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
+            "what_each_rule_gains": draw_gain(part.x.isel(time=-1) - part.x.isel(time=0)),
+            "topology": draw_topology(topology(self.robot, self.gait)),
+            "disturbed_tracks": draw_tracks(part, ("limp_yaw", "push", "side_slope")),
+        }
+
+
+def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> Measures:
+    """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
+
+    Args:
+        record: what happened.
+        gait: how they were meant to walk.
+        hold: for how long a start stays to count as converged [cycle].
+        cycles: how many were walked [-].
+    """
+    error = phase_error(record.start_phase, gait).rename(start_time="time")
+    period = gait.period
+    cycles_taken = cycles_until(error, period, start=START, hold=hold)
+    measures = Measures()
+    for law in record.law.values:
+        taken = cycles_taken.sel(law=law).values
+        measures |= estimated(f"converged_{law}", np.isfinite(taken), "-", middle=np.mean)
+        measures[f"phase_error_{law}"] = Measure(float(_ending(error.sel(law=law), hold * period).mean()), "-")
+        if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
+            worst = np.quantile(np.minimum(taken, cycles), 0.9)
+            measures[f"cycles_to_converge_{law}"] = Measure(float(worst), "-")
+    measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
+    measures["converged_closed"] = measures["converged_cross_load"]
+    measures["converged_open"] = measures["converged_off"]
+    distances = _ending(record.start_way.rename(start_time="time"), hold * period)
+    distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
+    for name, law in zip(("shared", "isolated"), _DISTANCES, strict=True):
+        measures |= estimated(f"way_{name}", distances.sel(law=law), "m")
+        measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
+    shared, isolated = (distances.sel(law=law, drop=True) for law in _DISTANCES)
+    return measures | estimated("way_gain_shared", shared - isolated, "m")
+
+
+def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> Measures:
+    """Return distances and turns after each disturbance, and what the rules make of them.
+
+    Args:
+        record: what happened.
+        gait: how they walked; the disturbance comes after one cycle.
+        hold: for how long phases stay to count as recovered, at most [cycle].
+        after: how many cycles were walked after it [-].
+    """
+    disturbed_at = START + gait.period
+    part = record.sel(time=slice(disturbed_at - 1e-9, None))
+    change = part.isel(time=-1) - part.isel(time=0)
+    moved = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
+    distance = {key: float(value.x) for key, value in moved.items()}
+    measures = Measures()
+    for name in record.disturbance.values:
+        for arm in SHOWN:
+            measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
+            measures[f"heading_{name}_{arm}"] = Measure(float(moved[name, arm].heading), "rad")
+    error = phase_error(record.limb_phase.sel(disturbance="kick", arm="closed"), gait)
+    back = float(cycles_until(error, gait.period, start=disturbed_at, hold=min(hold, 0.5)))
+    shares = {
+        "kick_kept_open": distance["kick", "open"] / distance["none", "open"],
+        "kick_kept_closed": distance["kick", "closed"] / distance["none", "closed"],
+        "cycles_after_kick": min(back, float(after)),
+        "locked_spine_loss_open": 1.0 - distance["locked_spine", "open"] / distance["none", "open"],
+        "locked_spine_loss_closed": 1.0 - distance["locked_spine", "closed"] / distance["none", "open"],
+        "locked_spine_loss_of_own": 1.0 - distance["locked_spine", "closed"] / distance["none", "closed"],
+        "uphill_gain_closed": distance["uphill", "closed"] / distance["uphill", "open"] - 1.0,
+    }
+    if ("uphill", "tail") in distance:
+        shares["uphill_gain_tail"] = distance["uphill", "tail"] / distance["uphill", "open"] - 1.0
+    measures |= {name: Measure(value, "-") for name, value in shares.items()}
+    last = part.heading.sel(time=part.time[-1] - gait.period, method="nearest")
+    turning = (part.heading.isel(time=-1) - last).sel(disturbance="limp_yaw")
+    for arm in SHOWN:
+        drift = float(moved["other_side", arm].y - moved["side_slope", arm].y) / 2
+        measures[f"drift_side_slope_{arm}"] = Measure(drift, "m")
+        measures[f"turning_limp_yaw_{arm}"] = Measure(float(turning.sel(arm=arm)), "rad")
+    return measures | _undisturbed_measures(record, gait) | _loop_measures(part, gait)
+
+
+def _loop_measures(part: xr.Dataset, gait: Gait) -> Measures:
+    """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
+    stuck = part.lacking.sel(disturbance="locked_spine")
+    first = part.time[0] + gait.period
+    missing = {arm: _rms(_ending(stuck.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
+    begun = _rms(stuck.sel(arm="spine", time=slice(None, first)))
+    measures = Measures(
+        {
+            "spine_lacking_open": Measure(missing["open"], "rad"),
+            "spine_lacking_spine": Measure(missing["spine"], "rad"),
+            "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
+        }
+    )
+    if "tail_load" not in part:
+        return measures
+    uphill = part.sel(disturbance="uphill")
+    load = {arm: abs(float(_ending(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")}
+    pitch = uphill.tail_pitch.sel(arm="tail")
+    before = pitch.sel(time=slice(None, max(float(pitch.time[-1]) - gait.period, float(pitch.time[0]))))
+    drift = abs(float(_ending(pitch, gait.period).mean() - _ending(before, gait.period).mean()))
+    return measures | {
+        "tail_load_open": Measure(load["open"], "N m"),
+        "tail_load_tail": Measure(load["tail"], "N m"),
+        "tail_pitch_drift": Measure(drift, "rad"),
+    }
+
+
+def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
+    """Return what the rules do to a robot whose phases are right, over the first two cycles."""
+    part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
+    change = part.isel(time=-1) - part.isel(time=0)
+    distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
+    clock = change.limb_phase.mean("leg")
+    measures = Measures(
+        {
+            "distortion": Measure(abs(distance["limbs"] / distance["open"] - 1.0), "-"),
+            "kept_undisturbed_spine": Measure(distance["spine"] / distance["open"], "-"),
+            "way_gained": Measure(distance["closed"] / distance["open"] - 1.0, "-"),
+            "clock_closed": Measure(float(clock.sel(arm="closed")) / float(clock.sel(arm="open")), "-"),
+        }
+    )
+    if "tail_pitch" not in record:
+        return measures
+    pitch = record.tail_pitch.sel(arm="closed").isel(time=-1)
+    return measures | {
+        "kept_undisturbed_tail": Measure(distance["tail"] / distance["open"], "-"),
+        "tail_pitch_level": Measure(float(pitch.sel(disturbance="none")), "rad"),
+        "tail_pitch_uphill": Measure(float(pitch.sel(disturbance="uphill")), "rad"),
+    }
+
+
+def _ending(values: xr.DataArray, seconds: float) -> xr.DataArray:
+    return values.sel(time=slice(float(values.time[-1]) - seconds - 1e-9, None))
+
+
+def _rms(values: xr.DataArray) -> float:
+    return float((values**2).mean() ** 0.5)
+
+
+experiment = Feedback()

@@ -1,0 +1,269 @@
+"""Pictures of the closed loop: limbs that find their gait, what each rule gains, where a disturbed robot goes.
+
+And the topology of the article's Fig. 10: sensors, controllers and what they share, as the code has them.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import ceil
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from suchus.robot.control.shared import OWNERS
+from suchus.robot.control.topology import ControlPart
+from suchus.visual.figures.style import COLOURS, DIVERGING, captioned, new, panels, styled
+from suchus.robot.motion import Gait
+
+_LAWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
+    {
+        "off": ("no feedback", COLOURS["neutral"]),
+        "own_load": ("own foot's load", COLOURS["tail_drag"]),
+        "cross_load": ("loads of all feet", COLOURS["coordinated"]),
+        "body_limb": ("torque of the trunk", COLOURS["spine_only"]),
+        "wrong_sign": ("wrong sign", COLOURS["alarm"]),
+        "closed_noisy": ("all rules, noisy feet", COLOURS["coordinated"]),
+    }
+)
+_ARMS: Final[Mapping[str, tuple[str, str, Any]]] = MappingProxyType(
+    {
+        "open": ("no feedback", COLOURS["limbs_only"], (0, (5, 2))),
+        "closed": ("three rules", COLOURS["coordinated"], "-"),
+        "steered": ("three rules and heading loop", COLOURS["tail_drag"], (0, (5, 1.5, 1, 1.5))),
+    }
+)
+_RULES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "open": "none",
+        "limbs": "limbs",
+        "spine": "spine",
+        "tail": "tail",
+        "closed": "all three",
+        "steered": "+ heading",
+    }
+)
+_WORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "none": "undisturbed",
+        "kick": "limbs kicked out of phase",
+        "locked_spine": "middle spine joint stuck",
+        "uphill": "uphill",
+        "downhill": "downhill",
+        "side_slope": "slope, left side up",
+        "other_side": "slope, right side up",
+        "push": "push from the right",
+        "limp_yaw": "front yaw limp",
+        "load_noise": "noisy feet",
+    }
+)
+
+
+def draw_fans(error: xr.DataArray, within: float) -> Figure:
+    """Draw the phase error of every start over the cycles, one panel per law.
+
+    Args:
+        error: with the dimensions ``law``, ``start`` and ``time`` (in cycles) [cycle].
+        within: what counts as coordinated [cycle].
+    """
+    with styled():
+        figure, axes = panels(2, 3, width=10.5, height=5.6, sharex=True, sharey=True)
+        for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
+            errors = error.sel(law=law).transpose("time", "start")
+            ax.axhspan(0.0, within, color=COLOURS["grid"], linewidth=0)
+            ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5)
+            ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0)
+            ax.set_title(label)
+            ax.set_xlim(0.0, float(error.time[-1]))
+            ax.set_ylim(0.0, 0.52)
+        for ax in axes[-1]:
+            ax.set_xlabel("cycles since the start")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("phase error [cycle]")
+    return captioned(
+        figure,
+        f"How far the limbs are from the gait, from {error.sizes['start']} random starts under each law; the black "
+        "line is the median, the grey band counts as coordinated. Noisy feet: 30 % noise on every load, spine and tail "
+        "rules on.",
+    )
+
+
+def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
+    """Draw which feet are meant to stand from one random start, without and with feedback.
+
+    Args:
+        phase: of the limbs, with the dimensions ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
+        gait: that they walk.
+        start: which one.
+    """
+    with styled(axes__grid=False):
+        figure, axes = panels(3, 1, height=5.4, sharex=True)
+        for ax, law in zip(axes.flat, ("off", "own_load", "cross_load"), strict=True):
+            phases = phase.sel(law=law).isel(start=start).transpose("start_time", "leg")
+            stands = np.mod(phases.values, 1.0) >= 1.0 - gait.duty_factor
+            _bars(ax, phases.start_time.values, stands, [str(leg) for leg in phases.leg.values])
+            ax.set_title(_LAWS[law][0])
+        axes[-1, 0].set_xlabel("cycles since the start")
+    return captioned(
+        figure,
+        "Feet that are commanded to stand (bars) from one random start, without feedback and under two laws. Blue: one "
+        "diagonal pair of limbs, orange: the other; in the gait the pairs take turns.",
+    )
+
+
+def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray, legs: Sequence[str]) -> None:
+    width = float(time[1] - time[0])
+    for row in range(len(legs)):
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], stands[:, row].astype(int), [0]])))
+        spans = [(time[a], width * (b - a)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+        colour = COLOURS["coordinated"] if (row % 2 + row // 2) % 2 == 0 else COLOURS["RH"]
+        ax.broken_barh(spans, (row - 0.36, 0.72), facecolors=colour)
+    ax.set_yticks(range(len(legs)), legs)
+    ax.set_ylim(len(legs) - 0.4, -0.6)
+    ax.set_xlim(max(0.0, float(time[0])), float(time[-1]))
+
+
+def draw_gain(distance: xr.DataArray) -> Figure:
+    """Draw the distance after each disturbance under each rule, over the undisturbed distance without feedback.
+
+    Args:
+        distance: with the dimensions ``disturbance`` and ``arm`` [m].
+    """
+    share = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
+    rules = [rule for rule in _RULES if rule in share.arm.values]
+    share = share.sel(arm=rules, disturbance=list(_WORDS))
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=8.2, height=5.2)
+        ax = axes[0, 0]
+        least, most = min(20, int(100 * share.min())), max(140, ceil(100 * share.max()))
+        scale = TwoSlopeNorm(100.0, vmin=least, vmax=most)
+        shown = ax.pcolormesh(100 * share.values, cmap=DIVERGING, norm=scale, edgecolors="white", linewidth=2)
+        for (row, column), value in np.ndenumerate(share.values):
+            dark = not 0.5 < value < 1.3
+            ax.text(
+                column + 0.5,
+                row + 0.5,
+                f"{100 * value:.0f}",
+                ha="center",
+                va="center",
+                color="white" if dark else "black",
+            )
+        ax.set_xticks(np.arange(len(rules)) + 0.5, [_RULES[rule] for rule in rules])
+        ax.set_yticks(np.arange(len(_WORDS)) + 0.5, list(_WORDS.values()))
+        ax.tick_params(length=0)
+        ax.invert_yaxis()
+        ax.set_xlabel("which rules are on")
+        for side in ax.spines.values():
+            side.set_visible(False)
+        figure.colorbar(
+            shown, ax=ax, label="displacement forward [%]", pad=0.02, ticks=range(20 * (least // 20), most + 1, 20)
+        )
+    return captioned(
+        figure,
+        "Displacement in the cycles after a disturbance, in percent of that without disturbance and feedback; "
+        "the last column adds the heading loop to all three rules.",
+    )
+
+
+def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
+    """Draw from above where the robot goes after a disturbance.
+
+    Args:
+        record: with ``x`` and ``y`` along ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
+        disturbances: which ones, one panel each.
+    """
+    size = float((record.x - record.x.isel(time=0)).max())
+    with styled():
+        figure, axes = panels(1, len(disturbances), width=10.5, height=4.8)
+        for ax, name in zip(axes.flat, disturbances, strict=True):
+            for arm, (label, colour, dashes) in _ARMS.items():
+                one = record.sel(disturbance=name, arm=arm)
+                x, y = one.x - one.x.isel(time=0), one.y - one.y.isel(time=0)
+                ax.plot(-y, x, color=colour, linestyle=dashes, label=label)
+                ax.plot(-y[-1], x[-1], "o", color=colour)
+            ax.plot(0, 0, "s", color="black")
+            ax.set_aspect("equal", adjustable="datalim")
+            if size > 0.5:  # [m]; a small robot gets no farther than a few hundredths
+                ax.xaxis.set_major_locator(MultipleLocator(0.5))
+                ax.yaxis.set_major_locator(MultipleLocator(0.5))
+            ax.set_title(_WORDS[name])
+            ax.set_xlabel("to the right [m]")
+        axes[0, 0].set_ylabel("forward [m]")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return captioned(
+        figure,
+        "The centre of mass from above, from the disturbance (square) on. The three rules do not feel a direction; "
+        "the heading loop does and walks with longer strokes on one side.",
+    )
+
+
+_ROLES = {"limbs": "LF", "spine": "spine", "tail": "tail", "heading": "RH"}
+_SENSORS, _CONTROLLERS, _SHARED = 2.0, 1.0, 0.0  # heights of the three rows
+_BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
+
+
+def draw_topology(parts: Sequence[ControlPart]) -> Figure:
+    """Draw which sensors each controller feels, which shared variables it writes, and whose it hears.
+
+    Args:
+        parts: of ``control.topology``.
+    """
+    sensors = sorted({name for part in parts for name in part.feels})
+    places = {
+        **{f"feels {name}": (x, _SENSORS) for name, x in zip(sensors, _spread(len(sensors)), strict=True)},
+        **{part.name: (x, _CONTROLLERS) for part, x in zip(parts, _spread(len(parts)), strict=True)},
+        **{f"shared {name}": (x, _SHARED) for name, x in zip(OWNERS, _spread(len(OWNERS)), strict=True)},
+    }
+    with styled():
+        figure = new(width=11.0, height=5.4)
+        ax = figure.add_subplot()
+        boxes = {name: _box(ax, name, place) for name, place in places.items()}
+        for part in parts:
+            colour = _colour(part.name)
+            for name in sorted(part.feels):
+                _arrow(ax, boxes[f"feels {name}"], boxes[part.name], colour, "-")
+            for name in sorted(part.writes):
+                _arrow(ax, boxes[part.name], boxes[f"shared {name}"], colour, "-")
+            for name in sorted(part.hears - part.writes):
+                _arrow(ax, boxes[f"shared {name}"], boxes[part.name], colour, (0, (4, 2)))
+        for y, text in ((_SENSORS, "sensors"), (_CONTROLLERS, "controllers"), (_SHARED, "shared")):
+            ax.text(-0.08, y, text, ha="right", va="center", color=COLOURS["neutral"])
+        ax.set(xlim=(-0.2, 1.05), ylim=(-0.4, 2.4))
+        ax.set_axis_off()
+    return captioned(figure, _caption(parts))
+
+
+def _caption(parts: Sequence[ControlPart]) -> str:
+    deaf = [part.name for part in parts if not part.hears and not part.writes]
+    apart = f" Apart from the shared variables: {', '.join(deaf)}." if deaf else ""
+    return (
+        "What each controller reads and writes, in the form of the article's Fig. 10. Arrows from sensors: what it "
+        "senses; solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it "
+        "reads." + apart
+    )
+
+
+def _colour(controller: str) -> str:
+    return COLOURS[_ROLES.get(controller, "neutral")]
+
+
+def _box(ax: Any, name: str, place: tuple[float, float]) -> Any:
+    kind, _, what = name.partition(" ")
+    owner = OWNERS[what] if kind == "shared" else "" if kind == "feels" else name
+    style = _BOX | {"edgecolor": _colour(owner)}
+    weight = "normal" if what else "bold"
+    return ax.text(*place, (what or name).replace("_", "\n"), ha="center", va="center", bbox=style, fontweight=weight)
+
+
+def _arrow(ax: Any, start: Any, end: Any, colour: str, dashes: Any) -> None:
+    ends = {"patchA": start.get_bbox_patch(), "patchB": end.get_bbox_patch(), "shrinkA": 3, "shrinkB": 3}
+    style = {"arrowstyle": "-|>", "color": colour, "linestyle": dashes, "linewidth": 1.5, **ends}
+    ax.annotate("", end.get_position(), start.get_position(), arrowprops=style)
+
+
+def _spread(count: int) -> list[float]:
+    return [float(x) for x in (np.arange(count) + 0.5) / max(count, 1)]

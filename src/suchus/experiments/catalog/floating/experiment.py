@@ -1,0 +1,308 @@
+"""Does it float as Archimedes says, and does it right itself?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.core import rotation
+from suchus.robot.control import Swimming
+from suchus.robot.design import Robot, with_values
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.floating import cases
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.robot.motion import LIMBS_UP, cycle_targets, still
+from suchus.robot.robots import ROBOTS
+
+_UPRIGHT = 0.035
+"""Heel within which it counts as upright [rad]; 2 degrees."""
+_DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (3, 1)))
+_SHADES = (COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["tail_drag"], COLOURS["spine_only"], "#333333")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floating(Experiment):
+    """Forces of the water against exact answers, and a robot that is let go heeled.
+
+    Sphere, cylinder and box have drafts in closed form; a box that is let go heaves at a known period and keeps its
+    energy; a spheroid in ideal water keeps its momentum; volumes under water are those of counted points. The robot
+    lies still, limbs held out, and is let go at the surface from several angles of heel. Its righting lever, with trim
+    and draft free, is drawn over the heel as naval architects do.
+    """
+
+    title = "Does it float as Archimedes says, and does it right itself?"
+    shows = "Beyond the article, whose robot is amphibious and whose body is not said to float"
+    answers = (
+        "mass_floating",
+        "volume_floating",
+        "share_above",
+        "metacentric_height_floating",
+        "vanishing_floating",
+        "roll_at_rest",
+    )
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot that floats."""
+    heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
+    """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
+    duration: float = 20.0
+    """Duration for which the robot is watched [s]; the mean of the last quarter counts as its rest."""
+    energy_time: float = 60.0
+    """Duration over which the energy of the box is followed [s]."""
+    periods: int = 10
+    """Periods of heave that are watched [-]."""
+    poses: int = 16
+    """Random poses in which volumes are counted, of each kind of piece [-]."""
+    points: int = 2**18
+    """Points that are counted, a power of two [-]."""
+    angles: int = 37
+    """Angles of heel from 0 to 180 degrees at which the righting lever is computed [-]."""
+    timestep: float = 0.002
+    """Time step of the physics of boxes and spheroids [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("heels", 0.0, pi, "rad")
+            check.number("duration", 0.1, 1e4, "s")
+            check.number("energy_time", 0.2, 1e4, "s")
+            check.whole("periods", 2, 1000)
+            check.whole("poses", 1, 1000)
+            check.whole("points", 2**8, 2**24)
+            check.that(self.points.bit_count() == 1, f"points is {self.points}; a power of two is needed")
+            check.whole("angles", 3, 1000)
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+
+    def quick(self) -> "Floating":
+        """Return one heel, few seconds, fewer points and angles."""
+        return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Float the bodies whose answers are known, then let the robot go."""
+        progress("exact answers", 0.0)
+        parts = [self._drafts(), self._heave(), self._energy(), self._drift(), self._volumes(), self._table()]
+        progress("righting levers", 0.4)
+        parts.append(self._levers())
+        record = self._let_go(staged(progress, "let go", 0.5, 1.0))
+        return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
+
+    def _drafts(self) -> xr.Dataset:
+        found = cases.drafts()
+        return xr.Dataset(
+            {
+                "body_draft": ("float", [cases.draft_of(one.body) for one in found], {"units": "m"}),
+                "exact_draft": ("float", [one.exact for one in found], {"units": "m"}),
+            },
+            coords={"float": [one.name for one in found]},
+        )
+
+    def _heave(self) -> xr.Dataset:
+        added = (0.0, 0.6)
+        watched = [cases.heave(one, 0.005, self.periods, self.timestep) for one in added]
+        return xr.Dataset(
+            {
+                "heave_period": ("added_mass", [cases.period_of(one) for one, _ in watched], {"units": "s"}),
+                "exact_heave_period": ("added_mass", [exact for _, exact in watched], {"units": "s"}),
+            },
+            coords={"added_mass": list(added)},
+        )
+
+    def _energy(self) -> xr.Dataset:
+        names = ("implicitfast", "RK4")
+        watched = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
+        energy = np.array([one.energy.values for one in watched])
+        return xr.Dataset(
+            {
+                "energy": (("integrator", "box_time"), energy, {"units": "J"}),
+                "gained": ("integrator", [cases.gained_energy(one) for one in watched], {"units": "1"}),
+            },
+            coords={"integrator": list(names), "box_time": ("box_time", watched[0].time.values, {"units": "s"})},
+        )
+
+    def _drift(self) -> xr.Dataset:
+        found = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
+        return xr.Dataset({"drift": ("integrator", found[::-1], {"units": "1"})})
+
+    def _volumes(self) -> xr.Dataset:
+        found = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
+        return xr.Dataset(
+            {"volume_off": (("piece", "pose"), np.array(list(found.values())), {"units": "1"})},
+            coords={"piece": list(found)},
+        )
+
+    @staticmethod
+    def _table() -> xr.Dataset:
+        found = cases.public_table()
+        units = {"neutral": "m/s2", "ballast": "N", "keel": "rad/s2"}
+        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in found.items()})
+
+    def _levers(self) -> xr.Dataset:
+        both = [
+            hydrostatics(one, self._posture(one), heels=self.angles)
+            for one in (self.robot, with_values(self.robot, {"hull": None}))
+        ]
+        found = xr.Dataset(
+            {"lever": (("hull", "heel"), np.array([one.lever for one in both]), {"units": "m"})},
+            coords={"hull": ["floating", "bare"], "heel": ("heel", both[0].heel, {"units": "rad"})},
+        )
+        for name, unit in _STATICS.items():
+            found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
+        return found
+
+    @staticmethod
+    def _posture(robot: Robot) -> np.ndarray:
+        return cycle_targets(robot, still(robot, limbs=LIMBS_UP), np.zeros(1))[0]
+
+    def _let_go(self, progress: Any) -> xr.Dataset:
+        gait = still(self.robot, limbs=LIMBS_UP)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=gait,
+                lake=Lake(level=3.0, heel=heel),
+                control=Swimming(),
+                label=f"{np.degrees(heel):.0f} degrees",
+            )
+            for heel in self.heels
+        ]
+        return simulate(runs, duration=self.duration, progress=progress)
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "righting_replay.html",
+            record.isel(run=-1),
+            self.robot,
+            title="A robot rights itself",
+            caption=f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out.",
+        )
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how far off the exact answers are, and how the robot floats."""
+        heave = np.abs(record.heave_period / record.exact_heave_period - 1)
+        rest = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
+        roll = rotation.heel(record.orientation.values)
+        last = np.abs(roll[-1, -rest.sizes["time"] :])
+        upright = np.abs(roll[-1]) < _UPRIGHT
+        since = int(np.flatnonzero(~upright)[-1]) + 1 if not upright.all() else 0
+        righted = float(record.time[since]) if since < len(upright) else float("nan")
+        afloat, bare = record.sel(hull="floating"), record.sel(hull="bare")
+        return Measures(
+            {
+                "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
+                "heave_period_error": Measure(float(heave.max()), "-"),
+                "energy_gain": Measure(float(record.gained.sel(integrator="implicitfast")), "-"),
+                "energy_gain_rk4": Measure(float(record.gained.sel(integrator="RK4")), "-"),
+                "impulse_drift": Measure(float(record.drift.sel(integrator="RK4")), "-"),
+                "impulse_drift_implicitfast": Measure(float(record.drift.sel(integrator="implicitfast")), "-"),
+                "volume_error": Measure(float(record.volume_off.max()), "-"),
+                "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
+                "force_of_ballast": Measure(float(record.table_ballast), "N"),
+                "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
+                "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
+                "roll_at_rest": Measure(float(last.mean()), "rad"),
+                "righting_time": Measure(righted, "s"),
+            },
+            {
+                f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
+                for kind, one in (("floating", afloat), ("bare", bare))
+                for name, unit in _STATICS.items()
+                if np.isfinite(float(one[f"static_{name}"]))
+            },
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the righting lever with the rolls, and the checks against exact answers."""
+        return {"righting": draw_righting(outcome.record), "checks": draw_checks(outcome.record)}
+
+
+_STATICS: Mapping[str, str] = {
+    "mass": "kg", "volume": "m3", "missing": "m3", "surplus": "kg", "draft": "m", "trim": "rad",
+    "metacentric_height": "m", "vanishing": "rad",
+}  # fmt: skip
+"""Numbers of ``Hydrostatics`` that are kept, with their units."""
+
+
+def draw_righting(record: xr.Dataset) -> Figure:
+    """Draw the righting lever over the heel, and the heel over time of robots that were let go.
+
+    Args:
+        record: with ``lever`` (hull, heel) [m], and runs with ``orientation``.
+    """
+    with styled():
+        figure, axes = panels(1, 2, width=12.0, height=4.2)
+        ax = axes[0, 0]
+        heel = np.degrees(record.heel.values)
+        floats = {str(hull): float(record.static_surplus.sel(hull=hull)) < 0 for hull in record.hull.values}
+        hulls = {
+            "floating": ("-", "coordinated", "with its hull, "),
+            "bare": ((0, (5, 2)), "limbs_only", "without it, "),
+        }
+        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # it has none
+            hulls = {"floating": ("-", "coordinated", "")}
+        for hull, (dashes, colour, which) in hulls.items():
+            label = which + ("at the surface" if floats[hull] else "sunk")
+            ax.plot(heel, 1e3 * record.lever.sel(hull=hull), color=COLOURS[colour], linestyle=dashes, label=label)
+        ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
+        ax.set(xlabel="heel [deg]", ylabel="righting lever GZ [mm]", xlim=(0, 180), xticks=range(0, 181, 30))
+        ax.legend(loc="best")
+        ax = axes[0, 1]
+        for i, label in enumerate(record.label.values):
+            turn = record.orientation.isel(run=i).values
+            roll = np.arctan2(*(rotation.rotate(turn, np.eye(3)[axis])[:, 2] for axis in (1, 2)))
+            roll = np.degrees(np.unwrap(roll))
+            ax.plot(record.time, roll, color=_SHADES[i % 5], linestyle=_DASHES[i % 5], label=f"from {label}")
+        ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
+        ax.set(xlabel="time [s]", ylabel="heel [deg]", xlim=(0, min(10.0, float(record.time[-1]))))
+        ax.legend(loc="best")
+    return captioned(
+        figure,
+        "Righting lever over the heel with draft and trim free, positive where the water turns the robot upright; and "
+        "the heel over time of the robot let go at the surface.",
+    )
+
+
+def draw_checks(record: xr.Dataset) -> Figure:
+    """Draw drafts beside exact ones, and the energy of a box that rocks.
+
+    Args:
+        record: with ``body_draft`` and ``exact_draft`` (float) [m], ``energy`` (integrator, box_time) [J].
+    """
+    with styled():
+        figure, axes = panels(1, 2, width=12.0, height=4.2)
+        ax = axes[0, 0]
+        kinds = [str(name).split()[0] for name in record["float"].values]
+        for kind, marker, colour in (("sphere", "o", 0), ("cylinder", "s", 1), ("box", "^", 2)):
+            mine = [i for i, one in enumerate(kinds) if one == kind]
+            exact, found = 1e3 * record.exact_draft[mine], 1e3 * record.body_draft[mine]
+            ax.plot(exact, found, marker, markersize=9, color=_SHADES[colour], label=kind)
+        most = 1.1e3 * float(record.exact_draft.max())
+        ax.plot([0, most], [0, most], color=COLOURS["neutral"], linewidth=0.9, zorder=0)
+        ax.set(xlabel="exact draft [mm]", ylabel="draft in the physics step [mm]", xlim=(0, most), ylim=(0, most))
+        ax.legend(loc="upper left")
+        ax = axes[0, 1]
+        for i, name in enumerate(record.integrator.values):
+            energy = record.energy.sel(integrator=name)
+            ax.plot(
+                record.box_time, 1e3 * (energy - energy[0]), color=_SHADES[i], linestyle=_DASHES[i],
+                label=f"{name}, {1e2 * float(record.gained.sel(integrator=name)):.2g} % gained at most",
+            )  # fmt: skip
+        ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
+        ax.set(xlabel="time [s]", ylabel="energy less that at the start [mJ]")
+        ax.margins(y=0.3)
+        ax.legend(loc="upper left")
+    return captioned(
+        figure,
+        "Drafts of floats at three densities beside closed forms, the line being equality; and the energy of a box "
+        "without drag that was let go heeled and pitched.",
+    )
+
+
+experiment = Floating()

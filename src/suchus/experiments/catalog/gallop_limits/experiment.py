@@ -1,0 +1,308 @@
+"""Could the robot gallop, and which servos would it take?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.robot.design import Robot, Servo, layout
+from suchus.robot.design.body import servos_of
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.servos import with_full_torque, with_named_servos, with_speed_line
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS, Searched
+from suchus.visual.figures import captioned
+from suchus.visual.figures.style import COLOURS, panels, styled
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, Tolerances, simulate
+from suchus.sim.metrics import between, displacement, flight_share
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
+
+_RUN_UP = 1.0  # [s]; before anything is measured
+_HASTE = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GallopLimits(Experiment):
+    """Bounding gaits with servos of growing speed and torque, beside the fastest trots and walks with the same servos.
+
+    Every servo has a straight torque-speed line. The gaits are no gaits of the robot: a search by the cross-entropy
+    method found them, twelve numbers each, for servos of 3 N m at the legs and one no-load speed. On the map each is
+    the same command to all servos; of each kind the fastest counts. A robot flies while nothing touches the ground.
+    """
+
+    title = "Could the robot gallop, and which servos would it take?"
+    shows = "Section II.A"
+    answers = ("speed_bound", "flight_bound", "bound_over_walk", "servo_speed_needed", "gallops_share")
+    needs = ("legs", "shells", "article_spine", "cable_tail")
+    judged_with = ("robot", "bounds", "trots", "walks", "tolerances")
+    judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that is to gallop."""
+    bounds: tuple[Searched, ...] = BOUNDS
+    """Bounding gaits, each found for another servo: both front feet, then both hind feet."""
+    trots: tuple[Searched, ...] = TROTS
+    """Trots, found by the same search with the same servos, so that a bound is not compared with a lesser effort."""
+    walks: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(replace(GAITS[name], period=_HASTE) for name in ("semi_erect", "high_walk"))
+    )
+    """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
+    speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
+    """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
+    torques: tuple[float, ...] = (1.5, 3.0, 4.9)
+    """Torque limits of the legs' servos [N m]; the last is that of the article's robot."""
+    trunk_over_legs: float = 4.0 / 3.0
+    """Torque limit of the servos that pitch the trunk over the legs' [-]; so in the search for bounds and trots."""
+    others_over_legs: float = 2.5 / 3.0
+    """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
+    repeats: int = 3
+    """Robots that are built of each design: the middle of theirs counts, and no gait that only the design can [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much they and their grounds differ from it."""
+    seconds: float = 3.0
+    """Duration for which each run is measured, after a second more [s]."""
+    timestep: float = 0.002
+    """Time step of the physics [s]; with 5 ms a bound was ahead of trot and walk with a tenth of the servos of the map,
+    with 2 ms with three tenths."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("speeds", 0.1, 1e3, "rad/s")
+            check.rising("torques", 1e-6, 1e6, "N m")
+            check.number("trunk_over_legs", 0.1, 10.0, "")
+            check.number("others_over_legs", 0.1, 10.0, "")
+            check.number("seconds", 0.05, 60.0, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+            check.whole("repeats", 1, 1000)
+            for name in ("bounds", "walks"):
+                check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
+
+    def quick(self) -> "GallopLimits":
+        """Return two speeds, one torque, one robot of each design, half a second, a coarse step."""
+        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Bound, trot and walk with every servo on the map."""
+        searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
+        kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
+        gaits: list[Gait] = [*(one.gait for _, one in searched), *self.walks]
+        cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
+        robots = [self._with(torque, speed) for torque, speed in cells]
+        designed = [Run(robot=robot, gait=gait, label=gait.name) for robot in robots for gait in gaits]
+        runs = self.tolerances.repeats(designed, self.repeats)
+        duration = round(START + _RUN_UP + self.seconds, 2)
+        record = simulate(
+            runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
+        )
+        shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
+        part = between(record, START + _RUN_UP)
+        fast = abs(part.servo_velocity.isel(servo=self._legs)).quantile(0.99, "time").max("servo")
+        values = {
+            "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
+            "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
+            "joint_speed": (fast, "rad/s", "99th percentile of the fastest leg joint"),
+        }
+        data = xr.Dataset(
+            {
+                name: (
+                    ("torque", "servo_speed", "gait"),
+                    np.median(array.values.reshape(shape), axis=-1),
+                    {"units": unit, "long_name": what},
+                )
+                for name, (array, unit, what) in values.items()
+            }
+            | {
+                "built_speed": (
+                    ("torque", "servo_speed", "gait", "repeat"),
+                    values["speed"][0].values.reshape(shape),
+                    {"units": "m/s", "long_name": "speed forward of each robot that is built"},
+                )
+            },
+            coords={
+                "torque": ("torque", list(self.torques), {"units": "N m", "long_name": "torque limit"}),
+                "servo_speed": ("servo_speed", list(self.speeds), {"units": "rad/s", "long_name": "no-load speed"}),
+                "gait": [f"{gait.name} {gait.period:g} s" for gait in gaits],
+                "kind": ("gait", kinds),
+            },
+            attrs={"own_torque": self._own.torque, "own_speed": self._own.speed},
+        )
+        return Simulated(record=data, replays=self._replays(record, cells, data))
+
+    @property
+    def _own(self) -> Servo:
+        """The servo of the legs as designed."""
+        return self.robot.hind_leg.servo
+
+    @property
+    def _legs(self) -> list[int]:
+        """Places of the legs' servos."""
+        place = layout(self.robot)
+        return [index for limb in place.limbs for index in range(*limb.servos.indices(len(place.servos)))]
+
+    def _with(self, torque: float, speed: float) -> Robot:
+        """Return the robot with other servos, each with a torque-speed line."""
+        legs = {layout(self.robot).servos[index] for index in self._legs}
+
+        def over_legs(name: str) -> float:
+            return 1.0 if name in legs else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
+
+        return with_named_servos(
+            self.robot,
+            {
+                name: with_speed_line(replace(with_full_torque(servo), torque=torque * over_legs(name), speed=speed))
+                for name, servo in servos_of(self.robot).items()
+            },
+        )
+
+    def _replays(
+        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
+    ) -> Mapping[str, Replay]:
+        """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
+        bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
+        best = int(np.argmax(bound.max(1)))
+        nearest = min(
+            range(len(cells)),
+            key=lambda i: (
+                abs(cells[i][0] - self._own.torque) / self._own.torque
+                + abs(cells[i][1] - self._own.speed) / self._own.speed
+            ),
+        )
+        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, nearest)]
+        runs = [(i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats for i in (best, nearest)]
+        return replayed(
+            "gallop_replay.html",
+            record.isel(run=runs[0]),
+            self.robot,
+            ghost=record.isel(run=runs[1]),
+            labels=tuple(said),
+            title="Could it gallop?",
+            caption=f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}.",
+        )
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
+        bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
+        own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
+        own_bound, own_walk = (kind.sel(own, method="nearest") for kind in (bound, walks))
+        gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
+        pays = gallops.sel(torque=own["torque"], method="nearest")
+        best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
+        return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
+            {
+                "speed_bound": Measure(float(own_bound.speed), "m/s"),
+                "flight_bound": Measure(float(own_bound.flight), "-"),
+                "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
+                "speed_walk": Measure(float(own_walk.speed), "m/s"),
+                "speed_bound_best": Measure(float(best.speed), "m/s"),
+                "flight_bound_best": Measure(float(best.flight), "-"),
+                "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
+                "torque_best": Measure(float(best.torque), "N m"),
+                "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
+                "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
+                "torque_own": Measure(own["torque"], "N m"),
+                "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
+                "gallops_share": Measure(float(gallops.mean()), "-"),
+            }
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""
+        bound, walks = fastest(outcome.record, "bound"), fastest(outcome.record, "trot", "walk")
+        figure = captioned(
+            draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
+            "The fastest bounding gait with servos of growing no-load speed and torque (colours). Left: its speed; "
+            "dashed: the fastest trot or walk. Right: the share of the time in which nothing touches the ground. A "
+            "better servo does what a lesser one does. The grey line is the robot's own servo.",
+        )
+        return {"gallop_limits": figure}
+
+
+FLIES = 0.1
+"""Share of the time in flight from which a bound counts as a gallop here [-]; less is a walk that stumbles."""
+
+
+def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
+    """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
+
+    ``built_speed`` holds the speeds of the robots that are built of the design, whose median the speed is.
+
+    A servo that could do more may be limited to what a weaker or slower one does, so a gait that was found for such a
+    one counts with all better ones too: else a bound would be compared with walks that nobody searched for its servo.
+
+    Args:
+        record: of the experiment.
+        kinds: ``bound``, ``trot`` or ``walk``.
+    """
+    chosen = record.isel(gait=np.isin(record.kind.values, kinds))
+    best = chosen.isel(gait=chosen.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
+    cells, (strong, fast) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
+    taken = [
+        cells[: i + 1, : j + 1].ravel()[np.argmax(best.speed.values[: i + 1, : j + 1])]
+        for i in range(strong)
+        for j in range(fast)
+    ]
+    return best.assign(
+        {
+            name: (best[name].dims, best[name].values.reshape(strong * fast, -1)[taken].reshape(best[name].shape))
+            for name in ("speed", "built_speed", "flight", "joint_speed")
+        }
+    )
+
+
+def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
+    """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
+    from_here = np.flip(np.logical_and.accumulate(np.flip(pays)))
+    return float(speeds[from_here][0]) if from_here.any() else float("inf")
+
+
+def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figure:
+    """Draw speed [m/s] and share of flight of a bound over the servos' no-load speed [rad/s].
+
+    Args:
+        bound: the fastest bound, with ``speed`` and ``flight`` (torque, servo_speed).
+        walk: the fastest trot or walk, the same.
+        own: no-load speed of the robot's own servos [rad/s].
+    """
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.8, 0.1, bound.sizes["torque"]))
+    with styled():
+        figure, axes = panels(1, 2, width=11.0, height=4.6)
+        for shade, torque in zip(shades, bound.torque.values, strict=True):
+            bounding, walking = bound.sel(torque=torque), walk.sel(torque=torque)
+            axes[0, 0].plot(
+                bounding.servo_speed, bounding.speed, marker="o", color=shade, label=f"bound, {torque:g} N m"
+            )
+            axes[0, 0].plot(bounding.servo_speed, walking.speed, color=shade, linestyle=(0, (4, 2)))
+            axes[0, 1].plot(bounding.servo_speed, 100 * bounding.flight, marker="o", color=shade)
+        for ax in axes.flat:
+            ax.set_xscale("log")
+            ax.set_xticks(bound.servo_speed.values, [f"{speed:g}" for speed in bound.servo_speed.values])
+            ax.minorticks_off()
+            ax.axvline(own, color=COLOURS["neutral"], linewidth=1.0)
+            ax.set_xlabel("no-load speed of the servos [rad/s]")
+        axes[0, 0].plot([], [], color="#333333", linestyle=(0, (4, 2)), label="fastest trot or walk")
+        axes[0, 0].set_ylabel("speed forward [m/s]")
+        axes[0, 1].set_ylabel("in flight [% of the time]")
+        figure.legend(loc="outside upper center", ncols=bound.sizes["torque"] + 1)
+    return figure
+
+
+experiment = GallopLimits()

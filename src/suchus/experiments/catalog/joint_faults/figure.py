@@ -1,0 +1,245 @@
+"""What failed joints cost: displacements over time, changes against the intact robot, tracks on the ground."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from itertools import product
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from suchus.experiments.experiment import write
+from suchus.visual.figures.style import COLOURS, LINES, captioned, panels, styled
+from suchus.visual.figures.timeseries import draw_band, mark_cycles
+from suchus.robot.motion import START
+from suchus.article.paper import CLAIMS
+from suchus.article.verdict import listed
+
+_ARMS = ("coordinated", "limbs_only")
+_SHADES = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#B0558A")
+
+
+def _named(joint: str) -> str:
+    name = joint.replace("_", " ")
+    return name if joint.endswith("knee") else f"{name} joint"
+
+
+def _printed(joint: str, arm: str) -> float | None:
+    """Return what the article says of a loss, None of a joint of which it says nothing."""
+    claim = CLAIMS.get(f"fault_{joint}_{arm}")
+    return None if claim is None else claim.value
+
+
+def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
+    """Draw what every cell costs as heat maps with numbers: joints by kind and legs, a panel for each group.
+
+    Args:
+        record: of the campaign, for its joints, kinds and legs.
+        measures: ``loss_CELL_GROUP`` and ``own_loss_CELL_limbs_only`` with their intervals.
+    """
+    rows = [str(joint) for joint in record.joint.values]
+    columns = [f"{kind}_{legs}" for kind, legs in product(record.kind.values, record.legs.values)]
+    maps = (
+        ("With spine and tail, of its own displacement [%]", "loss_{}_coordinated", "coordinated"),
+        ("With limbs only, of its own displacement [%]", "own_loss_{}_limbs_only", ""),
+        ("With limbs only, of that with spine and tail [%]", "loss_{}_limbs_only", "limbs_only"),
+    )
+    with styled():
+        figure, axes = panels(len(maps), 1, width=5.4, height=len(maps) * (1.0 + 0.46 * len(rows)))
+        for ax, (title, name, arm) in zip(axes[:, 0], maps, strict=True):
+            names = [[name.format(f"{row}_{column}") for column in columns] for row in rows]
+            change = np.array([[100.0 * measures[one] for one in line] for line in names])
+            ax.imshow(np.clip(change, -100.0, 100.0), cmap="RdBu", vmin=-130.0, vmax=130.0, aspect="auto")
+            for (i, j), value in np.ndenumerate(change):
+                _cell(ax, i, j, value, [100.0 * measures[f"{names[i][j]}{end}"] for end in ("_low", "_high")])
+            ax.set_xticks(range(len(columns)), [column.replace("_", ",\n") for column in columns])
+            ax.set_yticks(range(len(rows)), [_row(row, arm) for row in rows])
+            ax.tick_params(length=0)
+            ax.grid(False)
+            ax.set_title(title)
+    return captioned(
+        figure,
+        "What a failed joint costs: change of displacement [%], median and interval over the repeats, for every "
+        f"reading of the article's 'lost' (limp or locked, one leg or both).{_outwalked(record)}",
+    )
+
+
+def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[float]) -> None:
+    colour = "white" if abs(value) > 88.0 else "#222222"
+    if not np.isfinite(value):
+        ax.text(column, row, "nothing to lose", ha="center", va="center", fontsize=7, color="#222222")
+        return
+    ax.text(column, row - 0.14, write(value, "+.0f"), ha="center", va="center", fontsize=11, color=colour)
+    low, high = interval
+    ax.text(
+        column,
+        row + 0.27,
+        f"{write(low, '+.0f')} to {write(high, '+.0f')}",
+        ha="center",
+        va="center",
+        fontsize=7.5,
+        color=colour,
+    )
+
+
+def _row(joint: str, arm: str) -> str:
+    """Return the name of a joint, and below it what the article prints of it in a group."""
+    printed = _printed(joint, arm)
+    return joint.replace("_", " ") if printed is None else f"{joint.replace('_', ' ')}\n(printed {100 * printed:+.0f})"
+
+
+def _outwalked(record: xr.Dataset) -> str:
+    """Return which printed losses of limbs only leave more than the article's own intact robot with limbs only."""
+    ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _ARMS)
+    intact = bare / ours - 1.0
+    less = [p for j in record.lost.values if (p := _printed(j, "limbs_only")) is not None and p > intact]
+    if not less:
+        return ""
+    return (
+        f" The article's own intact robot with limbs only is at {intact:+.0%}; its "
+        f"{listed([f'{p:+.0%}' for p in less])} with a failed joint let a damaged robot out-walk it."
+    )
+
+
+def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
+    """Draw displacement over time with one kind of fault, a panel per joint; the form of Figs 18 to 21.
+
+    Args:
+        record: of the campaign: ``track`` and ``intact_track`` over time, on the ground.
+        kind: ``limp`` or ``locked``.
+        legs: ``one`` or ``both``.
+    """
+    path, intact = record.track.sel(on_ground="x"), record.intact_track.sel(on_ground="x")
+    end, period = float(record.time[-1]), float(record.period)
+    of = "one leg" if legs == "one" else "both legs"
+    with styled():
+        rows = (record.sizes["lost"] + 1) // 2
+        figure, axes = panels(rows, 2, width=10.5, height=3.5 * rows, sharex=True, sharey=True)
+        for ax in axes.flat[record.sizes["lost"] :]:
+            ax.set_axis_off()
+        for number, (ax, joint) in enumerate(zip(axes.flat, record.lost.values, strict=False)):
+            for arm in _ARMS:
+                paths = path.sel(joint=joint, kind=kind, legs=legs, arm=arm).rename(repeat="run")
+                draw_band(ax, paths, arm)
+                ax.plot(record.time, paths.median("run"), **LINES[arm])
+                whole = intact.sel(arm=arm).median("repeat")
+                ax.plot(record.time, whole, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
+                printed = _printed(joint, arm)
+                if end > START + 1.5 * period and printed is not None:
+                    x, y = end, (1.0 + printed) * (CLAIMS["displacement_coordinated"].value or 0.0)
+                    ax.plot(
+                        x, y, "D", color=COLOURS[arm], markeredgecolor="black", markersize=8, zorder=5, clip_on=False
+                    )
+            mark_cycles(ax, list(np.arange(START, end + 0.01, period)))
+            ax.set_xlim(START, end)
+            known = _printed(str(joint), "coordinated") is not None
+            ax.set_title(f"Fig. {18 + number}: {_named(joint)}" if known else _named(str(joint)))
+        for ax in axes[:, 0]:
+            ax.set_ylabel("displacement forward [m]")
+        for ax in axes[-1]:
+            ax.set_xlabel("time [s]")
+        figure.legend(handles=_keys(), loc="outside upper center", ncols=4, frameon=False)
+    return captioned(
+        figure,
+        f"Displacement of the centre of mass with a {kind} joint in {of} of a girdle: medians and ranges over the "
+        "repeats. Dotted: the intact robots. Diamonds: what the "
+        f"article's percentages make of its {CLAIMS['displacement_coordinated'].value:g} m.",
+    )
+
+
+def _keys() -> list[Line2D]:
+    return [
+        *(Line2D([], [], **(dict(LINES[arm]) | {"linewidth": 1.9})) for arm in _ARMS),
+        Line2D([], [], color=COLOURS["neutral"], linewidth=1.3, linestyle=(0, (1, 1.5)), label="intact"),
+        Line2D([], [], color=COLOURS["neutral"], marker="D", linestyle="", markeredgecolor="black", label="as printed"),
+    ]
+
+
+def draw_tracks(record: xr.Dataset) -> Figure:
+    """Draw the ways on the ground in one repeat, a panel per joint: limp joints turn the robot.
+
+    Args:
+        record: of the campaign; the first repeat is drawn.
+    """
+    given = record.isel(repeat=0).sel(arm="coordinated")
+    looks: dict[tuple[str, str], dict[str, Any]] = {
+        ("limp", "one"): {"color": "#B0558A", "label": "limp, one leg"},
+        ("limp", "both"): {"color": "#B0558A", "label": "limp, both legs", "linestyle": (0, (3, 1.2))},
+        ("locked", "one"): {"color": "#009E73", "label": "locked, one leg"},
+        ("locked", "both"): {"color": "#009E73", "label": "locked, both legs", "linestyle": (0, (3, 1.2))},
+    }
+    with styled():
+        girdles, hinges = _grid(record.joint.values)
+        figure, axes = panels(girdles, hinges, width=2.0 + 3.5 * hinges, height=2.8 * girdles, sharex=True, sharey=True)
+        for ax, joint in zip(axes.T.flat, record.joint.values, strict=True):
+            whole = given.intact_track.transpose("on_ground", "time").values
+            ax.plot(*whole, color="#333333", linewidth=1.6, label="intact")
+            _arrow(ax, whole[:, -1], float(given.intact_turn), "#333333")
+            for (kind, legs), look in looks.items():
+                walks = given.sel(joint=joint, kind=kind, legs=legs)
+                path = walks.track.transpose("on_ground", "time").values
+                ax.plot(*path, **look)
+                _arrow(ax, path[:, -1], float(walks.turn), look["color"])
+            ax.set_title(_named(str(joint)))
+            ax.set_aspect("equal")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("to the left [m]")
+        for ax in axes[-1]:
+            ax.set_xlabel("forward [m]")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False)
+    return captioned(
+        figure,
+        "Tracks of the centre of mass in one repeat seen from above, with spine and tail, the left joint or both "
+        "failed; arrows show the heading at the end.",
+    )
+
+
+def _grid(joints: Sequence[str]) -> tuple[int, int]:
+    """Return the number of girdles and of hinges in a limb, of joints that are listed hinge by hinge."""
+    girdles = len(dict.fromkeys(str(joint).partition("_")[0] for joint in joints))
+    return girdles, len(joints) // girdles
+
+
+def _arrow(ax: Axes, at: np.ndarray, facing: float, colour: str) -> None:
+    ahead = at + 0.07 * np.array([np.cos(facing), np.sin(facing)])
+    ax.plot(*ahead, alpha=0.0)  # keeps the tip within the limits
+    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", xy=tuple(ahead), xytext=tuple(at), arrowprops=look, annotation_clip=False)
+
+
+def draw_held(record: xr.Dataset) -> Figure:
+    """Draw how the change depends on where a locked joint holds.
+
+    Args:
+        record: of the campaign: ``held_forward`` over condition, failed joint and hold.
+    """
+    whole = float(record.held_intact_forward.sel(arm="coordinated"))
+    change = 100 * (record.held_forward / whole - 1.0)
+    marks = dict(zip(record.lost.values, itertools.cycle("oD^vsP"), strict=False))
+    with styled():
+        figure, axes = panels(1, 2, width=10.5, height=4.2, sharex=True, sharey=True)
+        for ax, arm in zip(axes[0], _ARMS, strict=True):
+            bare = 100 * (float(record.held_intact_forward.sel(arm=arm)) / whole - 1.0)
+            ax.axhline(bare, color=COLOURS[arm], linewidth=1.3, linestyle=(0, (1, 1.5)))
+            for i, joint in enumerate(record.lost.values):
+                ax.plot(
+                    record.hold,
+                    change.sel(arm=arm, lost=joint),
+                    color=_SHADES[i % len(_SHADES)],
+                    marker=marks[joint],
+                    label=str(joint).replace("_", " "),
+                )
+            ax.set_title(LINES[arm]["label"])
+            ax.set_xlabel("where it holds in its range [-]")
+        axes[0, 0].set_ylabel("change of displacement [%]")
+        handles, _ = axes[0, 0].get_legend_handles_labels()
+        handles.append(Line2D([], [], color=COLOURS["neutral"], linewidth=1.3, linestyle=(0, (1, 1.5)), label="intact"))
+        figure.legend(handles=handles, loc="outside upper center", ncols=5, frameon=False)
+    return captioned(
+        figure,
+        "Where a locked joint holds: 0 and 1 are the least and the greatest angle that the gait asks of it (yaw: foot "
+        "back and forward; pitch: foot up and down). One leg; change against the intact robot with spine and tail.",
+    )

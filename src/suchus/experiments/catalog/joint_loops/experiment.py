@@ -1,0 +1,241 @@
+"""What does an integral term in the joint controllers improve, and what does it cost?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import radians
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period, physics_step
+from suchus.robot.design.servos import with_servos
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.catalog.joint_loops import figure as pictures
+from suchus.visual.figures import captioned
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Run, simulate
+from suchus.sim.land.stand import on_stand
+from suchus.sim.metrics import between, displacement, whole
+from suchus.robot.motion import START, Gait
+from suchus.article.paper import CYCLES
+from suchus.robot.robots import ROBOTS
+
+TESTS = ("step", "load", "let_go")
+"""A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
+_GRIPPED = 100  # [control period]; long enough for the integral to reach its limit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointLoops(Experiment):
+    """The PID loop of one joint on a stand, then all of them in the crawl, with several integral gains.
+
+    It needs a robot one of whose servos turns the named joint directly, and a gait that the robot can crawl.
+    """
+
+    title = "What does an integral term in the joint controllers improve, and what does it cost?"
+    shows = "Section III.D, Fig. 10"
+    answers = (
+        "droop_taken",
+        "load_error_pid",
+        "step_error_pid",
+        "ripple_pid",
+        "tracking_by_droop",
+        "tracking_by_damping",
+    )
+    needs = ("limbs",)
+    judged_with = ("robot", "gait", "joint", "step")
+    judged_from: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot whose servos are tested."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl whose torque is the load."""
+    joint: str = "LH_pitch"
+    """The servo that is tested on the stand."""
+    integrals: tuple[float, ...] = (0.0, 5.0, 20.0)
+    """Integral gains of all servos, the first of them zero [N m/(rad s)]; 20 ends the plausible range."""
+    step: float = radians(10.0)
+    """Height of the step [rad]."""
+    seconds: float = 4.0
+    """Duration for which the joint is watched after each change [s]."""
+    cycles: int = int(CYCLES)
+    """Number of cycles of the crawl that are measured [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("integrals", 0.0, 1e4, "N m/(rad s)")
+            check.that(len(self.integrals) > 1 and self.integrals[0] == 0.0, "integrals must begin with 0 and go on")
+            check.number("step", 0.01, 1.0, "rad")
+            check.number("seconds", 0.02, 100.0, "s")
+            check.whole("cycles", 1, 1000)
+
+    def quick(self) -> "JointLoops":
+        """Return two gains, a second each, one cycle."""
+        return replace(self, integrals=(0.0, 20.0), seconds=1.0, cycles=1)
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the robot's own gait, and the left hind servo that lifts the limb, or its only one."""
+        hind = layout(robot).limbs[-2]
+        servos = layout(robot).servos[hind.servos]
+        return {"gait": own_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Crawl with every gain, then load the joint on the stand with what the crawl asks of it."""
+        robots = [with_servos(self.robot, partial(replace, ki=ki)) for ki in self.integrals]
+        crawls = whole(xr.concat([self._crawled(i, robot, progress) for i, robot in enumerate(robots)], "run"))
+        walk = between(crawls)
+        load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
+        data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
+        progress("stand", 0.7)
+        step = physics_step(self.robot)
+        data["angle"] = (("test", "ki", "time"), np.array(self._tested(robots, load)), {"units": "rad"})
+        data = data.assign_coords(
+            ki=("ki", list(self.integrals), {"units": "N m/(rad s)", "long_name": "integral gain"}),
+            test=list(TESTS),
+            time=("time", step * np.arange(1, round(self.seconds / step) + 1), {"units": "s", "long_name": "time"}),
+        )
+        kp = self.robot.servo(self.joint).kp
+        attrs = {"gripped": self.gripped, "joint": self.joint, "step": self.step, "load": load, "kp": kp}
+        return Simulated(record=data.assign_attrs(attrs))
+
+    @property
+    def gripped(self) -> float:
+        """Duration for which the joint is clamped, a second for the article's robot [s]."""
+        return _GRIPPED * control_period(self.robot)
+
+    def _crawled(self, number: int, robot: Robot, progress: Progress) -> xr.Dataset:
+        """Return the crawl with one of the gains; servos with and without an integral share no batch."""
+        run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
+        share = 0.7 / len(self.integrals)
+        stage = staged(progress, "crawl", number * share, (number + 1) * share)
+        return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
+
+    def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
+        """Return the joint's angle in each test with each gain [rad]."""
+        step = physics_step(self.robot)
+        free, held = round(self.seconds / step), round(self.gripped / step)
+        none, stepped = np.zeros(free), np.full(free, self.step)
+        never = np.zeros(free, dtype=bool)
+        angles: list[list[np.ndarray]] = [[], [], []]
+        for robot in robots:
+            step_test = on_stand(robot, self.joint, target=stepped, load=none, gripped=never, timestep=step)
+            load_test = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
+            release_test = on_stand(
+                robot,
+                self.joint,
+                target=np.full(held + free, self.step),
+                load=np.zeros(held + free),
+                gripped=np.arange(held + free) < held,
+                timestep=step,
+            )
+            for of_test, angle in zip(
+                angles, (step_test.angle, load_test.angle, release_test.angle[held:]), strict=True
+            ):
+                of_test.append(angle)
+        return angles
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
+        step, last = record.attrs["step"], len(record.ki) - 1
+        measures = Measures()
+        for i, ki in enumerate(record.ki.values):
+            with_gain, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
+            measures |= {
+                f"rise_time_{name}": Measure(
+                    rise_time(record.time.values, with_gain.angle.sel(test="step").values, step), "s"
+                ),
+                f"overshoot_{name}": Measure(overshoot(with_gain.angle.sel(test="step").values, step), "-"),
+                f"overshoot_let_go_{name}": Measure(overshoot(with_gain.angle.sel(test="let_go").values, step), "-"),
+                f"droop_{name}": Measure(abs(float(with_gain.angle.sel(test="load")[-1])), "rad"),
+                f"tracking_error_{name}": Measure(float(np.sqrt(with_gain.error_ms.mean())), "rad"),
+                f"forward_{name}": Measure(float(with_gain.forward), "m"),
+            }
+        tail = record.angle.isel(ki=last).sel(time=slice(record.time[-1] - 0.5, None))
+        droops = np.abs(record.angle.sel(test="load").isel(time=-1))
+        total = float(record.error_ms.isel(ki=0).sum())
+        by_load = 1.0 - float(record.less_droop_ms.sum()) / total
+        return measures | {
+            "load": Measure(record.attrs["load"], "N m"),
+            "droop_by_kp": Measure(record.attrs["load"] / record.attrs["kp"], "rad"),
+            "droop_taken": Measure(1.0 - float(droops[last] / droops[0]), "-"),
+            "load_error_pid": Measure(float(droops[last]), "rad"),
+            "step_error_pid": Measure(abs(float(tail.sel(test="step")[-1]) - step), "rad"),
+            "ripple_pid": Measure(float((tail.max("time") - tail.min("time")).max()), "rad"),
+            "tracking_by_droop": Measure(by_load, "-"),
+            "tracking_by_damping": Measure(1.0 - float(record.less_both_ms.sum()) / total - by_load, "-"),
+        }
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the tests on the stand and the errors of the crawl."""
+        return {
+            "joint_on_stand": captioned(
+                pictures.on_stand(outcome.record),
+                f"{self.joint} with the pelvis fixed in the air, with several integral gains. Left: a step. Middle: a "
+                "load as the crawl asks for, from time zero on. Right: let go after it was clamped at zero, "
+                "commanded to the step's height; an integral term has wound up meanwhile.",
+            ),
+            "tracking_in_crawl": captioned(
+                pictures.tracking(outcome.record),
+                f"Commanded less actual angle in the crawl. Above: of {self.joint} without an integral term, and what "
+                "droop, the torque over the proportional gain, accounts for. Below: root mean square of all servos of "
+                "each kind with several integral gains.",
+            ),
+        }
+
+
+def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:
+    """Return how long an angle takes from a tenth to nine tenths of a step, NaN if it never gets there [s]."""
+    passed = [np.flatnonzero(angle >= share * step) for share in (0.1, 0.9)]
+    return float(time[passed[1][0]] - time[passed[0][0]]) if passed[1].size else float("nan")
+
+
+def overshoot(angle: np.ndarray, step: float) -> float:
+    """Return by which share of a step an angle goes beyond it, zero if it does not [-]."""
+    return max(float(angle.max()) / step - 1.0, 0.0)
+
+
+def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset:
+    """Return what the crawls left of their commands, and what droop and damping account for.
+
+    Without an integral term a servo's torque is kp times what its angle lacks of its own, slew-limited target, less kd
+    times its speed: the torque over kp is what it sags by, kd over kp times the speed what it lags by.
+
+    Args:
+        walk: of one run for each gain, the first without an integral term.
+        robot: whose gains the runs share.
+        forward: displacement of each run [m].
+    """
+    names = layout(robot).servos
+    kp, kd = (xr.DataArray([getattr(robot.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
+    walk = walk.sel(servo=list(names))
+    error = walk.servo_target - walk.servo_angle
+    first = walk.isel(run=0)
+    droop = first.servo_torque / kp
+    less_droop = error.isel(run=0) - droop
+    squared = {"units": "rad2"}
+    data = xr.Dataset(
+        {
+            "error_ms": (("ki", "servo"), (error**2).mean("time").transpose("run", "servo").values, squared),
+            "less_droop_ms": ("servo", (less_droop**2).mean("time").values, squared),
+            "less_both_ms": (
+                "servo",
+                ((less_droop - kd / kp * first.servo_velocity) ** 2).mean("time").values,
+                squared,
+            ),
+            "crawl_error": (
+                ("servo", "crawl_time"),
+                error.isel(run=0).transpose("servo", "time").values,
+                {"units": "rad"},
+            ),
+            "crawl_droop": (("servo", "crawl_time"), droop.transpose("servo", "time").values, {"units": "rad"}),
+            "forward": ("ki", forward, {"units": "m", "long_name": "displacement forward"}),
+        }
+    )
+    return data.assign_coords(servo=list(names), crawl_time=("crawl_time", walk.time.values, {"units": "s"}))
+
+
+experiment = JointLoops()

@@ -1,0 +1,373 @@
+"""What do coupled oscillators make of a single drive: walking, swimming, turning, and order from any start?"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from math import radians
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.animals.capture.angles import STANDING, standing_index
+from suchus.robot.control import Oscillators, PatternGenerator, oscillate
+from suchus.robot.control.pattern_posture import axis_segments
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import scaled_fields
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.pattern_generator import one_drive
+from suchus.experiments.catalog.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Run, simulate
+from suchus.sim.land.afloat import floats
+from suchus.sim.metrics import displacement, heading_change
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
+
+_NUMBERS = Oscillators()
+_EDGE = 0.01  # above the limbs' highest drive, where they have just fallen silent
+STRAIGHT = ("drive_low", "straight", "drive_high")
+"""Walks by an even drive: the lowest that moves the limbs, the one for walking, the highest."""
+_TURNS = {"turn_gained": ("straight", "asymmetry")}
+"""Measures that are of some walks alone, and of which."""
+_EVERY = 4  # control periods between the samples kept of the oscillators
+_LEAST_TIME = START + 1.5  # of the runs from the water, beyond the time in which the felt load settles [s]
+_SETTLED = 0.25  # the last part of a sweep's time, over which frequencies are taken
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatternGeneratorExperiment(Experiment):
+    """Phase oscillators under a drive: alone, then on the body on land.
+
+    The sweep starts at the gait's phases and is measured when it has settled. Locked: from some time on until the end,
+    and for at least ``hold`` cycles, no active oscillator is farther than ``within`` from its place in the state that a
+    start at the gait's phases reaches, the common shift of all aside. Turning is that of the body's heading.
+    """
+
+    title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
+    shows = "Beyond the article: Ijspeert et al. 2007, Science 315, 1416"
+    answers = ("frequency_walk", "frequency_swim", "frequency_jump", "lag_walk", "lag_swim", "locked_share")
+    needs = ("limbs", "axis")
+    judged_with = ("robot", "gait", "walk", "swim", "asymmetry")
+    judged_from: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 6.0}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
+    """The robot, with limbs and an axis that bends sideways."""
+    gait: Gait = field(default_factory=lambda: GAITS["salamander_walk"])
+    """Gait whose foot paths, bends and period the oscillators drive."""
+    drives: tuple[float, ...] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.25, 3.5, 4.0, 4.5, 5.0)
+    """Drives of the sweep [-]."""
+    walk: float = 2.0
+    """Drive at which it walks, for starts and steering [-]."""
+    swim: float = 4.0
+    """Drive at which the limbs are silent, for starts [-]."""
+    starts: int = 32
+    """Random initial phases of all oscillators, the same at both drives [-]."""
+    followed: float = 12.0
+    """Duration for which each start is followed, in cycles of its drive [cycle]."""
+    within: float = 0.1
+    """Greatest phase error with which an oscillator counts as locked [rad]."""
+    hold: float = 2.0
+    """Duration for which all must stay locked until the end [cycle]."""
+    asymmetry: float = 1.0
+    """Drive of the right side minus that of the left one, for steering by it [-]."""
+    cycles: int = 5
+    """Duration of each walk on land, in periods of the gait [-]."""
+    ramp: float = 14.0
+    """Duration over which the drive rises from 1 to 5 and falls again, in periods of the gait [-]."""
+    swimmer: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot that goes from the water onto the land by one drive, ``walk``; it must float."""
+    swimmer_gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose foot paths, bends and period its oscillators drive."""
+    slope: float = radians(5)
+    """Slope of the shore [rad]."""
+    water_line: float = 2.2
+    """Distance of the water line ahead of the robot, along the ground [m]."""
+    shore_time: float = 30.0
+    """Duration of the runs from the water [s]."""
+    seed: int = 0
+    """Seed of the first start; the others follow [-]."""
+
+    def __post_init__(self) -> None:
+        low, middle, high = *_NUMBERS.limb_drives, _NUMBERS.axis_drives[1]
+        with Checks(self.name(), self) as check:
+            check.rising("drives", low, high, "")
+            check.number("walk", low, middle, "")
+            check.number("swim", middle + _EDGE, high, "")
+            check.whole("starts", 1, 1000)
+            check.number("followed", 1.0, 1000.0, "cycle")
+            check.number("within", 1e-6, 3.0, "rad")
+            check.number("hold", 0.1, 1000.0, "cycle")
+            check.number("asymmetry", 0.0, 2.0, "")
+            check.whole("cycles", 1, 1000)
+            check.number("ramp", 1.0, 1000.0, "")
+            check.number("slope", 0.01, 1.0, "rad")
+            check.number("water_line", 0.0, 100.0, "m")
+            check.number("shore_time", _LEAST_TIME, 3600.0, "s")
+            check.whole("seed", 0, 2**31)
+
+    def quick(self) -> "PatternGeneratorExperiment":
+        """Three drives, four starts, short walks."""
+        return replace(
+            self, drives=(1.0, 3.0, 4.0), starts=4, followed=6.0, hold=0.5, cycles=1, ramp=2.0, shore_time=3.0
+        )
+
+    def on(self, robot: Robot) -> "PatternGeneratorExperiment":
+        """Return the same question for another robot, which goes from the water to the land itself where it floats."""
+        asked = super(PatternGeneratorExperiment, self).on(robot)  # a class with slots has no short form
+        if robot == self.robot:
+            return asked
+        swimmer = robot if floats(robot) else self.swimmer
+        sized = scaled_fields(
+            self,
+            ("water_line", "shore_time"),
+            length_factor=swimmer.length / self.swimmer.length,
+            mass_factor=swimmer.mass / self.swimmer.mass,
+        )
+        across = {"water_line": self.water_line, "shore_time": self.shore_time} | sized
+        across["shore_time"] = max(across["shore_time"], _LEAST_TIME)
+        return replace(asked, swimmer=swimmer, swimmer_gait=own_gait(swimmer), **across)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Sweep the drive, start at random, ramp the drive, and walk."""
+        parts = [self._sweep(staged(progress, "drive sweep", 0.0, 0.15))]
+        parts += [
+            self._starts(name, drive, staged(progress, f"random starts, {name}", start, start + 0.15))
+            for name, drive, start in (("walk", self.walk, 0.15), ("swim", self.swim, 0.3))
+        ]
+        parts.append(self._ramp())
+        found, ramped = self._land(progress)
+        stage = staged(progress, "one drive across the shore", 0.85, 1.0)
+        across = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
+        swum = simulate(across, duration=self.shore_time, every=_EVERY, progress=stage)
+        record = xr.merge([*parts, found, one_drive.reduced(swum, self.water_line)]).assign_attrs(
+            within=self.within, hold=self.hold, silent_above=_NUMBERS.limb_drives[1], walk=self.walk, swim=self.swim
+        )
+        return Simulated(record=record, replays=self._replays(ramped))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least; turns alone need no drive but the walks'."""
+        if not set(wanted) <= _TURNS.keys():
+            return super(PatternGeneratorExperiment, self).measured(wanted, progress)
+        arms = dict.fromkeys(arm for name in wanted for arm in _TURNS[name])
+        return _turned(self._walked({name: arm for name, arm in self._arms.items() if name in arms}, progress))
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return frequencies, lags and indices over the drive, locks, strides and turns."""
+        measures = _swept(record) | _locked(record, "walk", "") | _locked(record, "swim", "_swim") | _turned(record)
+        for arm in STRAIGHT:
+            walk = record.sel(arm=arm)
+            stride = float(walk.forward / walk.walked / record.attrs["length"])
+            measures[f"stride_{arm}"] = Measure(stride, "L/cycle")
+        return measures | one_drive.measures(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what the drive does, what steers, and how order comes about."""
+        return self.told(measures, standing=STANDING)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the ramp, the sweep, the locks, and what drive and steering do on land."""
+        record = outcome.record
+        return {
+            "drive_ramp": draw_ramp(record, self.robot),
+            "drive_sweep": draw_sweep(record, _NUMBERS),
+            "phase_locks": draw_locks(record),
+            "walking_by_drive": draw_land(record),
+        }
+
+    def _sweep(self, progress: Progress) -> xr.Dataset:
+        """Return settled frequencies, phases and amplitudes at every drive."""
+        edge = _NUMBERS.limb_drives[1]
+        drives = sorted({*self.drives, self.walk, self.swim, edge, edge + _EDGE})
+        controls = [PatternGenerator(drive=drive) for drive in drives]
+        duration = self.followed * self.gait.period
+        done = oscillate(controls, self.robot, self.gait, duration=duration, every=_EVERY, progress=progress)
+        n, since = done.wave.shape[2], int((1 - _SETTLED) * len(done.time))
+        rate = (done.phase[:, -1] - done.phase[:, since]) / (done.time[-1] - done.time[since])
+        phase = done.phase[:, -1, :n] - done.phase[:, -1, :1]
+        segments = axis_segments(self.robot, self.gait)
+        return xr.Dataset(
+            {
+                "frequency_axis": ("drive", rate[:, 0], {"units": "Hz", "long_name": "of the axis"}),
+                "frequency_limbs": ("drive", rate[:, 2 * n], {"units": "Hz", "long_name": "of the limbs"}),
+                "amplitude_axis": ("drive", done.amplitude[:, -1, 0], {"units": "1"}),
+                "amplitude_limbs": ("drive", done.amplitude[:, -1, 2 * n], {"units": "1"}),
+                "phase_axis": (("drive", "segment"), phase, {"units": "1", "long_name": "against the first [cycle]"}),
+                "bend": ("segment", [one.amplitude for one in segments], {"units": "rad", "long_name": "in the gait"}),
+            },
+            coords={
+                "drive": drives,
+                "segment": np.arange(1, n + 1),
+                "place": ("segment", [one.place for one in segments], {"units": "1"}),
+                "girdle": ("segment", [one.part.girdle for one in segments]),
+            },
+            attrs={"frequency_scale": self._pace, "length": self.robot.length},
+        )
+
+    @property
+    def _pace(self) -> float:
+        """How many times faster than published the oscillators go, so that the gait's period belongs to drive 2."""
+        return 1.0 / (self.gait.period * float(_NUMBERS.limbs(np.array(_NUMBERS.reference))[0]))
+
+    def _starts(self, name: str, drive: float, progress: Progress) -> xr.Dataset:
+        """Return over time how far the oscillators are from their places, for every random start."""
+        walks = drive <= _NUMBERS.limb_drives[1]
+        law = _NUMBERS.limbs if walks else _NUMBERS.axis
+        frequency = self._pace * float(law(np.array(drive))[0])
+        whole = PatternGenerator(drive=drive)
+        controls = [whole, *(replace(whole, initial="random") for _ in range(self.starts))]
+        seeds = [self.seed, *range(self.seed, self.seed + self.starts)]
+        duration = self.followed / frequency
+        done = oscillate(
+            controls, self.robot, self.gait, duration=duration, seeds=seeds, every=_EVERY, progress=progress
+        )
+        active = done.amplitude[0, -1] > 0.0
+        error = lock_error(done.phase[1:][..., active], done.phase[0, -1, active])
+        cycles = (done.time - done.time[0]) * frequency
+        dims = (f"{name}_start", f"{name}_cycle")
+        return xr.Dataset(
+            {f"{name}_error": (dims, error, {"units": "rad", "long_name": "greatest distance from the locked state"})},
+            coords={dims[1]: (dims[1], cycles, {"units": "1", "long_name": "time [cycle]"})},
+        )
+
+    @property
+    def _ramped(self) -> tuple[tuple[float, float], ...]:
+        """The drive over the ramp: up in one half, down in the other."""
+        end = self.ramp * self.gait.period
+        low, high = _NUMBERS.axis_drives
+        return (START, low), (START + end / 2, high), (START + end, low)
+
+    def _ramp(self) -> xr.Dataset:
+        control = PatternGenerator(drive=self._ramped)
+        done = oscillate([control], self.robot, self.gait, duration=self.ramp * self.gait.period)
+        drive = np.interp(done.time, *np.array(self._ramped).T)
+        return xr.Dataset(
+            {
+                "ramp_drive": ("ramp_time", drive, {"units": "1"}),
+                "ramp_phase": (("ramp_time", "oscillator"), done.phase[0], {"units": "1", "long_name": "[cycle]"}),
+                "ramp_amplitude": (("ramp_time", "oscillator"), done.amplitude[0], {"units": "1"}),
+                "ramp_wave": (("ramp_time", "segment"), done.wave[0], {"units": "1", "long_name": "to the left"}),
+            },
+            coords={
+                "ramp_time": ("ramp_time", done.time - START, {"units": "s"}),
+                "oscillator": list(done.names),
+                "segment": np.arange(1, done.wave.shape[2] + 1),
+            },
+        )
+
+    @property
+    def _arms(self) -> dict[str, PatternGenerator]:
+        """Under what it walks on land."""
+        low, high = _NUMBERS.limb_drives
+        return {
+            "drive_low": PatternGenerator(drive=low),
+            "straight": PatternGenerator(drive=self.walk),
+            "drive_high": PatternGenerator(drive=high),
+            "asymmetry": PatternGenerator(drive=self.walk, asymmetry=self.asymmetry),
+            "steering": PatternGenerator(drive=self.walk, steering=1.0),
+            "steering_right": PatternGenerator(drive=self.walk, steering=-1.0),
+        }
+
+    def _walked(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:
+        """Return how far and in which direction it walks under each control."""
+        runs = [Run(robot=self.robot, gait=self.gait, control=one, label=name) for name, one in arms.items()]
+        duration = START + self.cycles * self.gait.period
+        record = simulate(runs, duration=duration, every=_EVERY, progress=progress)
+        walked = record.limb_phase.isel(leg=0)
+        begun = walked.sel(time=START, method="nearest")
+        units = {"forward": "m", "turned": "rad", "walked": "1"}
+        values = {
+            "forward": displacement(record).sel(xyz="x").values,
+            "turned": heading_change(record).values,
+            "walked": (walked.isel(time=-1) - begun).values,
+        }
+        return xr.Dataset(
+            {name: ("arm", value, {"units": units[name]}) for name, value in values.items()},
+            coords={"arm": list(arms)},
+        )
+
+    def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
+        """Return what it walks under each control, and the run under the ramp."""
+        found = self._walked(self._arms, staged(progress, "walks", 0.45, 0.65))
+        ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
+        end = START + self.ramp * self.gait.period
+        stage = staged(progress, "drive ramp", 0.65, 0.85)
+        return found, simulate([ramped], duration=end, every=2, progress=stage)
+
+    def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "drive_ramp_replay.html",
+            ramped.isel(run=0),
+            self.robot,
+            title="Walking under a rising and falling drive",
+            caption="The drive rises and falls again: limbs and a standing wave first, then folded limbs and a faster "
+            "wave.",
+        )
+
+
+def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Return how far the farthest oscillator is from its place, the common shift of all aside [rad].
+
+    Args:
+        phase: of the oscillators, shape (..., oscillator) [cycle].
+        place: of the oscillators, shape (oscillator,) [cycle].
+    """
+    off = np.exp(2j * np.pi * (phase - place))
+    common = off.mean(axis=-1, keepdims=True)
+    return np.asarray(np.abs(np.angle(off * np.conj(common))).max(axis=-1))
+
+
+def _swept(record: xr.Dataset) -> Measures:
+    """Return what the sweep shows at the two drives, and on both sides of where the limbs fall silent."""
+    edge = record.attrs["silent_above"]
+    states = {"walk": record.attrs["walk"], "swim": record.attrs["swim"], "below": edge, "above": edge + _EDGE}
+    found = Measures()
+    for name, drive in states.items():
+        one = record.sel(drive=drive, method="nearest")
+        found[f"frequency_{name}"] = Measure(float(one.frequency_axis), "Hz")
+        if name in ("walk", "swim"):
+            lags = _lags(one.phase_axis.values)
+            found[f"standing_index_{name}"] = Measure(
+                standing_index(record.bend.values, 2 * np.pi * one.phase_axis.values), "-"
+            )
+            found[f"lag_{name}"] = Measure(float(np.median(lags)), "cycle")
+            found[f"lag_{name}_least"] = Measure(float(lags.min()), "cycle")
+            found[f"lag_{name}_most"] = Measure(float(lags.max()), "cycle")
+            found[f"frequency_limbs_{name}"] = Measure(float(one.frequency_limbs), "Hz")
+            found[f"amplitude_limbs_{name}"] = Measure(float(one.amplitude_limbs), "-")
+    jump = found["frequency_above"].value / found["frequency_below"].value
+    return found | {"frequency_jump": Measure(jump, "-")}
+
+
+def _turned(record: xr.Dataset) -> Measures:
+    """Return by how much each walk turns in a cycle, and what unequal drives add."""
+    turns, unit = record.turned / record.walked, "rad/cycle"
+    found = Measures((f"turn_{arm}", Measure(float(turns.sel(arm=arm)), unit)) for arm in record.arm.values)
+    gained = abs(found["turn_asymmetry"].value - found["turn_straight"].value)
+    return found | {"turn_gained": Measure(gained, unit)}
+
+
+def _lags(phase: np.ndarray) -> np.ndarray:
+    """Return the phase lag of each segment behind the one ahead of it, -0.5 to 0.5 [cycle]; 0 of a single segment."""
+    if len(phase) < 2:
+        return np.zeros(1)
+    return np.asarray(np.mod(-np.diff(phase) + 0.5, 1.0) - 0.5)
+
+
+def _locked(record: xr.Dataset, state: str, ending: str) -> Measures:
+    """Return the share of starts that lock, and after how many cycles those do; NaN if none does."""
+    error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
+    step = float(cycle[1] - cycle[0])
+    since = (cycle.where(error > record.attrs["within"]).max(str(cycle.dims[0])) + step).fillna(0.0)
+    locked = since.values[since.values <= float(cycle[-1]) - record.attrs["hold"]]
+    return Measures(
+        {
+            f"locked_share{ending}": Measure(len(locked) / len(since), "-"),
+            f"lock_cycles{ending}": Measure(float(locked.mean()) if len(locked) else float("nan"), "cycle"),
+            f"lock_cycles{ending}_most": Measure(float(locked.max()) if len(locked) else float("nan"), "cycle"),
+        }
+    )
+
+
+experiment = PatternGeneratorExperiment()

@@ -1,0 +1,89 @@
+"""One drive from the water onto the land: a pattern generator whose drive never changes, and the load that it feels."""
+
+from math import sin
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import LoadRule, PatternGenerator
+from suchus.robot.design import Robot
+from suchus.robot.design.ground import Ground
+from suchus.experiments.experiment import Measure, Measures
+from suchus.sim.land import Lake, Run
+from suchus.robot.motion import START, Gait
+
+ARMS = ("felt", "unfelt")
+"""With the load felt, and without."""
+_BEGUN = 1.0
+"""Time after the begin of the walk from which is measured; the low pass of the load has settled [s]."""
+_SILENT = 0.02
+"""Rate below which the limbs' clock stands still [cycle/s]; walking at the lowest drive it is six times as much."""
+
+
+def runs(robot: Robot, gait: Gait, drive: float, slope: float, line: float) -> list[Run]:
+    """Return a run towards a shore with the load felt, and one without.
+
+    Args:
+        robot: who floats.
+        gait: whose bends and foot paths are followed.
+        drive: of the oscillators, for the whole run [-].
+        slope: of the shore [rad].
+        line: distance of the water line ahead, along the ground [m].
+    """
+    return [
+        Run(
+            robot=robot,
+            gait=gait,
+            ground=Ground(uphill=slope),
+            lake=Lake(level=line * sin(slope)),
+            control=PatternGenerator(drive=drive, load=rule),
+            label=arm,
+        )
+        for arm, rule in zip(ARMS, (LoadRule(), None), strict=True)
+    ]
+
+
+def reduced(record: xr.Dataset, line: float) -> xr.Dataset:
+    """Return what is kept of these runs: distance up the shore from the water line, and the limbs' clock."""
+    limbs = record.limb_phase.isel(leg=0, drop=True)
+    ahead = record.centre_of_mass.sel(xyz="x", drop=True) - line
+    return xr.Dataset(
+        {
+            "shore_ahead": (("shore_arm", "shore_time"), ahead.values, {"units": "m"}),
+            "shore_limbs": (("shore_arm", "shore_time"), limbs.values, {"units": "1", "long_name": "[cycle]"}),
+            "shore_feet": (("shore_arm", "shore_time"), record.feet_share.values, {"units": "1"}),
+        },
+        coords={"shore_arm": list(ARMS), "shore_time": ("shore_time", record.time.values, {"units": "s"})},
+    )
+
+
+def measures(record: xr.Dataset) -> Measures:
+    """Return how it swims and walks by one drive: speeds, changes, and how far it comes."""
+    late = record.sel(shore_time=slice(START + _BEGUN - 1e-9, None))
+    time, ahead = late.shore_time.values, late.shore_ahead.sel(shore_arm="felt").values
+    step = np.diff(time)
+    silent = np.diff(late.shore_limbs.sel(shore_arm="felt").values) / step < _SILENT
+    speed = np.diff(ahead) / step
+    parts = {"swim": silent, "walk": ~silent}
+    measures_of_arm = Measures(
+        {
+            f"drive_{name}_speed": Measure(float(speed[part].mean()) if part.any() else float("nan"), "m/s")
+            for name, part in parts.items()
+        }
+    )
+    unfelt = late.shore_ahead.sel(shore_arm="unfelt").values
+    return Measures(
+        measures_of_arm,
+        {
+            "drive_changes": Measure(float(np.count_nonzero(np.diff(silent.astype(int)))), "-"),
+            "drive_afloat_share": Measure(float(silent.mean()), "-"),
+            "drive_ashore": Measure(float(ahead[-1]), "m"),
+            "drive_ashore_unfelt": Measure(float(unfelt[-1]), "m"),
+            "drive_feet_walking": Measure(
+                float(late.shore_feet.sel(shore_arm="felt").values[1:][~silent][-len(time) // 4 :].mean())
+                if (~silent).any()
+                else float("nan"),
+                "-",
+            ),
+        },
+    )

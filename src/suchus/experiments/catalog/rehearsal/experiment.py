@@ -1,0 +1,343 @@
+"""Does the robot walk the same when every command goes over the bus, and how much of a real wire does it bear?"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from math import radians
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.hardware.bus import BusPlace, Wiring, straight
+from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.core.errors import Diverged
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.robot.gaits import GAITS
+from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, drive
+from suchus.sim.land import crawl
+from suchus.sim.metrics import displacement, heading_change
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
+
+RULES = ("open", "closed", "steered", "pattern")
+LOSES = 0.02
+"""Share of its displacement from whose loss on a rule is flagged [-]; a real walk scatters by about as much."""
+TURNS = radians(5.0)
+"""Further change of heading from which on it is flagged [rad]."""
+ENOUGH = 2.0
+"""Cycles below which no wire is judged [-]: a rule needs about one to answer."""
+_UNHEARD = DriveLimits(silent=10_000, patience=10.0)  # what is studied here is what losses do, not when to stop
+
+
+class Wire(NamedTuple):
+    """One kind of imperfect wire."""
+
+    name: str
+    """As tables name it."""
+    trouble: Trouble
+    """What is imperfect."""
+
+
+class Rehearsed(NamedTuple):
+    """A walk over an emulated bus."""
+
+    log: xr.Dataset
+    """What the robot said."""
+    truth: xr.Dataset
+    """What truly happened."""
+
+
+def rehearse(
+    robot: Robot,
+    gait: Gait,
+    control: Control,
+    duration: float,
+    *,
+    protocol: str = "dynamixel",
+    trouble: Trouble | None = None,
+    built: Wiring | None = None,
+) -> Rehearsed:
+    """Let a robot walk over an emulated bus whose time is told.
+
+    Args:
+        robot: the robot.
+        gait: in which it walks.
+        control: what decides.
+        duration: the first second of standing included [s].
+        protocol: that its servos speak.
+        trouble: of the wire; none by default.
+        built: how the robot is built, where that is not as its wiring says.
+    """
+    wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], USUAL[protocol], boards=True)  # type: ignore[arg-type]
+    trouble = trouble or Trouble()
+    emulator = Emulator(built or wiring, EmulatedBody(robot, gait, latency=trouble.latency), trouble, clocked=True)
+    rig = Rig(robot, wiring, [MemoryPort(emulator)], clocked=True)
+    settings = DriveSettings(duration=duration, stop="hold", limits=_UNHEARD)
+    log = drive(rig, gait, control, settings, clock=BusClock(rig))
+    truth = emulator.body.record()
+    return Rehearsed(log, truth.isel(time=slice(log.sizes["time"])))
+
+
+def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
+    """Let a robot be sent goals without a wire: what is left between this and a rehearsed walk is the wire's own.
+
+    Args:
+        robot: the robot.
+        gait: in whose first posture it begins.
+        goals: of all servos at every tick, shape (time, servo) [rad].
+
+    Returns:
+        What it did, a sample for each row of goals.
+    """
+    body = EmulatedBody(robot, gait)
+    for row in goals:
+        body.aim(dict(enumerate(row.tolist())))
+        body.step()
+    return body.record().isel(time=slice(len(goals)))
+
+
+def flagged(lost: float, turned: float) -> bool:
+    """Return whether a wire costs a rule so much that people should know.
+
+    Args:
+        lost: change of the displacement, as a share of that without the wire [-].
+        turned: further change of heading [rad].
+    """
+    return not (abs(lost) <= LOSES and abs(turned) <= TURNS)  # what is not a number is flagged
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rehearsal(Experiment):
+    """The same walks in the simulation and over an emulated bus, ideal and not.
+
+    Over ideal wires the walk is compared sample by sample, and the angles servo by servo: the displacement alone shows
+    nothing, since servos that are commanded alike can be swapped without a trace. It is compared twice: with the
+    simulation, whose goals are any angle, and with the simulation that is sent the goals that a servo's steps leave.
+    A walk answers the smallest change of its goals, since feet touch down a step of the physics sooner or later.
+    Latency holds for goals and readings each; goals are late by whole steps of the physics, readings by whole ticks.
+    """
+
+    title = "Does it walk the same over the bus, and how much of a real wire does it bear?"
+    shows = "Beyond the article: commands and readings as packets on a servo bus"
+    answers = ("position_off", "wire_off", "goal_off", "angle_off", "latency_budget", "flagged")
+    needs = ("limbs",)
+    reproduces = False
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that walks."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The gait in which it walks."""
+    cycles: float = 2.0
+    """Cycles of the comparison over ideal wires, and of the gait alone over others [-]."""
+    rule_cycles: float = 4.0
+    """Cycles of the feedback rules over imperfect wires [-]."""
+    protocols: tuple[str, ...] = ("dynamixel", "feetech")
+    """Protocols over which it walks with ideal wires."""
+    controls: tuple[str, ...] = RULES
+    """What decides over imperfect wires: the gait alone, the three feedback rules, these and the heading loop, coupled
+    oscillators."""
+    latencies: tuple[float, ...] = (0.006, 0.02, 0.05)
+    """How long goals are on their way, and readings too [s]."""
+    resolutions: tuple[float, ...] = (0.088, 0.3, 1.0)
+    """Steps of the servos' angles [degrees]."""
+    losses: tuple[float, ...] = (0.01, 0.1)
+    """Shares of the packets that are lost [-]."""
+    seed: int = 0
+    """Seed of what is lost [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.number("cycles", 0.1, 100.0, "")
+            check.number("rule_cycles", 0.1, 100.0, "")
+            for name, known in (("protocols", USUAL), ("controls", RULES)):
+                unknown = [one for one in getattr(self, name) if one not in known]
+                check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(known)}")
+            check.that(bool(self.protocols), f"{self.name()}.protocols is empty; one at least is needed")
+            for name, most in (("latencies", 1.0), ("resolutions", 10.0), ("losses", 1.0)):
+                row = getattr(self, name)
+                check.that(
+                    all(0.0 <= one <= most for one in row) and len(set(row)) == len(row),
+                    f"{self.name()}.{name} is {row}; 0 to {most:g} is allowed, each once",
+                )
+
+    def quick(self) -> "Rehearsal":
+        """A quarter of a cycle, both protocols, and one wire for the three rules."""
+        return replace(
+            self, cycles=0.25, rule_cycles=0.25, controls=("closed",), latencies=(0.05,), resolutions=(), losses=()
+        )
+
+    def wires(self) -> Iterator[Wire]:
+        """Yield the imperfect wires."""
+        for latency in self.latencies:
+            yield Wire(f"latency_{1e3 * latency:g}_ms", Trouble(latency=latency))
+        for step in self.resolutions:
+            yield Wire(f"step_{step:g}_degrees", Trouble(resolution=radians(step)))
+        for share in self.losses:
+            yield Wire(f"lost_{100 * share:g}_percent", Trouble(lost=share, seed=self.seed))
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Walk in the simulation, over ideal wires, and over imperfect ones."""
+        wires = list(self.wires())
+        steps = len(self.protocols) + len(self.controls) * (1 + len(wires))
+        done = 0
+
+        def pass_on(what: str) -> None:
+            nonlocal done
+            done += 1
+            progress(what, done / steps)
+
+        duration = START + self.cycles * self.gait.period
+        truth = crawl(self.robot, self.gait, duration=duration)
+        off, wired, goal, angle = [], [], [], []
+        for protocol in self.protocols:
+            walk = rehearse(self.robot, self.gait, OpenLoop(), duration, protocol=protocol)
+            off.append(np.abs(walk.truth.position - truth.position).max("xyz").values)
+            direct = sent_directly(self.robot, self.gait, walk.log.servo_target.values)
+            wired.append(np.abs(walk.truth.position - direct.position).max("xyz").values)
+            goal.append(np.abs(walk.log.servo_target - truth.servo_target).max("time").values)
+            angle.append(np.sqrt(((walk.log.servo_angle - truth.servo_angle) ** 2).mean("time")).values)
+            pass_on(protocol)
+        far, turned = np.full((2, len(self.controls), 1 + len(wires)), np.nan)
+        for i, rule in enumerate(self.controls):
+            control = self.control(rule)
+            length = START + (self.cycles if rule == "open" else self.rule_cycles) * self.gait.period
+            alone = crawl(self.robot, self.gait, duration=length, control=control)
+            far[i, 0], turned[i, 0] = _went(alone)
+            pass_on(rule)
+            for j, wire in enumerate(wires, 1):
+                try:
+                    walk = rehearse(self.robot, self.gait, control, length, trouble=wire.trouble)
+                    far[i, j], turned[i, j] = _went(walk.truth)
+                except Diverged:
+                    pass  # not a number: flagged
+                pass_on(f"{rule}, {wire.name.replace('_', ' ')}")
+        step = 2 * np.pi / 4096
+        record = xr.Dataset(
+            {
+                "position_off": (("protocol", "time"), np.array(off), {"units": "m"}),
+                "wire_off": (("protocol", "time"), np.array(wired), {"units": "m"}),
+                "goal_off": (("protocol", "servo"), np.array(goal), {"units": "rad"}),
+                "angle_off": (("protocol", "servo"), np.array(angle), {"units": "rad"}),
+                "forward": (("rule", "wire"), far, {"units": "m"}),
+                "turned": (("rule", "wire"), turned, {"units": "rad"}),
+                "latency": ("wire", [0.0, *(wire.trouble.latency for wire in wires)], {"units": "s"}),
+                "half_step": ((), step / 2, {"units": "rad"}),
+            },
+            coords={
+                "protocol": list(self.protocols),
+                "time": ("time", truth.time.values, {"units": "s"}),
+                "servo": truth.servo.values,
+                "rule": list(self.controls),
+                "wire": ["ideal", *(wire.name for wire in wires)],
+            },
+        )
+        return Simulated(record=record)
+
+    def control(self, rule: str) -> Control:
+        """Return what decides, by its name."""
+        closed = Coordinated().suited(self.robot, self.gait)
+        controls: dict[str, Control] = {
+            "open": OpenLoop(),
+            "closed": closed,
+            "steered": replace(closed, heading=HeadingRule()),
+            "pattern": PatternGenerator(),
+        }
+        return controls[rule]
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how far the walks differ, and which wires cost which rule too much."""
+        found = Measures(
+            {
+                "position_off": Measure(float(record.position_off.max()), "m"),
+                "wire_off": Measure(float(record.wire_off.max()), "m"),
+                "goal_off": Measure(float(record.goal_off.max()), "rad"),
+                "half_step": Measure(float(record.half_step), "rad"),
+                "angle_off": Measure(float(record.angle_off.max()), "rad"),
+            }
+        )
+        count = 0
+        kept: dict[float, bool] = {}
+        for rule in record.rule.values:
+            of = record.sel(rule=rule)
+            ideal = of.isel(wire=0)
+            found[f"forward_{rule}"] = Measure(float(ideal.forward), "m")
+            for wire in record.wire.values[1:]:
+                lost = float(of.forward.sel(wire=wire) / ideal.forward - 1.0)
+                turned = float(of.turned.sel(wire=wire) - ideal.turned)
+                found[f"lost_{rule}_{wire}"] = Measure(lost, "-")
+                found[f"turned_{rule}_{wire}"] = Measure(turned, "rad")
+                bad = flagged(lost, turned)
+                found[f"flagged_{rule}_{wire}"] = Measure(float(bad) if self.judges(str(rule)) else np.nan, "-")
+                count += bad
+                late = float(record.latency.sel(wire=wire))
+                if late > 0.0:
+                    kept[late] = kept.get(late, True) and not bad
+        borne = [late for late in sorted(kept) if all(kept[other] for other in kept if other <= late)]
+        judged = all(self.judges(rule) for rule in self.controls)
+        return found | {
+            "latency_budget": Measure(max(borne, default=0.0) if judged else np.nan, "s"),
+            "flagged": Measure(float(count) if judged else np.nan, "-"),
+        }
+
+    def judges(self, rule: str) -> bool:
+        """Return whether walks are long enough to judge what a wire costs a rule."""
+        return (self.cycles if rule == "open" else self.rule_cycles) >= ENOUGH
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Return what decided, with the bounds beyond which a wire is flagged."""
+        return self.told(measures, loses=LOSES, turns=TURNS, enough=ENOUGH)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw what each wire costs each rule, and how far each servo is off over ideal wires."""
+        with styled():
+            return {"rehearsal": self._draw(outcome.record)}
+
+    def _draw(self, record: xr.Dataset) -> Figure:
+        figure, axes = panels(2, 1, height=7.0)
+        wires, rules = record.wire.values[1:], record.rule.values
+        colours = [COLOURS["neutral"], COLOURS["coordinated"], COLOURS["tail_drag"], COLOURS["limbs_only"]]
+        for i, rule in enumerate(rules):
+            share = 100.0 * (record.forward.values[i, 1:] / record.forward.values[i, 0] - 1.0)
+            axes[0, 0].bar(
+                np.arange(len(wires)) + (i - 0.5 * (len(rules) - 1)) * 0.8 / len(rules), share, 0.8 / len(rules),
+                color=colours[RULES.index(str(rule))], label=str(rule),
+            )  # fmt: skip
+        for side in (-1.0, 1.0):
+            bound = "beyond: flagged" if side > 0 else None
+            axes[0, 0].axhline(side * 100.0 * LOSES, color=COLOURS["alarm"], linewidth=0.8, linestyle="--", label=bound)
+        axes[0, 0].set_xticks(np.arange(len(wires)), [_words(str(wire)) for wire in wires])
+        axes[0, 0].set_ylabel("change of displacement [%]")
+        axes[0, 0].legend(loc="lower right", ncols=2)
+        servos = [str(name).replace("_", " ") for name in record.servo.values]
+        for marker, protocol in zip("ox", record.protocol.values, strict=False):
+            off = np.degrees(record.angle_off.sel(protocol=protocol).values)
+            axes[1, 0].plot(np.arange(len(servos)), off, marker, color=COLOURS["ours"], label=str(protocol))
+        axes[1, 0].set_xticks(np.arange(len(servos)), servos, rotation=90)
+        axes[1, 0].set_ylabel("off [degrees]")
+        axes[1, 0].set_ylim(bottom=0.0)
+        axes[1, 0].legend(loc="best")
+        return captioned(
+            figure,
+            "Above: what an imperfect wire changes of the displacement of each rule, against the same walk in the "
+            f"simulation; beyond the dashed lines, {LOSES:.0%}, it is flagged. Open: the gait alone; closed: three "
+            "feedback rules; steered: these and a loop that holds the heading; pattern: coupled oscillators. Below: "
+            "how far each servo is off the simulation over ideal wires, root mean square.",
+        )
+
+
+def _went(record: xr.Dataset) -> tuple[float, float]:
+    """Return displacement forward [m] and change of heading [rad] of a walk."""
+    return float(displacement(record).sel(xyz="x")), float(heading_change(record))
+
+
+def _words(wire: str) -> str:
+    kind, _, rest = wire.partition("_")
+    return f"{kind}\n{rest.replace('_percent', ' %').replace('_degrees', '°').replace('_', ' ')}"
+
+
+experiment = Rehearsal()

@@ -1,0 +1,81 @@
+"""The numbers of a run that stand beside what is published of walking salamanders."""
+
+import csv
+import io
+from collections.abc import Mapping
+from math import nan
+
+import numpy as np
+import xarray as xr
+
+from suchus.animals.capture import standing_index
+from suchus.experiments.experiment import Measure, Measures
+from suchus.sim.metrics import each_cycle, first_harmonic, mean_cycle
+from suchus.sim.metrics.foot_forces import PARTS, Window, advance, stance_forces, step, weight
+from suchus.article.paper.walking_salamanders import ANIMAL
+
+PAIRS = ("fore", "hind")
+
+
+def window(record: xr.Dataset) -> Window:
+    """Return the cycles of a record that are measured."""
+    return Window(float(record.attrs["measured_from"]), float(record.period[0]), int(record.attrs["cycles"]))
+
+
+def waves(record: xr.Dataset, when: Window) -> Measures:
+    """Return how far the axis bends as a standing wave, as commanded and as achieved, and how well it follows."""
+    names = list(record.attrs["axis"])
+    moved = [str(name) for name in record.servo.values if name in record.joint.values]
+    cycle = {
+        "walk": mean_cycle(record.joint_angle.sel(joint=moved), *when),
+        "commanded": mean_cycle(record.servo_target.sel(servo=moved).rename(servo="joint"), *when),
+    }
+    found = Measures()
+    for name, angles in cycle.items():
+        first = first_harmonic(angles.sel(joint=names))
+        found[f"standing_index_{name}"] = Measure(standing_index(np.abs(first), np.angle(first)), "-")
+    missed = float(np.sqrt(((cycle["walk"] - cycle["commanded"]) ** 2).mean()))
+    return found | {"angle_missed": Measure(missed, "rad")}
+
+
+def steps(record: xr.Dataset, when: Window, least: float) -> Measures:
+    """Return the forces on fore and hind feet, the mean of left and right, and how far the feet slip."""
+    force = stance_forces(record, when)
+    measures = Measures()
+    singles = each_cycle(record.foot_force, *when) / weight(record)
+    single = ((singles**2).sum("xyz") ** 0.5).max("phase").mean("cycle")
+    for pair in PAIRS:
+        legs = list(record.attrs[pair])
+        found = [step(force.sel(leg=leg), least) for leg in legs]
+        one = {part: float(np.mean([each.parts[part] for each in found])) for part in PARTS}
+        measures |= {
+            f"foot_force_peak_{pair}": Measure(one["vertical"], "body weight"),
+            f"foot_force_net_{pair}": Measure(float(np.mean([each.net for each in found])), "body weight"),
+            f"foot_force_single_{pair}": Measure(float(single.sel(leg=legs).mean()), "body weight"),
+            f"foot_force_sideways_{pair}": Measure(one["sideways"], "body weight"),
+            f"foot_force_foreaft_{pair}": Measure(one["foreaft"], "body weight"),
+            f"foot_force_time_{pair}": Measure(float(np.mean([each.time for each in found])), "stance"),
+            f"stance_share_{pair}": Measure(float(np.mean([each.stance for each in found])), "cycle"),
+            f"foot_slip_{pair}": Measure(_slip(record, when, legs, least), "-"),
+        }
+    return measures
+
+
+def _slip(record: xr.Dataset, when: Window, legs: list[str], least: float) -> float:
+    """Return the mean speed of feet that stand, over the speed of the robot [-]; NaN if none stands or it rests."""
+    part = record.sel(time=slice(when.start - 1e-9, when.end + 1e-9), leg=legs)
+    speed = np.sqrt((part.foot_position.sel(xyz=["x", "y"]).differentiate("time") ** 2).sum("xyz"))
+    stands = part.foot_force.sel(xyz="z") > least * weight(record)
+    forward = np.hypot(*advance(record, when)) / when.period
+    return float(speed.where(stands).mean()) / forward if forward > 0 and bool(stands.any()) else nan
+
+
+def beside(measures: Mapping[str, Measure]) -> str:
+    """Return a CSV table: each published number of the animal beside the robot's."""
+    file = io.StringIO()
+    rows = csv.writer(file, lineterminator="\n")
+    rows.writerow(["quantity", "robot", "animal", "standard_deviation", "unit", "animal_and_source"])
+    for name, animal in ANIMAL.items():
+        spread = "" if np.isnan(animal.spread) else f"{animal.spread:g}"
+        rows.writerow([name, f"{measures[name].value:.4g}", f"{animal.value:g}", spread, animal.unit, animal.source])
+    return file.getvalue()

@@ -1,0 +1,169 @@
+"""Does a salamander's own walk, played joint by joint on its model, walk as the animal does?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks
+from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.salamander.animal_walk import PAIRS, beside, steps, waves
+from suchus.experiments.catalog.salamander.animal_walk import window as measured_window
+from suchus.experiments.catalog.salamander.figure import draw_angles, draw_feet
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Ground, Run, simulate
+from suchus.sim.metrics import displacement, heading_change
+from suchus.sim.metrics.foot_forces import Window, advance, stance_forces, weight
+from suchus.robot.motion import START, Gait
+from suchus.article.paper.walking_salamanders import ANIMAL
+from suchus.robot.robots import ROBOTS
+
+_WALK, _STRAIGHT = "the animal's angles", "axis held straight"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Salamander(Experiment):
+    """The mean walking cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.
+
+    Beside it walks the same robot with its axis held straight, and on ground of other friction. Forces are those at
+    the instant of the greatest net force on a foot in the mean cycle, as in the animals' data.
+    """
+
+    title = "Does a salamander's own walk, played on its model, walk as the animal does?"
+    shows = "Beyond the article: kinematics and foot forces of salamanders"
+    answers = (
+        "standing_index_walk",
+        "stride_walk",
+        "stride_straight_axis",
+        "foot_force_peak_fore",
+        "foot_force_peak_hind",
+        "belly_share",
+    )
+    needs = ("salamander_joints",)
+    judged_with = ("robot", "gait", "loaded")
+    judged_from: ClassVar[Mapping[str, float]] = {"settle": 3, "cycles": 6}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
+    """The robot that walks; two pairs of limbs at least and a table of angles made for it are needed."""
+    gait: Gait = field(default_factory=lambda: GAITS["animal_walk"])
+    """The table of joint angles that is played."""
+    settle: int = 3
+    """Cycles that are walked before anything is measured [-]."""
+    cycles: int = 8
+    """Cycles that are measured [-]."""
+    friction_scales: tuple[float, ...] = (0.7, 1.4)
+    """Factors on the friction of the ground in further runs [-]."""
+    loaded: float = 0.15
+    """Vertical force from which a foot stands [body weight]; hind feet trail with a tenth of the weight in swing."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("settle", 0, 1000)
+            check.whole("cycles", 1, 1000)
+            check.rising("friction_scales", 0.05, 10.0, "")
+            check.number("loaded", 0.001, 1.0, "body weight")
+
+    def quick(self) -> "Salamander":
+        """Return two cycles after the first one, on one further ground."""
+        return replace(self, settle=1, cycles=2, friction_scales=(0.7,))
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Walk with the animal's angles, with a straight axis, and on other ground."""
+        place = layout(self.robot)
+        if len(place.robot.girdles) < 2:
+            raise UnsuitedRobot(
+                f"the animal's walk needs a robot with two pairs of limbs; robot {self.robot.name!r} has "
+                f"{len(place.robot.girdles)}: choose another robot."
+            )
+        straight = self.gait.without("axis", name=f"{self.gait.name}, straight")
+        runs = [
+            Run(robot=self.robot, gait=self.gait, label=_WALK),
+            Run(robot=self.robot, gait=straight, label=_STRAIGHT),
+            *(
+                Run(
+                    robot=self.robot, gait=self.gait, ground=Ground(friction_scale=scale), label=f"friction x {scale:g}"
+                )
+                for scale in self.friction_scales
+            ),
+        ]
+        duration = START + (self.settle + self.cycles) * self.gait.period
+        record = simulate(runs, duration=duration, progress=staged(progress, "walks", 0.0, 1.0))
+        last = place.limbs[-1].number
+        record = record.assign_attrs(
+            measured_from=START + self.settle * self.gait.period,
+            cycles=self.cycles,
+            length=float(self.robot.length),
+            loaded=self.loaded,
+            axis=[place.servos[i] for i in place.axial_yaw],
+            fore=[limb.name for limb in place.limbs if limb.number == 0],
+            hind=[limb.name for limb in place.limbs if limb.number == last],
+        )
+        tables = {"beside_the_animal.csv": beside(self.measure(record))}
+        return Simulated(record=record, tables=tables, replays=self._replays(record))
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        return replayed(
+            "animal_walk_replay.html",
+            record.isel(run=0),
+            self.robot,
+            ghost=record.isel(run=1),
+            labels=(_WALK, _STRAIGHT),
+            title="The walk of a salamander, played joint by joint",
+            caption="Joint angles of a walking salamander on its model; half transparent, with the axis held straight.",
+        )
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return wave, stride, foot forces and slip of the walk, and what axis and friction change."""
+        when, length = measured_window(record), float(record.attrs["length"])
+        walk = record.isel(run=0)
+        stride = [float(np.hypot(*advance(record.isel(run=i), when))) / length for i in range(record.sizes["run"])]
+        turned = float(heading_change(walk, when.start, when.end)) / when.cycles
+        body = _under_load(walk, when)
+        return Measures(
+            waves(walk, when),
+            {
+                "stride_walk": Measure(stride[0], "body length"),
+                "stride_straight_axis": Measure(stride[1], "body length"),
+                "stride_low": Measure(min([stride[0], *stride[2:]]), "body length"),
+                "stride_high": Measure(max([stride[0], *stride[2:]]), "body length"),
+                "turn_per_cycle": Measure(turned, "rad"),
+                "way_forward": Measure(float(displacement(walk, when.start, when.end).sel(xyz="x")), "m"),
+            },
+            steps(walk, when, float(record.attrs["loaded"])),
+            body,
+        )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Set wave and forces beside the animal's, and say what the axis adds."""
+        return self.told(measures, animal=ANIMAL)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the joint angles over the cycle, and the foot forces beside the animal's."""
+        record = outcome.record
+        when, walk = measured_window(record), record.isel(run=0)
+        force, least = stance_forces(walk, when), float(record.attrs["loaded"])
+        return {
+            "joint_angles": draw_angles(walk, when),
+            "foot_forces": draw_feet(force, {pair: list(record.attrs[pair]) for pair in PAIRS}, least, ANIMAL),
+        }
+
+
+def _under_load(record: xr.Dataset, when: Window) -> Measures:
+    """Return what belly and tail carry of the weight in the mean, and how long the belly touches."""
+    part = record.sel(time=slice(when.start - 1e-9, when.end + 1e-9))
+    belly = part.belly_force.sel(xyz="z").sum("segment")
+    return Measures(
+        {
+            "belly_load": Measure(float(belly.mean()) / weight(record), "-"),
+            "belly_share": Measure(float((belly > 0.0).mean()), "-"),
+            "tail_load": Measure(float(part.tail_force.sel(xyz="z").mean()) / weight(record), "-"),
+        }
+    )
+
+
+experiment = Salamander()

@@ -1,0 +1,78 @@
+"""The salamander's own swim, joint by joint as it was filmed, and the numbers of a swim that stand beside it."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from suchus.core import rotation
+from suchus.robot.design import Robot, layout
+from suchus.robot.gaits import ANIMAL_SWIM
+from suchus.robot.kinematics.tree import frames, landmarks
+from suchus.robot.motion import Curve, Gait, servo_parts
+
+FOLDED = np.radians(-85.0)
+"""How far the limbs lie back along the body; the animal holds them so, and was not filmed closer [rad]."""
+STRIDE = 0.225
+"""Of the swimming animal, the mean over 2.6 to 3.8 Hz [body length]. Source: that of ``ANIMAL_SWIM``."""
+FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
+"""At which it was filmed [Hz]."""
+
+
+def played(robot: Robot, frequency: float) -> Gait:
+    """Return the animal's swim for a robot with its joints, limbs folded back."""
+    place = layout(robot)
+    angles = ANIMAL_SWIM | {f"{limb.name}_yaw": (FOLDED,) for limb in place.limbs}
+    parts = servo_parts(robot)
+    return Gait(
+        name=f"animal_swim_{frequency:g}",
+        period=1.0 / frequency,
+        duty_factor=0.5,
+        limb_phases=(0.0,) * len(place.limbs),
+        curves=tuple(Curve(servo=name, part=parts[name], angles=curve) for name, curve in angles.items()),
+    )
+
+
+class Envelope(NamedTuple):
+    """How far a body swings to the side."""
+
+    place: Float[np.ndarray, " point"]
+    """Behind the snout along the straight body, from 0 to 1 [body length]."""
+    swing: Float[np.ndarray, " point"]
+    """From end to end, across the course of each cycle, the mean over the cycles [body length]."""
+
+
+def envelope(robot: Robot, record: xr.Dataset, start: float, period: float) -> Envelope:
+    """Return how far snout, joints of the axis and tail tip swing in the whole cycles of one run from a time on.
+
+    Args:
+        robot: whose record it is.
+        record: of one run.
+        start: [s].
+        period: of a cycle [s].
+    """
+    part = record.sel(time=slice(start - 1e-9, None))
+    straight = _midline(robot, np.zeros((1, part.sizes["joint"])))[0]
+    points = _midline(robot, part.joint_angle.transpose("time", "joint").values)
+    turn = rotation.matrix(part.orientation.transpose("time", "wxyz").values)
+    world = np.einsum("tij,tpj->tpi", turn, points) + part.position.transpose("time", "xyz").values[:, None]
+    centre, every = part.centre_of_mass.transpose("time", "xyz").values, period / float(part.time[1] - part.time[0])
+    swings = []
+    for cycle in range(int((part.sizes["time"] - 1) / every + 1e-6)):
+        first, last = round(cycle * every), round((cycle + 1) * every)
+        way = (centre[last] - centre[first])[:2]
+        left = np.array([-way[1], way[0]]) / np.hypot(*way)
+        aside = (world[first : last + 1, :, :2] - np.linspace(0, 1, last - first + 1)[:, None, None] * way) @ left
+        swings.append(np.ptp(aside, axis=0))
+    return Envelope((straight[0, 0] - straight[:, 0]) / robot.length, np.mean(swings, axis=0) / robot.length)
+
+
+def _midline(robot: Robot, angles: Float[np.ndarray, "time joint"]) -> Float[np.ndarray, "time point 3"]:
+    """Return snout, joints of the axis and tail tip in the frame of the root [m]."""
+    found, marks = frames(robot, angles), landmarks(robot, angles)
+    names = [body.name for body in layout(robot).bodies]
+    axis = found.places[:, [names.index(segment.name) for segment in robot.axis]]
+    points = np.concatenate([marks.snout[:, None], axis, marks.tail[:, None]], axis=1)
+    order = np.argsort(-points[0, :, 0], kind="stable")
+    return np.asarray(points[:, order])

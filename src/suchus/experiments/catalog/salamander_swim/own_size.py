@@ -1,0 +1,266 @@
+"""Animals at their own length, mass and volume: how they float, and how they swim with their own waves."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.core import rotation
+from suchus.robot.control import Swimming
+from suchus.robot.design import Robot
+from suchus.robot.design.pieces import volumes
+from suchus.robot.design.scale import scaled
+from suchus.robot.design.water import Water
+from suchus.experiments.experiment import Measure, Measures
+from suchus.experiments.catalog._similar import similar
+from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, played
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.animals.forces.body import widened
+from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.metrics import swim_numbers
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.robot.motion import Gait, cycle_targets
+from suchus.core.progress import Progress, portion
+from suchus.robot.robots import ROBOTS
+from suchus.robot.robots._animals import catshark, eel, pleurodeles
+from suchus.swim.water import FilmedWave, fit, swim_of
+
+ASTRAY = float(np.radians(90.0))
+"""Heel from which on a body has rolled over [rad]."""
+_DEEP = 4.0  # [body length]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnSize:
+    """An animal at its own size, and how it swims."""
+
+    length: float
+    """[m]."""
+    mass: float
+    """[kg]."""
+    density: float
+    """Mass over volume, lungs or air included [kg/m3]."""
+    frequency: float
+    """Of the swim [Hz]."""
+    body: "Callable[[OwnSize], Robot]"
+    """Makes its body."""
+    swim: "Callable[[OwnSize, Robot], Gait]"
+    """Makes its swim."""
+    source: str
+    """Where length, mass, density and swim are from."""
+
+
+def _salamander(one: OwnSize) -> Robot:
+    return pleurodeles(one.length, one.mass, one.density, 0.25, beat=FREQUENCIES[-1])
+
+
+def _catshark(one: OwnSize) -> Robot:
+    return catshark(one.length, one.mass, one.density, 1.0, 1.0, beat=one.frequency)
+
+
+def _eel(one: OwnSize) -> Robot:
+    return eel(one.length, one.mass, one.density, beat=one.frequency)
+
+
+def _alligator(one: OwnSize) -> Robot:
+    """Return the article's robot with air at the size of an alligator, its axis as wide as the volume asks."""
+    afloat = ROBOTS["floating_caiman"]
+    grown = scaled(afloat, length_factor=one.length / afloat.length, mass_factor=one.mass / afloat.mass)
+    return widened(grown, one.mass / one.density)
+
+
+def _as_filmed(one: OwnSize, robot: Robot) -> Gait:
+    return played(robot, one.frequency)
+
+
+def _wave(wavelength: float, head: float, tail: float) -> Callable[[OwnSize, Robot], Gait]:
+    """Return what makes the gait of a wave whose length and amplitudes were filmed [body length]."""
+
+    def made(one: OwnSize, robot: Robot) -> Gait:
+        wave = FilmedWave(
+            length=robot.length, frequency=one.frequency, wavelength=wavelength, head=head, tail=tail
+        )  # fmt: skip
+        return fit(robot, wave, name="filmed_wave", most=0.4).gait
+
+    return made
+
+
+def _of_the_robot(one: OwnSize, robot: Robot) -> Gait:
+    return swim_of(robot, frequency=one.frequency)
+
+
+_PLEURODELES = (
+    "length, angles and density: Karakasiliotis et al. 2013, Biol. Cybern. 107, 529, public data and model of "
+    "SalamandraSNN (MIT); mass: 3.0 g at 0.1 m of that model, with the cube of the length"
+)
+_SCYLIORHINUS = (
+    "fberio/scanicula_steady_swimming (MIT): length, amplitudes and wavelength at two body lengths a second, the "
+    "latter halfway between its two readings; mass: FishBase [memory]; outline from memory; the frequency is chosen"
+)
+_ALLIGATOR = (
+    "mass: 0.3 kg at 0.46 m to 5.6 kg at 1.27 m (JEB 224, jeb242990, abstract), 2.9 kg/m3 of the cube of the length in "
+    "the middle; density that of floating_caiman: lungs hold it afloat; no filmed wave could be read here, so that it "
+    "is that of (20) on the robot's joints, its frequency by dynamic similarity from 1 Hz at 1 m"
+)
+ANIMALS: Mapping[str, OwnSize] = {
+    "salamander": OwnSize(
+        length=0.176, mass=0.0163, density=900.0, frequency=2.9, body=_salamander, swim=_as_filmed,
+        source=f"{_PLEURODELES}; lungs filled",
+    ),
+    "salamander_neutral": OwnSize(
+        length=0.176, mass=0.0163, density=997.0, frequency=2.9, body=_salamander, swim=_as_filmed,
+        source=f"{_PLEURODELES}; air let out until it hovers",
+    ),
+    "catshark": OwnSize(
+        length=0.165, mass=0.0148, density=997.5, frequency=2.5, body=_catshark,
+        swim=_wave(0.8545, 0.0173, 0.0960), source=f"{_SCYLIORHINUS}; carried by its fins, and so as if neutral",
+    ),
+    "catshark_dense": OwnSize(
+        length=0.165, mass=0.0148, density=1050.0, frequency=2.5, body=_catshark,
+        swim=_wave(0.8545, 0.0173, 0.0960),
+        source=f"{_SCYLIORHINUS}; without a swim bladder sharks have 1020 to 1060 kg/m3 (Bone and Roberts 1969, "
+        "J. Mar. Biol. Assoc. 49, 913 [memory])",
+    ),
+    "eel": OwnSize(
+        length=0.20, mass=0.0143, density=997.5, frequency=3.2, body=_eel, swim=_wave(0.60, 0.012, 0.069),
+        source="shape: Kern and Koumoutsakos 2006, J. Exp. Biol. 209, 4841; length, amplitude, wavelength and "
+        "frequency: Tytell and Lauder 2004, J. Exp. Biol. 207, 1825 [memory]; mass: that volume of water",
+    ),
+    "alligator_0_3": OwnSize(
+        length=0.3, mass=2.9 * 0.3**3, density=950.0, frequency=1.8, body=_alligator, swim=_of_the_robot,
+        source=_ALLIGATOR,
+    ),
+    "alligator_1": OwnSize(
+        length=1.0, mass=2.9, density=950.0, frequency=1.0, body=_alligator, swim=_of_the_robot, source=_ALLIGATOR
+    ),
+}  # fmt: skip
+"""The animals by name."""
+CALLED: Mapping[str, str] = {
+    "salamander": "salamander with filled lungs",
+    "salamander_neutral": "salamander that hovers",
+    "catshark": "catshark whose fins carry it",
+    "catshark_dense": "catshark at its own density",
+    "eel": "eel",
+    "alligator_0_3": "alligator of 0.3 m",
+    "alligator_1": "alligator of 1 m",
+}
+"""What they are called in sentences and figures."""
+
+
+def swum(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) -> xr.Dataset:
+    """Return how animals at their own size float and swim, over ``animal``.
+
+    Each is let go upright at the surface, or on the ground where it sinks, and swims.
+
+    Args:
+        names: in ``ANIMALS``.
+        settle: cycles before anything is measured [-].
+        cycles: that are measured [-].
+        progress: told the share that is done.
+    """
+    rows = [_swum(ANIMALS[name], settle, cycles, portion(progress, i, len(names))) for i, name in enumerate(names)]
+    data = {f"own_{key}": ("animal", [row[key] for row in rows], {"units": unit}) for key, unit in _KEPT.items()}
+    return xr.Dataset(data, coords={"animal": list(names)})
+
+
+_KEPT = {
+    "length": "m", "mass": "kg", "volume": "m3", "frequency": "Hz", "keel": "m", "trim": "rad", "vanishing": "rad",
+    "speed": "m/s", "surplus": "kg", "heel": "rad", "pitch": "rad", "under": "1", "swing": "m", "missed": "rad",
+}  # fmt: skip
+
+
+def _swum(one: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[str, float]:
+    robot = one.body(one)
+    gait = one.swim(one, robot)
+    straight = cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0)  # limbs as they are held
+    afloat = hydrostatics(robot, straight)
+    run = Run(
+        robot=robot, gait=gait, lake=Lake(level=_DEEP * robot.length), label=robot.name,
+        control=Swimming(ramp=0.0 if gait.curves else gait.period),
+    )  # fmt: skip
+    record = simulate([run], duration=(settle + cycles) * gait.period, progress=progress).isel(run=0)
+    part = record.sel(time=slice(settle * gait.period - 1e-9, None))
+    centre = part.centre_of_mass.transpose("time", "xyz").values
+    lasts = float(part.time[-1] - part.time[0])
+    way = centre[-1] - centre[0]
+    facing = rotation.rotate(part.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
+    course = way[:2] / max(float(np.hypot(*way[:2])), 1e-12)
+    aside = (part.tail_tip.transpose("time", "xyz").values - centre)[:, :2] @ np.array([-course[1], course[0]])
+    ahead = float(np.sign(way[:2] @ facing[:, :2].mean(axis=0)))
+    names = [name for name in part.servo.values if name in part.joint.values]
+    missed = part.joint_angle.sel(joint=names).values - part.servo_target.sel(servo=names).values
+    return {
+        "length": robot.length, "mass": robot.mass, "volume": sum(volumes(robot).values()),
+        "frequency": gait.frequency, "keel": afloat.metacentric_height,
+        "trim": afloat.trim if afloat.floats else afloat.trim_submerged, "vanishing": afloat.vanishing,
+        "speed": ahead * float(np.hypot(*way[:2])) / lasts, "surplus": afloat.surplus,
+        "heel": float(np.abs(rotation.heel(part.orientation.values)).max()),
+        "pitch": float(rotation.pitch(part.orientation.values).mean()),
+        "under": float(part.share_under.mean()), "swing": float(np.ptp(aside)),
+        "missed": float(np.sqrt((missed**2).mean())),
+    }  # fmt: skip
+
+
+def trim_submerged(robot: Robot) -> float:
+    """Return at which pitch a robot would hover that plays the animal's swim, nose down positive [rad]."""
+    gait = played(robot, FREQUENCIES[0])
+    return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
+
+
+def measures(record: xr.Dataset) -> Measures:
+    """Return of each animal what it is, how it floats and how it swims; nothing if none was asked."""
+    found = Measures()
+    for name in record.animal.values if "animal" in record.dims else ():
+        one = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _KEPT}
+        long, often = one["length"], one["frequency"]
+        for key in ("length", "mass", "volume", "trim", "vanishing", "heel", "pitch"):
+            found[f"{key}_{name}"] = Measure(one[key], _KEPT[key])
+        found |= {
+            f"density_{name}": Measure(one["mass"] / one["volume"], "kg/m3"),
+            f"metacentric_height_{name}": Measure(one["keel"], "m"),
+            f"share_under_{name}": Measure(one["under"], "-"),
+            f"too_heavy_{name}": Measure(one["surplus"] / one["mass"], "-"),
+            f"speed_{name}": Measure(one["speed"] / long, "body length/s"),
+            f"stride_{name}": Measure(one["speed"] / often / long, "body length"),
+            f"angle_missed_{name}": Measure(one["missed"], "rad"),
+        }
+        numbers = swim_numbers(
+            speed=one["speed"], length=long, frequency=often, swing=one["swing"], viscosity=Water().viscosity
+        )
+        found |= similar(numbers, f"_{name}")
+    return found
+
+
+def draw(record: xr.Dataset, filmed: float) -> Figure:
+    """Draw how far each animal comes in a cycle, and how it lies in the water.
+
+    Args:
+        record: with ``animal``.
+        filmed: stride of the salamander that was filmed [body length].
+    """
+    names, place = [str(name) for name in record.animal.values], np.arange(record.sizes["animal"])
+    stride = (record.own_speed / record.own_frequency / record.own_length).values
+    heel, pitch = np.degrees(record.own_heel.values), np.degrees(record.own_pitch.values)
+    with styled():
+        figure, axes = panels(1, 2, width=9.0, height=1.6 + 0.45 * len(names))
+        left, right = axes[0]
+        left.barh(place, stride, color=COLOURS["coordinated"], height=0.6)
+        mine = [i for i, name in enumerate(names) if name.startswith("salamander")]
+        left.plot([filmed] * len(mine), mine, "D", color=COLOURS["neutral"], label="filmed")
+        left.set(xlabel="stride [body lengths a cycle]", yticks=place, yticklabels=[CALLED[name] for name in names])
+        right.barh(place - 0.17, heel, height=0.3, color=COLOURS["coordinated"], label="greatest heel")
+        right.barh(place + 0.17, -pitch, height=0.3, color=COLOURS["neutral"], label="mean pitch, nose up positive")
+        right.set(xlabel="angle [deg]", yticks=place, yticklabels=[])
+        for ax in (left, right):
+            ax.invert_yaxis()
+            ax.axvline(0.0, color="black", linewidth=0.6)
+        if mine:
+            left.legend(loc="lower right")
+        right.legend(loc="best")
+    return captioned(
+        figure,
+        "Animals at their own length, mass and volume, swimming with their own waves: how far they come in a cycle, "
+        "and how they lie in the water meanwhile.",
+    )

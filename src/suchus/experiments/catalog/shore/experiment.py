@@ -1,0 +1,508 @@
+"""Does it swim in, touch ground, stand and walk out, and go back into the water?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import pi, radians, sin, tan
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+
+from suchus.core import rotation
+from suchus.robot.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
+from suchus.robot.design import GRAVITY, Robot
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.water import Water
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog._similar import similar
+from suchus.experiments.catalog.shore.figure import draw_ashore, draw_decides
+from suchus.robot.gaits import DRAFTED, GAITS, own_gait, suits
+from suchus.robot.gaits.belly_crawl import LIMBS
+from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
+from suchus.sim.land.afloat import check_floats, hovers
+from suchus.sim.land.lake import up
+from suchus.sim.metrics import swim_numbers
+from suchus.sim.metrics.energy import METRES
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.robot.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water import swim_of
+
+_DRY, _DEEP = -10.0, 3.0
+"""Levels of the water far below dry land, and far above the ground [m]."""
+_WADE = replace(
+    GaitInMetres.near(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05,
+    hip_height=0.09, limb_phases=(0.0, 0.5, 0.5, 0.0), trunk_bend=0.0, tail_pitch=-0.1,
+).gait(LIMBS)  # fmt: skip
+"""A walk for feet that carry little weight. With a duty factor of a half the feet swing forward no faster than they
+move back in stance, so that over a cycle the water pushes the robot back no more than forward; the slower the cycle,
+the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the
+ground it lifts the hind feet. The trunk is straight."""
+_SAMPLE, _KEPT = 4, 5
+"""Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
+FALLEN = np.radians(60)
+"""Tilt of the body against gravity beyond which it has fallen [rad]."""
+AFLOAT = 0.01
+"""Share of the weight on the ground below which it floats free [-]."""
+LAST = 2.0
+"""Duration at the end over which it must float free to count as in the water [s]."""
+_UNITS = {
+    "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
+    "aside": ("m", "displacement of the centre of mass to the left"),
+    "under": ("1", "volume under water over the whole volume"),
+    "feet": ("1", "share of the weight that the feet carry"),
+    "ground": ("1", "share of the weight that feet, belly and tail carry"),
+    "walks": ("1", "1 where the limbs' phases advance, else 0"),
+    "tilt": ("rad", "angle of the body's upward axis to the vertical"),
+    "power": ("W", "power of all servos on the joints"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shore(Experiment):
+    """The floating robot swims to a shore, feels ground, changes to its gait and walks out; and back into the water.
+
+    It swims by the wave of (20) with its heading held, decides between swimming and walking by the load that feet,
+    belly and tail carry, and lands with air let out in the gait ``wade``. It approaches obliquely, so that along its
+    body the slope is less than that of the shore. Main runs: every slope with every friction scale, ``seeds`` times,
+    each a robot that is built of the design, see ``land.Tolerances``. Beside them other gaits on every slope with one
+    friction scale, other amounts of air let out on the steepest slope with every friction scale, and walks from land
+    into the water on every slope. It has come ashore if its centre of mass is ``beyond`` the water line without
+    falling; it is in the water if it swims at the end, floats free, and did not fall. The work per metre is measured
+    in three more runs: the gait on level dry land, and the swim at the surface and at a constant depth.
+    """
+
+    title = "Does it swim in, touch ground, stand and walk out, and go back into the water?"
+    shows = "Section I, whose robot is amphibious; beyond the article"
+    answers = ("ashore_share", "time_ashore", "falls", "into_water_share", "speed_swimming", "speed_ashore")
+    reproduces: ClassVar[bool] = False
+    needs = ("limbs", "axis")
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
+    """The robot; it must float."""
+    gait: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    """Gait in which it walks ashore."""
+    wade: Gait = field(default_factory=lambda: _WADE)
+    """Gait in which it lands, while the ground carries little of its weight."""
+    approach: float = 0.85
+    """Heading of the approach relative to straight up the shore, left positive [rad]; at 0.85 rad a slope of 15 degrees
+    is 10 degrees along the body."""
+    others: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(GAITS[name] for name in ("belly_crawl", "low_crawl", "high_walk"))
+    )
+    """Other gaits in which it walks ashore, and in which it also lands."""
+    slopes: tuple[float, ...] = (radians(5), radians(8), radians(12), radians(15))
+    """Slopes of the shore [rad]."""
+    friction_scales: tuple[float, ...] = (0.6, 0.75, 0.9, 1.0)
+    """Factors on the friction of all the robot's surfaces [-]."""
+    seeds: int = 2
+    """Runs of each slope with each friction scale [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots and their grounds differ from the design; the friction scale is that of the design."""
+    air_released: float = 1.0
+    """Share of the air of the hull that it lets out while it lands [-]."""
+    other_air_released: tuple[float, ...] = (0.0, 0.5)
+    """Other values of ``air_released``, simulated on the steepest slope [-]."""
+    frequency: float = 1.0
+    """Frequency of the swimming wave [Hz]."""
+    clearance: float = 0.15
+    """Depth of the water half a body length ahead of where it begins to swim [m]."""
+    inland: float = 0.4
+    """Distance from the beginning of the walk into the water to the water line [m]."""
+    beyond: float = 1.0
+    """Distance beyond the water line at which the centre of mass counts as ashore [m]."""
+    duration: float = 50.0
+    """Duration of every run to the shore or into the water [s]."""
+    cycles: int = 16
+    """Cycles of the gait over which the work per metre is measured, after as many cycles of settling [-]."""
+    depth: float = 0.6
+    """Depth of the root in the swim below the surface [m]."""
+    timestep: float = 0.005
+    """Time step of the physics [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("slopes", 0.01, pi / 4, "rad")
+            check.rising("friction_scales", 0.01, 10.0, "")
+            check.whole("seeds", 1, 1000)
+            check.number("air_released", 0.0, 1.0, "")
+            check.number("approach", -1.2, 1.2, "rad")
+            if self.other_air_released:
+                check.rising("other_air_released", 0.0, 1.0, "")
+            check.number("frequency", 0.05, 10.0, "Hz")
+            check.number("clearance", 0.01, 10.0, "m")
+            check.number("inland", 0.0, 100.0, "m")
+            check.number("beyond", 0.0, 100.0, "m")
+            check.number("duration", 0.2, 3600.0, "s")
+            check.whole("cycles", 1, 1000)
+            check.number("depth", 0.0, 100.0, "m")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+
+    def quick(self) -> "Shore":
+        """Return one slope with one friction scale, no other gaits, the first seconds."""
+        smaller = replace(
+            self, slopes=self.slopes[1:2], friction_scales=(1.0,), seeds=1, others=(), other_air_released=()
+        )
+        return replace(smaller, duration=2.0, cycles=1)
+
+    def on(self, robot: Robot) -> "Shore":
+        """Return the same question for another robot; one without air lets none out."""
+        asked = super(Shore, self).on(robot)  # a class with slots has no short form
+        aired = robot.hull is not None and robot.hull.air > 0.0
+        return asked if aired else replace(asked, air_released=0.0, other_air_released=())
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the gaits in which another robot walks ashore and lands: its own, or the first that can be steered."""
+        own = own_gait(robot)
+        if not own.has("steering"):
+            able = (gait for gait in GAITS.values() if gait.has("steering") and gait.has("strokes"))
+            own = next((gait for gait in able if suits(robot, gait)), None) or draft_gait(robot, DRAFTED)
+        return {"gait": own, "wade": own, "others": ()}
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Simulate all runs as one batch: to the shore, with other gaits, with less air let out, and into the water."""
+        check_floats(self.robot, Lake(level=_DEEP))
+        cases = self._cases()
+        runs = [run for _, _, run in cases]
+        record = simulate(
+            [self.tolerances.built(run, run.seed) for run in runs],
+            duration=self.duration,
+            timestep=self.timestep,
+            every=_SAMPLE,
+            progress=staged(progress, "runs to the shore", 0.0, 0.9),
+        )
+        kept = paths(record, runs, _KEPT)
+        for name, values, unit in (
+            ("kind", [kind for kind, _, _ in cases], "1"),
+            ("walk", [run.gait.name for run in runs], "1"),
+            ("slope", [abs(run.ground.uphill) for run in runs], "rad"),
+            ("grip", [run.ground.friction_scale for run in runs], "1"),
+            ("air_released", [out for _, out, _ in cases], "1"),
+        ):
+            kept[name] = ("case", np.array(values), {"units": unit})
+        shown = self._shown(kept)
+        back = cycle_targets(self.robot, still(self.robot, limbs=LIMBS_BACK), np.zeros(1))[0]
+        floating = hydrostatics(self.robot, back, heels=3)
+        metres = self._metres(staged(progress, "work per metre on land, at the surface and below", 0.9, 1.0))
+        whole = xr.merge([record.isel(run=[shown]), kept, metres], combine_attrs="override", compat="no_conflicts")
+        whole.attrs.update(
+            record.attrs, beyond=self.beyond, shown=shown, line=water_line(runs[shown]),
+            air_released=self.air_released, depth=self.depth, approach=self.approach,
+            metacentric_height=floating.metacentric_height, length=self.robot.length, beat=self.frequency,
+        )  # fmt: skip
+        return Simulated(record=whole, replays=self._replays(whole))
+
+    def _cases(self) -> list[tuple[str, float, Run]]:
+        """Return of each case its kind, the share of the air that is let out, and its run."""
+        out = self.air_released
+        cases: list[tuple[str, float, Run]] = []
+        for slope in self.slopes:
+            for scale in self.friction_scales:
+                for _ in range(self.seeds):
+                    cases.append(("ashore", out, self._run(self.gait, slope, scale, out, len(cases))))
+        middle = self.friction_scales[len(self.friction_scales) // 2]
+        cases += [
+            ("gait", out, self._run(gait, slope, middle, out, 0)) for gait in self.others for slope in self.slopes
+        ]
+        steep = self.slopes[-1]
+        cases += [
+            ("air", b, self._run(self.gait, steep, scale, b, 0))
+            for b in self.other_air_released
+            for scale in self.friction_scales
+        ]
+        ends = dict.fromkeys((self.friction_scales[0], self.friction_scales[-1]))
+        cases += [
+            ("into_water", out, self._run(self.gait, -slope, scale, out, 0)) for slope in self.slopes for scale in ends
+        ]
+        return cases
+
+    def _swim(self) -> Gait:
+        return swim_of(self.robot, frequency=self.frequency)
+
+    def _run(self, gait: Gait, uphill: float, scale: float, out: float, seed: int) -> Run:
+        """Return a run: up a shore from the water, or down into it where the slope falls."""
+        offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
+        course = self.approach if uphill > 0 else 0.0
+        control = Amphibious(
+            swim=self._swim(),
+            swimming=Swimming(heading=HeadingHold(direction=course)),
+            begins="swimming" if uphill > 0 else "walking",
+            wade=self.wade if gait == self.gait else None,
+            air_released=out,
+            heading=HeadingRule(direction=course),
+        )
+        return Run(
+            robot=self.robot,
+            gait=gait,
+            ground=Ground(uphill=uphill, friction_scale=scale),
+            lake=Lake(level=offshore * sin(uphill)),
+            control=control,
+            seed=seed,
+            label=f"{np.degrees(abs(uphill)):.0f} degrees, friction scale {scale:g}",
+        )
+
+    def _metres(self, progress: Progress) -> xr.Dataset:
+        """Return speed and power of the servos on level dry land, at the surface and at depth."""
+        level, deep = Swimming(heading=HeadingHold()), Lake(level=max(_DEEP, 2.0 * self.robot.length))
+        controls: dict[str, Control] = {"land": OpenLoop(), "surface": level}
+        if hovers(self.robot, deep):
+            controls["deep"] = replace(level, depth=DepthHold(depth=self.depth))
+        runs = [
+            Run(robot=self.robot, gait=self.gait, lake=Lake(level=_DRY), control=control)
+            if name == "land"
+            else Run(robot=self.robot, gait=self._swim(), lake=deep, control=control)
+            for name, control in controls.items()
+        ]
+        last = self.cycles * self.gait.period
+        record = simulate(runs, duration=2 * last, timestep=self.timestep, every=_SAMPLE, progress=progress)
+        return metres(record, list(controls), last)
+
+    def _shown(self, kept: xr.Dataset) -> int:
+        """Return the index of the case that is drawn: on the second slope with the greatest friction scale."""
+        main = kept.kind.values == "ashore"
+        slope = self.slopes[min(1, len(self.slopes) - 1)]
+        mine = main & np.isclose(kept.slope, slope) & np.isclose(kept.grip, self.friction_scales[-1])
+        return int(np.flatnonzero(mine)[0])
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        end = ending(record)
+        return replayed(
+            "shore_replay.html",
+            record.isel(run=0),
+            self.robot,
+            title="From the water onto the shore",
+            caption=f"It swims to the shore with its limbs held back; {end}. Seen in the frame of the shore.",
+        )
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how many runs come ashore and when, by gait and by air let out, the falls, and the work per metre."""
+        kind = record.kind.values
+        times, fell, over = times_ashore(record), fallen(record), capsized(record)
+        main, into = kind == "ashore", kind == "into_water"
+        ashore = times[main][np.isfinite(times[main])]
+        slope, grip = record.slope.values, record.grip.values
+        steep = main & np.isclose(slope, slope[main].max())
+        found = Measures(
+            {
+                "ashore_share": Measure(_share(times, main), "-"),
+                "falls": Measure(float(fell[main].sum()), "-"),
+                "capsized": Measure(float(over[main].sum()), "-"),
+                "metacentric_height": Measure(record.attrs["metacentric_height"], "m"),
+                "switches": Measure(float(record.switches.values[main].max()), "-"),
+                "time_ashore": Measure(float(np.median(ashore)) if ashore.size else float("nan"), "s"),
+                "time_ashore_longest": Measure(float(ashore.max()) if ashore.size else float("nan"), "s"),
+                "into_water_share": Measure(float(in_water(record)[into].mean()), "-"),
+                "falls_into_water": Measure(float(fell[into].sum()), "-"),
+                "switches_into_water": Measure(float(record.switches.values[into].max()), "-"),
+                "ashore_share_steepest": Measure(_share(times, steep), "-"),
+                "ashore_share_least_grip": Measure(_share(times, main & np.isclose(grip, grip[main].min())), "-"),
+                "ashore_share_most_grip": Measure(_share(times, main & np.isclose(grip, grip[main].max())), "-"),
+            }
+        )
+        for i, out in enumerate(np.unique(record.air_released.values[(kind == "air") | steep])):
+            mine = ((kind == "air") | steep) & (record.air_released.values == out)
+            found[f"air_released_{i}"] = Measure(float(out), "-")
+            found[f"ashore_share_air_released_{i}"] = Measure(_share(times, mine), "-")
+        middle = float(record.grip.values[kind == "gait"].mean()) if (kind == "gait").any() else 0.0
+        for name in np.unique(record.walk.values[(kind == "gait") | main]):
+            mine = (kind == "gait") & (record.walk.values == name)
+            if not mine.any():
+                mine = main & np.isclose(grip, middle)
+            if mine.any():
+                found[f"ashore_share_{name}"] = Measure(_share(times, mine), "-")
+        return found | _costs(record.isel(case=np.flatnonzero(main))) | _metre_costs(record)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how many runs came ashore, what this depends on, and the work per metre."""
+        other = ("steepest", "least_grip", "most_grip", "air_released")
+        names = [name.removeprefix("ashore_share_") for name in measures if name.startswith("ashore_share_")]
+        metres = {ending: where for ending, where in METRES.items() if f"work_per_metre_{ending}" in measures}
+        return self.told(measures, metres=metres, gaits=[name for name in names if not name.startswith(other)])
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw one run out of the water from the side, and how the time ashore depends on slope, friction and air."""
+        return {"ashore": draw_ashore(self.robot, outcome.record), "decides": draw_decides(outcome.record)}
+
+
+def paths(record: xr.Dataset, runs: list[Run], every: int) -> xr.Dataset:
+    """Return the kept path of each run, and how often it changed between swimming and walking.
+
+    Args:
+        record: of the runs.
+        runs: on even slopes in lakes of constant level.
+        every: number of samples of which one is kept; powers and shares are means over them.
+    """
+    ups = np.array([up(run.ground) for run in runs])
+    line = np.array([water_line(run) for run in runs])
+    ashore = np.sign([run.ground.uphill for run in runs])  # whether the land is ahead of the line or behind it
+    shares = _ground_share(record, ups)
+    walks = walking(record.limb_phase.isel(leg=0).values)
+    high = rotation.rotate(record.orientation.values, np.array([0.0, 0.0, 1.0]))
+    values = {
+        "ahead": ashore[:, None] * (record.centre_of_mass.sel(xyz="x").values - line[:, None]),
+        "aside": record.centre_of_mass.sel(xyz="y").values,
+        "under": record.share_under.values,
+        "feet": record.feet_share.values,
+        "ground": shares,
+        "walks": walks.astype(float),
+        "tilt": np.arccos(np.clip(np.einsum("rti,ri->rt", high, ups), -1.0, 1.0)),
+        "power": record.servo_power.values,
+    }
+    means = ("feet", "ground", "power")
+    count = record.sizes["time"] // every
+    whole = {name: value[:, : count * every].reshape(len(runs), count, every) for name, value in values.items()}
+    kept = {name: value.mean(axis=-1) if name in means else value[..., 0] for name, value in whole.items()}
+    found = xr.Dataset(
+        {name: (("case", "moment"), kept[name], {"units": unit, "long_name": what})
+         for name, (unit, what) in _UNITS.items()},
+        coords={"moment": ("moment", record.time.values[: count * every : every], {"units": "s"})},
+    )  # fmt: skip
+    changes = np.diff(walks[:, 1:].astype(int), axis=1) != 0
+    found["switches"] = ("case", changes.sum(axis=1), {"units": "1"})
+    found["weight"] = ("case", GRAVITY * record.mass.values, {"units": "N"})
+    return found
+
+
+def water_line(run: Run) -> float:
+    """Return the distance from the robot's beginning to where the surface meets the slope [m]."""
+    assert run.lake is not None
+    return run.lake.shore(run.ground.uphill)
+
+
+def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"]:
+    """Return when a limb's phase advances; the first sample has the value of the second [-]."""
+    moves = np.diff(phase, axis=1) > 1e-9
+    return np.concatenate([moves[:, :1], moves], axis=1)
+
+
+def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
+    force = record.foot_force.sum("leg").values + record.belly_force.sum("segment").values + record.tail_force.values
+    return np.asarray(np.einsum("rti,ri->rt", force, ups) / (GRAVITY * record.mass.values[:, None]))
+
+
+def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+    """Return which cases tilted too far, or diverged [-]."""
+    return np.asarray(~(record.tilt < FALLEN).all("moment").values)
+
+
+def capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+    """Return which cases had tilted too far for the first time while they swam and the ground carried nothing [-]."""
+    over = ~(record.tilt < FALLEN)
+    free = (record.walks == 0.0) & (record.ground < AFLOAT)
+    first = over.argmax("moment")
+    return np.asarray((over.any("moment") & free.isel(moment=first)).values)
+
+
+def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
+    """Return the time at which each case was first ashore, NaN for one that never was or fell [s]."""
+    reached = record.ahead.values >= record.attrs["beyond"]
+    first = record.moment.values[reached.argmax(axis=1)]
+    return np.where(reached.any(axis=1) & ~fallen(record), first, np.nan)
+
+
+def ending(record: xr.Dataset) -> str:
+    """Return how the case that is drawn ended, in words."""
+    case = record.isel(case=[record.attrs["shown"]])
+    walked, found = case.walks.values[0] > 0, []
+    if capsized(case)[0]:
+        first = int((~(case.tilt < FALLEN)).values[0].argmax())
+        return f"after {float(case.moment[first]):.2g} s it capsizes"
+    if walked.any():
+        found.append(f"after {float(case.moment[walked.argmax()]):.0f} s it walks")
+    else:
+        found.append("it does not begin to walk")
+    time = float(times_ashore(case)[0])
+    if np.isfinite(time):
+        found.append(f"after {time:.0f} s it is {record.attrs['beyond']:g} m beyond the water line")
+    elif fallen(case)[0]:
+        found.append("it falls")
+    else:
+        found.append(f"it does not get {record.attrs['beyond']:g} m beyond the water line")
+    return ", and ".join(found)
+
+
+def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
+    """Return which cases swim at the end on the water's side of the line and float free for the last seconds [-]."""
+    end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
+    free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
+    return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
+
+
+def _share(times: np.ndarray, mine: np.ndarray) -> float:
+    return float(np.isfinite(times[mine]).mean())
+
+
+def metres(record: xr.Dataset, names: Sequence[str], last: float) -> xr.Dataset:
+    """Return speed along its course, power of the servos and error of the depth of each run, over its last seconds.
+
+    Args:
+        record: record with one run for each name.
+        names: names of the conditions, in the order of the runs.
+        last: duration of the end that is measured [s].
+    """
+    part = record.sel(time=slice(float(record.time[-1]) - last - 1e-9, None))
+    moved = (part.centre_of_mass.isel(time=-1) - part.centre_of_mass.isel(time=0)).sel(xyz=["x", "y"])
+    way = moved.transpose("run", "xyz").values
+    left = np.stack([-way[:, 1], way[:, 0]], axis=-1) / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-12)
+    tip = (part.tail_tip - part.centre_of_mass).sel(xyz=["x", "y"]).transpose("run", "time", "xyz").values
+    deep = (part.water_level - part.position.sel(xyz="z")).mean("time")
+    return xr.Dataset(
+        {
+            "metre_speed": ("where", np.hypot(*moved.transpose("xyz", "run").values) / last, {"units": "m/s"}),
+            "metre_power": ("where", part.servo_power.mean("time").values, {"units": "W"}),
+            "metre_depth": ("where", deep.values, {"units": "m"}),
+            "metre_swing": ("where", np.ptp(np.einsum("rti,ri->rt", tip, left), axis=1), {"units": "m"}),
+            "metre_weight": ("where", GRAVITY * record.mass.values, {"units": "N"}),
+        },
+        coords={"where": list(names)},
+    )
+
+
+def _metre_costs(record: xr.Dataset) -> Measures:
+    """Return speed, work over distance and cost of transport on land, at the surface and at depth."""
+    found = Measures()
+    for where in record["where"].values:
+        one = record.sel(where=where)
+        speed, work = float(one.metre_speed), float(one.metre_power / one.metre_speed)
+        found[f"speed_{where}"] = Measure(speed, "m/s")
+        found[f"work_per_metre_{where}"] = Measure(work, "J/m")
+        found[f"cost_of_transport_{where}"] = Measure(work / float(one.metre_weight), "-")
+        if where != "land":
+            numbers = swim_numbers(
+                speed=speed, length=record.attrs["length"], frequency=record.attrs["beat"],
+                swing=float(one.metre_swing), viscosity=Water().viscosity,
+            )  # fmt: skip
+            found |= similar(numbers, f"_{where}")
+    if "deep" not in record["where"].values:
+        return found
+    error = abs(float(record.metre_depth.sel(where="deep")) - record.attrs["depth"])
+    return found | {"depth_error": Measure(error, "m")}
+
+
+def _costs(record: xr.Dataset) -> Measures:
+    """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
+
+    Both along its heading, which need not be straight up the shore.
+    """
+    step, course = float(record.moment[1] - record.moment[0]), record.attrs["approach"]
+    along = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values
+    speed = np.gradient(along, step, axis=1)
+    walks, under = record.walks.values > 0, record.under.values
+    late = (record.moment.values > 3.0)[None, :]
+    found = Measures()
+    for name, when in (
+        ("swimming", ~walks & late & (record.ground.values < AFLOAT)),
+        ("wading", walks & (under > 0.05)),
+        ("ashore", walks & (under <= 0.0)),
+    ):
+        ahead, power = speed[when], record.power.values[when]
+        mean = float(ahead.mean()) if ahead.size else float("nan")
+        found[f"speed_{name}"] = Measure(mean, "m/s")
+        found[f"work_per_metre_{name}"] = Measure(float(power.mean()) / mean if ahead.size else float("nan"), "J/m")
+    return found
+
+
+experiment = Shore()

@@ -1,0 +1,437 @@
+"""The swims of ``swim_free`` in a flow that is solved with the robot: servos, cable and passive end as they are."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import Swimming
+from suchus.swim.coupling import Swim, earned_correction, judgement_text, residual_table
+from suchus.swim.coupling.earned import LinkJudgement
+from suchus.robot.design import GRAVITY, Robot, SectionCorrection, Spring, with_spring
+from suchus.robot.design.water import Water
+from suchus.core.errors import Diverged
+from suchus.experiments.experiment import Measure, Measures, Progress, staged
+from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.land.waters import Slice, Space
+from suchus.robot.motion import Gait
+from suchus.swim.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
+from suchus.swim.water.samples import kept_in
+
+_KEPT = (
+    "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
+    "link_force", "link_torque", "joint_water_torque",
+)  # fmt: skip
+"""What is kept of each swim as ``flow_NAME``, over a time of its own."""
+_COUPLING = ("coupling_residual", "coupling_first", "coupling_iterations", "energy_error", "power_error")
+FRAMES = 24
+"""Instants of the last cycle that are filmed [-]."""
+FIN = "_fin_"
+"""What stands between the motion and the stiffness in the label of a swim with another passive end."""
+_SHOWN = ("r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_held_out")
+"""What is measured of every link and joint in the first swim in a flow."""
+_GROWN = 1.0
+"""Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
+
+
+def flow_runs(joints: Mapping[str, Robot], motions: Mapping[str, Gait], asked: Sequence[str], water: Any) -> list[Run]:
+    """Return the runs in a flow that are asked for, of those that the robot has.
+
+    Args:
+        joints: the robot by the ending of its swims' names, as it is and with stiffer joints.
+        motions: by name.
+        asked: names of swims.
+        water: a ``Slice`` or a ``Space``.
+    """
+    period = motions["whole"].period
+    return [
+        Run(robot=robot, gait=gait, water=water, control=Swimming(ramp=period), label=name + ending)
+        for ending, robot in joints.items()
+        for name, gait in motions.items()
+        if name + ending in asked
+    ]
+
+
+def is_linked(run: Run) -> bool:
+    """Return whether a run's flow is around all pieces of the robot, each with its own pose."""
+    return isinstance(run.solved, Space) and run.solved.linked
+
+
+def passive_joints(robot: Robot) -> list[str]:
+    """Return the lateral joints of the axis that springs alone hold, no cable among them."""
+    cabled = {name for cable in robot.cables for name in cable.hinges}
+    return [
+        hinge.name
+        for hinge in robot.axis_hinges
+        if hinge.turn == "yaw" and isinstance(hinge.drive, Spring) and hinge.name not in cabled
+    ]
+
+
+def fin_runs(run: Run, stiffnesses: Sequence[float]) -> list[Run]:
+    """Return a run with other stiffnesses of the passive end's joints, the softest first.
+
+    Args:
+        run: in a flow.
+        stiffnesses: of each joint [N m/rad].
+    """
+    joints = passive_joints(run.robot)
+    return [
+        replace(run, robot=with_spring(run.robot, joints, stiffness), label=f"{run.label}{FIN}{stiffness:g}")
+        for stiffness in sorted(set(stiffnesses))
+    ]
+
+
+def fins(record: xr.Dataset) -> xr.Dataset:
+    """Return speed [m/s] and cost of transport [-] in the last cycle over the stiffness of the passive end [N m/rad].
+
+    The cost is that of the servos, of the robot's weight in air and as far as it comes ahead. Swims that broke off have
+    NaN; a record without such swims has none.
+    """
+    names = [str(name) for name in record.flow_run.values if FIN in str(name)]
+    last = record.flow_servo_power.sel(flow_time=slice(float(record.flow_time[-1] - record.flow_period) - 1e-9, None))
+    weight = float(record.mass.isel(run=0) if "run" in record.mass.dims else record.mass) * GRAVITY
+    speeds = np.array([flow_speed(record, name) for name in names])
+    powers = np.array([float(last.sel(flow_run=name).mean(skipna=False)) for name in names])
+    costs = np.divide(powers, weight * speeds, out=np.full(speeds.shape, np.nan), where=speeds > 0)
+    return xr.Dataset(
+        {"speed": ("stiffness", speeds), "cost": ("stiffness", costs)},
+        coords={"stiffness": [float(name.partition(FIN)[2]) for name in names]},
+    )
+
+
+def flow_kept(labels: Sequence[str]) -> list[str]:
+    """Return the names of what is kept of unfinished swims in a flow."""
+    return [f"flow {label}" for label in labels]
+
+
+class InFlow(NamedTuple):
+    """What became of the swims in a flow."""
+
+    kept: xr.Dataset
+    """What is kept of them."""
+    first: xr.Dataset
+    """Record of the first."""
+    judgement: str
+    """Whether they earn a correction of the section model, link by link, as Markdown."""
+    correction: SectionCorrection | None
+    """The correction that they have earned; None if they have none."""
+
+
+def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InFlow:
+    """Swim in a flow.
+
+    A later swim that diverges ends there, with NaN beyond.
+
+    Args:
+        runs: of ``flow_runs``.
+        cycles: that are swum [-].
+        keep: folder in which swims are kept, from which they go on; empty keeps nothing.
+        progress: told the share that is done.
+
+    Raises:
+        Diverged: the first swim did.
+        UnreadableFile: what is kept is broken or belongs to other swims.
+    """
+    swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
+    records, seen = [], xr.Dataset()
+    for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
+        part = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
+        film = _Film(swim, cycles) if number == 0 and not is_linked(run) else None
+        with suppress(*([Diverged] if number else [])):
+            swim.go(
+                swim.ticks * swim.stepper.period, progress=part, watch=film,
+                checkpoint=kept_in(keep, *flow_kept([run.label])),
+            )  # fmt: skip
+        records.append(swim.record().isel(run=0))
+        seen = film.dataset() if film is not None else seen
+        del swim.sim
+    first = records[0]
+    units = {name: first[name].attrs for name in (*_KEPT, *_COUPLING)}
+    data = {
+        (name if name in _COUPLING else f"flow_{name}"): (
+            ("flow_run", *("flow_time" if dim == "time" else dim for dim in first[name].dims)),
+            np.stack([record[name].values for record in records]), units[name],
+        )
+        for name in (*_KEPT, *_COUPLING)
+    }  # fmt: skip
+    coords = {
+        "flow_run": [run.label for run in runs],
+        "flow_time": ("flow_time", first.time.values, {"units": "s"}),
+        "link": first.link.values, "joint": first.joint.values, "xyz": first.xyz.values, "wxyz": first.wxyz.values,
+    }  # fmt: skip
+    water = runs[0].solved
+    assert water is not None
+    period, viscosity = runs[0].gait.period, swims[0].viscosity
+    whole = [one for one in records if np.isfinite(one.coupling_residual.values[1:]).all()]
+    table = _beside_sections(runs, records, whole, viscosity)
+    numbers = {
+        "flow_period": ((), period, {"units": "s"}),
+        "flow_radius": ("flow_run", [float(record.radius) for record in records], {"units": "1"}),
+        "cells": ("grid", [water.cells], {"units": "1"}),
+        "reynolds": ((), water.reynolds, {"units": "1"}),
+        "added_mass": (
+            ("coordinate", "coordinate_too"), first.added_mass.values, first.added_mass.attrs,
+        ),
+    }  # fmt: skip
+    names = {"coordinate": first.coordinate.values, "coordinate_too": first.coordinate_too.values}
+    correction, found = None, dict[str, LinkJudgement]()
+    if whole and whole[0] is first:
+        others = [run.label for run, one in zip(runs, records, strict=True) if one is not first and _is_in(one, whole)]
+        correction, found = earned_correction(
+            runs[0].robot, whole, period=period, first=_GROWN * period, viscosity=viscosity,
+            name=f"{runs[0].robot.name}_{water.reynolds:.0f}",
+        )  # fmt: skip
+    kept = xr.Dataset({**data, **numbers}, coords={**coords, **names}).merge(table).merge(seen)
+    text = judgement_text(found, others) if found else ""
+    if correction is not None:
+        held_out = [run for run in runs[1:] if run.label in others]
+        said, is_nearer = speeds_beside(held_out, [flow_speed(kept, name) for name in others], cycles, viscosity,
+                                        correction)  # fmt: skip
+        text, correction = text + said, correction if is_nearer else None
+    return InFlow(kept, first, text, correction)
+
+
+def _beside_sections(
+    runs: Sequence[Run], records: Sequence[xr.Dataset], whole: Sequence[xr.Dataset], viscosity: float
+) -> xr.Dataset:
+    """Return the residual table of the first swim, and of every one by ``flow_run``, as ``swim_NAME``, what it says.
+
+    A later swim that broke off has NaN.
+    """
+    period = runs[0].gait.period
+    tables = list[xr.Dataset]()
+    for run, record in zip(runs, records, strict=True):
+        valid = record.isel(time=np.flatnonzero(np.isfinite(record.coupling_residual.values)))
+        if not tables or _is_in(record, whole):
+            tables.append(residual_table(run.robot, valid, period=period, first=_GROWN * period, viscosity=viscosity))
+        else:
+            tables.append(tables[0].map(lambda one: one if one.dtype.kind in "US" else one * np.nan))
+    swims = {
+        f"swim_{name}": (("flow_run", "part"), np.stack([one[f"residual_{name}"].values for one in tables]))
+        for name in ("rms", "r2", "added", "drag", "r2_fitted", "r2_held_out")
+    }
+    return tables[0].assign(swims)
+
+
+def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
+    """Return whether corrected speeds miss those in the flow by less in the mean than the model's as it is shipped."""
+    misses = [float(np.abs(np.subtract(one, flow)).mean()) for one in (shipped, corrected)]
+    return misses[1] < misses[0]
+
+
+def speeds_beside(
+    runs: Sequence[Run], in_flow: Sequence[float], cycles: int, viscosity: float, correction: SectionCorrection
+) -> tuple[str, bool]:
+    """Swim by sections as in the flow, with a correction and without, at the flow's viscosity and below the surface.
+
+    Forces that come nearer need not make speeds do so: a speed is a small difference of thrust and drag.
+
+    Args:
+        runs: in the flow, those that the fit did not see.
+        in_flow: their speeds there [m/s].
+        cycles: that are swum [-].
+        viscosity: kinematic, of the flow's water [m2/s].
+        correction: that forces have earned.
+
+    Returns:
+        What is to be said of it, as Markdown, and whether the speeds are nearer too.
+    """
+    water = Water(viscosity=viscosity)
+    lakes = [Lake(level=2 * runs[0].robot.length, water=water, correction=one) for one in (None, correction)]
+    both = [replace(run, water=None, lake=lake) for lake in lakes for run in runs]
+    period = runs[0].gait.period
+    x = simulate(both, duration=cycles * period).centre_of_mass.sel(xyz="x")
+    late = x.sel(time=slice((cycles - 1) * period - 1e-9, None)).transpose("run", "time").values
+    speeds = ((late[:, -1] - late[:, 0]) / period).reshape(2, len(runs))
+    is_nearer = nearer(in_flow, speeds[0], speeds[1])
+    head = "\n| speed in the last cycle | flow | sections as shipped | corrected |\n|---|---:|---:|---:|\n"
+    rows = [
+        f"| {run.label} | {1e3 * flow:.1f} mm/s | {1e3 * shipped:.1f} | {1e3 * corrected:.1f} |\n"
+        for run, flow, shipped, corrected in zip(runs, in_flow, *speeds, strict=True)
+    ]
+    end = (
+        "nearer to the flow with the factors"
+        if is_nearer
+        else "no nearer to the flow with the factors, so that no file is written"
+    )
+    return f"{head}{''.join(rows)}\nIn the mean these speeds are {end}.\n", is_nearer
+
+
+def _is_in(record: xr.Dataset, those: Sequence[xr.Dataset]) -> bool:
+    return any(record is one for one in those)
+
+
+class _Film:
+    """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
+
+    def __init__(self, swim: Swim, cycles: int) -> None:
+        self._swim = swim
+        self._end, frequency = cycles * swim.run.gait.period, 1.0 / swim.run.gait.period
+        self._frequency = frequency
+        self._vortices = VortexSampler(frequency, self._end, FRAMES)
+        length = swim.run.robot.length
+        self._window = FieldWindow(swim.sim.setup.grid, length, 2.0, 0.6) if swim.sim.axes == 2 else None
+
+    def __call__(self, swim: Swim) -> None:
+        """Take a frame if one is due."""
+        if self._window is None:
+            self._vortices.sample(swim.sim, swim.samples)
+            return
+        left = (self._end - swim.sim.time) * self._frequency
+        if left < 1.0 - (self._swim.samples.count("frames") + 1) / FRAMES + 1e-6:
+            seen = {"vorticity": self._window.fields(swim.sim)["vorticity"]}
+            values = {**seen, **midline_values(midline(swim.sim))}
+            self._swim.samples.add("frames", swim.sim.time, **values)
+
+    def dataset(self) -> xr.Dataset:
+        """Return what was seen; nothing of a swim that ended too soon."""
+        if not self._swim.samples.count("frames"):
+            return xr.Dataset()
+        if self._window is None:
+            return wake(self._swim.sim).merge(self._vortices.record(self._swim.samples))
+        series = self._swim.samples.series("frames")
+        phase = (series["time"] - self._end) * self._frequency + 1.0
+        found = self._window.dataset(series, "frame").assign_coords(frame=("frame", phase, {"units": "1"}))
+        return found.rename({str(name): f"field_{name}" for name in found.variables})
+
+
+def flow_speed(record: xr.Dataset, name: str) -> float:
+    """Return the mean speed of the centre of mass along its first heading in the last cycle of a swim [m/s]."""
+    x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x")
+    end = float(record.flow_time[-1])
+    last = x.sel(flow_time=slice(end - float(record.flow_period) - 1e-9, None))
+    return float((last[-1] - last[0]) / (last.flow_time[-1] - last.flow_time[0]))
+
+
+def flow_measures(record: xr.Dataset) -> Measures:
+    """Return speeds in the flow, how well robot and flow came to terms, and how far the section model is from it."""
+    if "flow_run" not in record:
+        return Measures()
+    rung = record.attrs["flow"]
+    period, found = float(record.flow_period), Measures()
+    later = record.sel(flow_time=slice(_GROWN * period, None))
+    last = record.sel(flow_time=slice(float(record.flow_time[-1]) - period - 1e-9, None))
+    tried = fins(record)
+    if np.isfinite(tried.speed.values).any():
+        fastest = tried.isel(stiffness=int(np.nanargmax(tried.speed.values)))
+        found["fin_fastest"] = Measure(float(fastest.stiffness), "N m/rad")
+        found["fin_speed"] = Measure(float(fastest.speed), "m/s")
+        found["fin_slowest"] = Measure(float(tried.speed.min()), "m/s")
+        if np.isfinite(tried.cost.values).any():
+            found["fin_cheapest"] = Measure(float(tried.stiffness[int(np.nanargmin(tried.cost.values))]), "N m/rad")
+            found["fin_cost"] = Measure(float(tried.cost.min()), "-")
+    for name in (str(one) for one in record.flow_run.values if FIN not in str(one)):
+        ending = rung if name == "whole" else f"{rung}_{name}"
+        found[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
+        found[f"servo_power_{ending}"] = Measure(float(last.flow_servo_power.sel(flow_run=name).mean()), "W")
+        if record.attrs["cable"]:
+            angles = last.flow_joint_angle.sel(flow_run=name, joint=record.attrs["cable"]).values
+            half = np.ptp(angles, axis=0) / 2
+            found[f"tail_spread_{ending}"] = Measure(float(half.max() / half.mean()), "-")
+    end = record.isel(flow_time=-1)
+    for name, part in {
+        "coupling_residual": later,
+        "coupling_first": later,
+        "energy_error": end,
+        "power_error": end,
+    }.items():
+        found[name] = Measure(float(abs(part[name]).max(skipna=False)), "-")  # NaN says that a swim broke off
+    found["added_mass_radius"] = Measure(float(record.flow_radius.max()), "-")
+    for kind in ("link", "joint"):
+        part = record.isel(part=np.flatnonzero(record.part_kind.values == kind))
+        felt = part.isel(part=np.flatnonzero(part.residual_rms.values > 0.1 * float(part.residual_rms.max())))
+        for name, unit in (("r2", "-"), ("r2_held_out", "-"), ("added", "-"), ("drag", "-")):
+            found[f"{kind}_{name}"] = Measure(float(felt[f"residual_{name}"].median()), unit)
+        for name in _SHOWN:
+            for there in part.part.values:
+                found[f"{kind}_{name}_of_{there}"] = Measure(float(part[f"residual_{name}"].sel(part=there)), "-")
+        for swim in (str(one) for one in record.flow_run.values[1:] if FIN not in str(one)):
+            for name in ("r2", "r2_fitted", "added", "drag"):
+                middle = felt[f"swim_{name}"].sel(flow_run=swim).median(skipna=False)
+                found[f"{kind}_{name}_in_{swim}"] = Measure(float(middle), "-")
+    return found
+
+
+def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = False) -> str:
+    """Return the table of the section model beside the flow, as Markdown.
+
+    Args:
+        record: of the experiment.
+        judgement: see ``InFlow``; empty for none.
+        is_earned: whether a correction is written beside it.
+    """
+    earned = (
+        "\n## Whether a correction is earned\n\nThe factors are fitted to the whole of the first swim and held against "
+        "the other ones, which the fit never saw: they are offered where they leave less of the force unexplained in "
+        "each of them, by more than its cycles differ, and swims by sections with them come nearer to its speeds. "
+        + (
+            "`correction.toml` beside this page has what is offered, for `suchus run swim_free --correction FILE`.\n\n"
+            if is_earned
+            else "None is earned, and no file is written.\n\n"
+        )
+        + judgement
+    )
+    head = (
+        "| part | rms in the flow | rms by sections | R2 | added mass x | drag x | R2 fitted | R2 held out |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|\n"
+    )
+    rows = []
+    for k, name in enumerate(record.part.values):
+        one = {key: float(record[f"residual_{key}"][k]) for key in (
+            "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high",
+            "r2_fitted", "r2_held_out")}  # fmt: skip
+        unit = "N" if record.part_kind.values[k] == "link" else "N m"
+        rows.append(
+            f"| {name} | {one['rms']:.3g} {unit} | {one['rms_sections']:.3g} | {one['r2']:.2f} | "
+            f"{_factor(one, 'added')} | {_factor(one, 'drag')} | {one['r2_fitted']:.2f} | {one['r2_held_out']:.2f} |\n"
+        )
+    return (
+        f"# The section model beside the flow\n\nAt f L2 / nu = {float(record.reynolds):.0f}, along the motion that "
+        "the robot took in the flow. Links by the force across them, joints by the moment of the water; added mass and "
+        "drag are factors on the two parts of the section model's force, fitted to the first half of the measured "
+        "cycles and held against the second; intervals need a half of one and a half cycles or more.\n\n"
+        + head
+        + "".join(rows)
+        + _other_swims(record)
+        + (earned if judgement else "")
+    )
+
+
+def _other_swims(record: xr.Dataset) -> str:
+    """Return how much sections explain of each further swim, and its own factors; empty for one swim."""
+    whole = [swim for swim in record.flow_run.values[1:] if np.isfinite(record.swim_r2.sel(flow_run=swim)).all()]
+    parts = {kind: np.flatnonzero(record.part_kind.values == kind) for kind in ("link", "joint")}
+    rows = [
+        f"| {swim} | {kind}s | {_spread_text(record.sel(flow_run=swim).isel(part=where))} |\n"
+        for swim in whole
+        for kind, where in parts.items()
+    ]
+    if not rows:
+        return ""
+    return (
+        "\n## The other swims\n\nEach along its own motion, with factors of its own: median, and from the least to the "
+        "greatest, of all links and of all joints.\n\n| swim | of | R2 | added mass x | drag x | R2 fitted |\n"
+        "|---|---|---:|---:|---:|---:|\n" + "".join(rows)
+    )
+
+
+def _spread_text(swim: xr.Dataset) -> str:
+    """Return median, least and greatest over the parts of one swim, cell by cell."""
+    values = [swim[f"swim_{name}"] for name in ("r2", "added", "drag", "r2_fitted")]
+    return " | ".join(f"{float(one.median()):.2f} ({float(one.min()):.2f} to {float(one.max()):.2f})" for one in values)
+
+
+def _factor(row: Mapping[str, float], name: str) -> str:
+    """Return a factor, with its interval if it has one."""
+    low, high = row[f"{name}_low"], row[f"{name}_high"]
+    return f"{row[name]:.2f}" + (f" ({low:.2f} to {high:.2f})" if low <= high else "")
+
+
+def water_of(rung: str, cells: int, reynolds: float, tail_height: float, *, linked: bool = False) -> Slice | Space:
+    """Return the flow of a rung, "slice" or "space"; in space ``linked`` if all of the robot's pieces are to move."""
+    if rung == "slice":
+        return Slice(cells=cells, reynolds=reynolds)
+    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height, linked=linked)

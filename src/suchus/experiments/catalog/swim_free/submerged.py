@@ -1,0 +1,108 @@
+"""The swims of ``swim_free`` below the surface: how level the robot is, by where its air is and by what holds it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from suchus.core import rotation
+from suchus.robot.control import DepthHold, HeadingHold, PitchHold, Swimming
+from suchus.robot.control.holding import neutral_air_fraction
+from suchus.robot.design import Robot, with_values
+from suchus.robot.design.pieces import chambers
+from suchus.experiments.experiment import Measure, Measures
+from suchus.sim.land import Lake, Run
+from suchus.sim.land.afloat import hovers
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.robot.motion import Gait, cycle_targets
+
+DEEP = {
+    "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
+    "in_foam": "air in the foam",
+}  # fmt: skip
+"""Names of the swims, and what they are called."""
+NEAR = 0.05
+"""Distance from the depth within which a dive has arrived [m]."""
+_DIVE = 1.0
+"""How steeply the swim that dives by pitch pitches for each metre that it is too high [rad/m]."""
+
+
+def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
+    """Return swims that dive from the surface to a depth; none if the robot has not the air to hover.
+
+    Args:
+        robot: that swims.
+        gait: in which it swims.
+        lake: in which it swims.
+        depth: of its root below the level [m].
+    """
+    if not hovers(robot, lake):
+        return []
+    plain = Swimming(heading=HeadingHold(), depth=DepthHold(depth=depth))
+    cases: dict[str, tuple[Robot, Swimming]] = {"deep": (robot, plain)}
+    if min(chambers(robot)) > 0.0:
+        cases["held"] = robot, replace(plain, pitch=PitchHold())
+        cases["pitched"] = robot, replace(plain, pitch=PitchHold(dive=_DIVE))
+    if robot.hull is not None and robot.hull.chambers:
+        cases["in_foam"] = with_values(robot, {"hull.chambers": ()}), plain
+    return [Run(robot=one, gait=gait, lake=lake, control=control, label=name) for name, (one, control) in cases.items()]
+
+
+def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
+    """Return what is kept of the swims below the surface, by their names, over a time of their own.
+
+    Beside it, from statics: the pitch at which each robot hovers, straight and at rest, and how much of its air is in
+    front chambers.
+
+    Args:
+        record: of the swims.
+        runs: of ``deep_runs``.
+    """
+    names = [str(label) for label in record.label.values]
+    values = {
+        "deep_pitch": (rotation.pitch(record.orientation.values), "rad"),
+        "deep_depth": ((record.water_level - record.position.sel(xyz="z")).values, "m"),
+        "deep_along": (record.centre_of_mass.sel(xyz="x").values, "m"),
+        "deep_power": (record.servo_power.values, "W"),
+        "deep_air_fraction": (record.air_fraction.values, "1"),
+    }
+    air = np.array([chambers(run.robot) for run in runs])
+    statics = {
+        "deep_trim": ("dive", [_hovering(run) for run in runs], {"units": "rad"}),
+        "deep_front": ("dive", air[:, 0] / air.sum(axis=1), {"units": "1"}),
+    }
+    return xr.Dataset(
+        statics | {name: (("dive", "dive_time"), one, {"units": unit}) for name, (one, unit) in values.items()},
+        coords={"dive": names, "dive_time": ("dive_time", record.time.values, {"units": "s"})},
+    )
+
+
+def _hovering(run: Run) -> float:
+    """Return the pitch of a robot that hovers in the first posture of its swim, nose down positive [rad]."""
+    posture = cycle_targets(run.robot, run.gait, np.zeros(1), np.zeros(1))[0]
+    return hydrostatics(run.robot, posture, air_fraction=neutral_air_fraction(run.robot), heels=3).trim_submerged
+
+
+def measures(record: xr.Dataset) -> Measures:
+    """Return of each swim below the surface its trim and mean pitch, its speed, and the greatest error of its depth.
+
+    Beside them: how long each dive takes until it stays within ``NEAR`` of the depth; NaN if it never does.
+    """
+    if "dive" not in record:
+        return Measures()
+    part, depth = record.sel(dive_time=slice(record.attrs["deep_from"] - 1e-9, None)), record.attrs["depth"]
+    found = Measures()
+    for name in (str(one) for one in record.dive.values):
+        one, ending = part.sel(dive=name), "_deep" if name == "deep" else f"_deep_{name}"
+        x, time = one.deep_along.values, one.dive_time.values
+        if name in ("deep", "in_foam"):  # rest is the same for what moves its air
+            found[f"trim{ending}"] = Measure(round(float(one.deep_trim), 9) + 0.0, "rad")
+        found[f"pitch{ending}"] = Measure(float(one.deep_pitch.mean()), "rad")
+        found[f"speed{ending}"] = Measure(float((x[-1] - x[0]) / (time[-1] - time[0])), "m/s")
+        found[f"depth_error{ending}"] = Measure(float(np.abs(one.deep_depth.values - depth).max()), "m")
+        far = np.flatnonzero(np.abs(record.deep_depth.sel(dive=name).values - depth) > NEAR)
+        times = record.dive_time.values
+        arrived = 0.0 if not far.size else float(times[far[-1] + 1]) if far[-1] + 1 < len(times) else float("nan")
+        found[f"dive_time{ending}"] = Measure(arrived, "s")
+    return found | {"front_air": Measure(float(record.deep_front[0]), "-")}

@@ -1,0 +1,387 @@
+"""How does it swim: the pressure around the waving body, and the speed it reaches on its own?"""
+
+import json
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.experiments.catalog._similar import similar
+from suchus.experiments.catalog.swimming.figure import (
+    draw_forces,
+    draw_free,
+    draw_ladder,
+    draw_quarters,
+    draw_sides,
+    film_pressure,
+    film_vorticity,
+)
+from suchus.experiments.catalog.swimming.ladder import MOTIONS, Climb, Swims, climbed, measures, motions, swims
+from suchus.experiments.catalog.swimming.ladder import table as ladder_table
+from suchus.experiments.catalog.swimming.rules import LADDER, RULES
+from suchus.robot.kinematics.wave import READINGS
+from suchus.sim.metrics import swim_numbers
+from suchus.core.progress import portion
+from suchus.robot.robots import ROBOTS
+from suchus.article.verdict import Rule
+from suchus.article.verdict.ladder import Voice, voices
+from suchus.swim.water import (
+    ExactWave,
+    Fit,
+    Motion,
+    Quarters,
+    Swum,
+    attempts,
+    convex_higher,
+    efficiency,
+    fit,
+    printed_wave,
+    readings_table,
+    swim,
+)
+from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.swim.water.samples import all_kept, check_kept, kept_in
+
+ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
+"""Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
+_OF_RUNGS = tuple(f"_{rung}{end}" for rung in LADDER for end in ("", "_low", "_high", "_apart"))
+"""How the names of the ladder's measures end."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlaneSwims(Experiment):
+    """The robot's own outline in a two-dimensional flow, its joints fitted to (20).
+
+    Tethered, as in the article's Fig. 17: the snout is fixed, and every cycle but the first is measured. Values are
+    those of the last cycle, ``_low`` and ``_high`` those of all measured cycles. ``pressure_difference`` is the mean
+    pressure along the convex side of the tail less that along the concave side; the bend between the tail's root and
+    its tip says which side is convex. ``pressure_moves`` is by how many tail lengths its place moves towards the tip
+    from T/4 to 3T/4: the mean position along the tail, weighted with the size of the difference.
+
+    Free: from rest, in a grid that travels along. The speed is the mean of the last cycle; ``efficiency`` is the power
+    that towing the straight body at that speed takes over the power of the joints.
+
+    What the claims say is asked of six models, the rungs of a ladder (``rules.LADDER``): the two slender-body theories,
+    the slice with the midline that is commanded and with the one that the joints take in six degrees of freedom, these
+    swims themselves, with the force of each section, and the body in three dimensions. On each, trunk and tail, the
+    tail alone and the trunk alone swim freely from rest for ``cycles``, and the first is held at its snout where the
+    water is resolved. Measures that end in the name of a rung are means over the most cycles whose halves agree;
+    ``_low`` and ``_high`` are the ends of the halves and of a start to either side, in three dimensions also of the
+    grids of a kept study; ``_apart`` is how far they lie apart. ``gain_tail_share`` and ``gain_spine_share`` are the
+    shares of the speed that are missing without the swing of the tail and of the spine, ``pressure_convex_share`` and
+    ``pressure_fall_share`` the pressure difference at T/4 and its fall to 3T/4 over its mean size. Theories and
+    sections are of real water, the others of water at ``reynolds``.
+
+    The printed direction and the wave that the midline follows exactly are compared with the slice too. Other readings
+    of (20) are tethered in more viscous water, at ``readings_reynolds``.
+
+    Everything is per metre of depth but ``servo_load_peak``, the torque at a servo's shaft over its limit: there every
+    section is as high as the robot's and feels the flow's pressures.
+    """
+
+    title = "How does it swim?"
+    shows = "Section IV.B, eq. (20), Fig. 17"
+    answers = ("speed_free", "speed_as_printed", "gain_tail_share_space", "gain_spine_share_space",
+               "gain_spine_share_slice", "misfit")  # fmt: skip
+    needs = ("trunk", "tail_yaw")
+    judged_with = ("robot", "reading", "frequency", "reynolds")
+    judged_from: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that swims."""
+    reading: str = "I"
+    """Letter of the reading of (20), see ``kinematics.wave.READINGS``."""
+    frequency: float = 1.0
+    """Frequency of the wave, which the article does not give [Hz], 0.01 to 20."""
+    reynolds: float = 7000.0
+    """Frequency times length squared over viscosity [-]; the robot's own would be 1e6, beyond any affordable grid."""
+    cells: int = 80
+    """Cells per body length of the slices [-]."""
+    space_cells: int = 68
+    """Cells per body length in three dimensions [-]."""
+    cycles: int = 10
+    """Cycles of every swim of the ladder, from rest; the fields of the last are shown [-]."""
+    arm_cycles: int = 6
+    """Cycles after which the conditions (directions, exact wave) are compared [-]."""
+    readings: tuple[str, ...] = ("A", "C", "F", "H", "K")
+    """Further readings of (20) whose thrust is measured [-], but for ``reading``; the joints cannot make the others."""
+    readings_reynolds: float = 1000.0
+    """Reynolds number of these [-]; their tails are up to four times as fast and would need a finer grid."""
+    readings_cells: int = 40
+    """Cells per body length of these [-]."""
+    tow: float = 4.0
+    """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
+    frames: int = 20
+    """Pictures of each film, over one cycle [-], 1 to 200."""
+    keep: str = ""
+    """Folder for what is finished of an interrupted run, from which it goes on, until its result is saved; empty
+    keeps nothing."""
+
+    def __post_init__(self) -> None:
+        with Checks("swimming", self) as check:
+            check.number("frequency", 0.01, 20.0, "Hz")
+            check.number("reynolds", 10.0, 2e4, "")
+            check.number("readings_reynolds", 10.0, 2e4, "")
+            unknown = [letter for letter in (self.reading, *self.readings) if letter not in READINGS]
+            check.that(
+                not unknown, f"swimming.readings of (20) are {', '.join(READINGS)}; there is no {', '.join(unknown)}"
+            )
+            for name in ("cells", "space_cells", "readings_cells"):
+                check.whole(name, 32, 1024)
+            check.number("tow", 1.5, 100.0, "body lengths")
+            check.whole("frames", 1, 200)
+            for name in ("cycles", "arm_cycles"):
+                check.whole(name, 2, 100)
+
+    def quick(self) -> "PlaneSwims":
+        """A coarse grid, viscous water, few cycles."""
+        return replace(
+            self, cells=32, space_cells=40, cycles=2, arm_cycles=2, reynolds=1000.0, readings=("H",), readings_cells=32,
+            tow=2.0, frames=3,
+        )  # fmt: skip
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Swim tethered and free, in every motion, on every rung of the ladder."""
+        climb, printed = self.climb(), self._fit(1)
+        ours = climb.fitted
+        slices = swims(climb, "slice", motions(ours.gait), staged(progress, "slice", 0.0, 0.3), frames=self.frames)
+        held, free = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
+        printed_swim = self._held("as printed", printed, staged(progress, "as printed", 0.3, 0.35))
+        conditions = self._conditions(printed, slices, staged(progress, "directions", 0.35, 0.45))
+        rungs = climbed(climb, staged(progress, "", 0.45, 0.92), slices=slices)
+        readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
+        drag = self._drag(float(free.speed[-1]), staged(progress, "towed", 0.96, 1.0))
+        printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
+        parts = [_prefixed(held, "held"), _prefixed(printed_forces, "printed"), _prefixed(free, "free"), conditions]
+        record = xr.merge([*parts, readings, rungs], join="exact")
+        record["model_speed"] = swim(self.robot, ours.gait).speed
+        record["printed_model_speed"] = swim(self.robot, printed.gait).speed
+        record["towed_drag"] = ((), drag, {"units": "N/m"})
+        record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held.servo.values])
+        record.servo_limit.attrs["units"] = "N m"
+        record.attrs |= {"misfit": ours.misfit, **rungs.attrs}
+        progress("films", 1.0)
+        films = {"swimming_vorticity.gif": film_vorticity(record), "swimming_pressure.gif": film_pressure(record)}
+        numbers = {name: float(one.value) for name, one in measures(rungs, self.robot.length)}
+        tables = {"readings.md": table, "ladder.md": ladder_table(numbers, self.unable(record))}
+        swam = [f"{rung} {name}" for rung in ("slice", "slice_taken", "space") for name in (*MOTIONS, "held")]
+        names = ("held as printed", *(f"free {arm}" for arm in ARMS[len(MOTIONS) :]), *swam)
+        return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least; for those of the ladder nothing else swims.
+
+        Nor does what no word needs: where rungs disagree on a claim, those that take longer are not asked for it any
+        more, and what they would have measured is NaN.
+        """
+        if not all(name.endswith(_OF_RUNGS) for name in wanted):
+            return super(PlaneSwims, self).measured(wanted, progress)
+        claims = [rule.claim for rule in RULES if rule.needs & set(wanted)]
+        return Measures(measures(climbed(self.climb(), progress, claims=claims), self.robot.length))
+
+    def unable(self, record: xr.Dataset) -> Mapping[str, str]:
+        """Return why rungs of the ladder could not be run, in a sentence, by name."""
+        told: Mapping[str, str] = json.loads(record.attrs["unable"])
+        return told
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return what the tethered and the free body did, and how fast each motion swims."""
+        held, free = part(record, "held"), part(record, "free")
+        return Measures(
+            {"misfit": Measure(float(record.attrs["misfit"]), "-")},
+            _thrusts(record, held, self.reading),
+            _tethered(held),
+            _free_swim(record, free, self.robot, self.frequency, self.reynolds),
+            _envelope(free, self.robot),
+            _compared(record),
+            measures(record, self.robot.length),
+            _loads(held, self.robot),
+        )
+
+    def _setting(self, cycles: int, *, cells: int, reynolds: float, held: bool = True) -> SwimSetting:
+        viscosity = self.frequency * self.robot.length**2 / reynolds
+        return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if held else FREE)
+
+    def climb(self) -> Climb:
+        """Return what is asked of every rung.
+
+        Raises:
+            Unwritable: unfinished swims cannot be kept where they are to be.
+        """
+        check_kept(self.keep)
+        return Climb(
+            robot=self.robot, fitted=self._fit(-1), viscosity=self.frequency * self.robot.length**2 / self.reynolds,
+            cycles=self.cycles, cells=self.cells, space_cells=self.space_cells, keep=self.keep,
+        )  # fmt: skip
+
+    def _fit(self, sign: int) -> Fit:
+        wave = printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign)
+        return fit(self.robot, wave, name=f"(20), reading {self.reading}")
+
+    def _held(self, name: str, fitted: Fit, progress: Progress) -> xr.Dataset:
+        kept = kept_in(self.keep, f"held {name}")
+        setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds)
+        return resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, checkpoint=kept, progress=progress)
+
+    def _conditions(self, printed: Fit, slices: Swims, progress: Progress) -> xr.Dataset:
+        """Return the speed in every condition and cycle; the first three are the ladder's slices."""
+        exact = [
+            ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
+            for name, sign in zip(ARMS[4:], (-1, 1), strict=True)
+        ]
+        moved: dict[str, Motion] = dict(zip(ARMS[3:], (printed.gait, *exact), strict=True))
+        setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds, held=False)
+        speeds = np.full((len(ARMS), max(self.arm_cycles, self.cycles)), np.nan)
+        for i, arm in enumerate(ARMS):
+            if arm in slices:
+                swum = slices[arm]
+            else:
+                kept, stage = kept_in(self.keep, f"free {arm}"), portion(progress, i - len(MOTIONS), len(moved))
+                swum = resolved_swim(self.robot, moved[arm], setting, checkpoint=kept, progress=stage)
+            speeds[i, : swum.sizes["cycle"]] = swum.speed.values
+        data = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds, {"units": "m/s"})})
+        return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, speeds.shape[1] + 1))
+
+    def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
+        """Return the mean thrust of further readings, and a table of all of them."""
+        tried = {one.letter: one for one in attempts(self.robot, frequency=self.frequency)}
+        further = [letter for letter in self.readings if letter != self.reading]
+        setting, thrust = (
+            self._setting(min(4, self.cycles), cells=self.readings_cells, reynolds=self.readings_reynolds),
+            [],
+        )
+        for i, letter in enumerate(further):
+            fitted, part = tried[letter].fitted, portion(progress, i, len(further))
+            if fitted is None:
+                thrust.append(float("nan"))
+                continue
+            held = resolved_swim(self.robot, fitted.gait, setting, turn=fitted.head, progress=part)
+            thrust.append(float(held.cycle_thrust[1:].mean()))
+        thrusts = {
+            letter: f"{value:.1f} N/m at Re {self.readings_reynolds:.0f}"
+            for letter, value in zip(further, thrust, strict=True)
+        }
+        data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
+        return data.assign_coords(reading=further), readings_table(tried.values(), thrusts)
+
+    def _drag(self, speed: float, progress: Progress) -> float:
+        progress("towing", 0.0)
+        least = 0.02 * self.robot.length
+        setting = self._setting(1, cells=self.cells, reynolds=self.reynolds)
+        return towed_drag(self.robot, max(abs(speed), least), setting, lengths=self.tow)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the fields, the two sides of the tail, the forces, the free swim."""
+        record = outcome.record
+        return {
+            "swimming_ladder": draw_ladder(self._said(record)),
+            "swimming_pressure": draw_quarters(record),
+            "swimming_sides": draw_sides(record),
+            "swimming_forces": draw_forces(record),
+            "swimming_free": draw_free(record),
+        }
+
+    def _said(self, record: xr.Dataset) -> list[tuple[Rule, tuple[Voice, ...]]]:
+        """Return what each rung says of each claim."""
+        numbers = {name: float(one.value) for name, one in measures(record, self.robot.length)}
+        return [(rule, voices(rule, numbers, self.unable(record))) for rule in RULES]
+
+
+def _prefixed(record: xr.Dataset, name: str) -> xr.Dataset:
+    """Return a record whose variables and dimensions carry the name of the swim."""
+    return record.rename({str(old): f"{name}_{old}" for old in {*record.variables, *record.dims}})
+
+
+def part(record: xr.Dataset, name: str) -> xr.Dataset:
+    """Return one swim of the record as ``water.resolved`` gave it."""
+    start = f"{name}_"
+    mine = record[[str(v) for v in record.data_vars if str(v).startswith(start)]]
+    return mine.rename(
+        {str(v): str(v).removeprefix(start) for v in {*mine.variables, *mine.dims} if str(v).startswith(start)}
+    )
+
+
+def _thrusts(record: xr.Dataset, held: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
+    settled = held.cycle_thrust[1:]
+    yield f"thrust_mean_{reading}", Measure(float(settled.mean()), "N/m")
+    yield "thrust_scatter", Measure(float(np.ptp(settled.values)), "N/m")
+    yield "thrust_mean_as_printed", Measure(float(record.printed_cycle_thrust[1:].mean()), "N/m")
+    for letter in record.reading.values:
+        yield f"thrust_mean_{letter}", Measure(float(record.reading_thrust.sel(reading=letter)), "N/m")
+
+
+def _tethered(held: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    each = Quarters.each(held)
+    yield "convex_higher_share", Measure(convex_higher(held), "-")
+    yield "power_held", Measure(float(held.cycle_power[1:].mean()), "W/m")
+    yield "force_noise", Measure(float(held.noise), "-")
+    yield "thin_share", Measure(float(held["thin"]), "-")
+    for i in range(4):
+        yield from _ranged(f"pressure_difference_{i + 1}_quarter", [one.difference[i] for one in each], "Pa")
+    for i in (0, 2):
+        yield from _ranged(f"thrust_{i + 1}_quarter", [one.thrust[i] for one in each], "N/m")
+        yield from _ranged(f"aside_{i + 1}_quarter", [one.aside[i] for one in each], "N/m")
+    yield from _ranged("pressure_moves", [one.moves for one in each], "-")
+
+
+def _free_swim(
+    record: xr.Dataset, free: xr.Dataset, robot: Robot, frequency: float, reynolds: float
+) -> Iterator[tuple[str, Measure]]:
+    swum = Swum.of(free, frequency)
+    yield "speed_free", Measure(swum.speed, "m/s")
+    yield "speed_free_lengths", Measure(swum.speed / robot.length, "1/s")
+    yield "speed_free_gain_last_cycle", Measure(swum.gain, "-")
+    yield "slip", Measure(swum.slip, "-")
+    numbers = swim_numbers(
+        speed=swum.speed, length=robot.length, frequency=frequency, swing=swum.strouhal * abs(swum.speed) / frequency,
+        viscosity=frequency * robot.length**2 / reynolds,
+    )  # fmt: skip
+    yield from similar(numbers).items()
+    yield "efficiency", Measure(efficiency(float(record.towed_drag), swum.speed, float(free.power[-1])), "-")
+    yield "cost_of_transport", Measure(swum.cost_of_transport, "-")
+    yield "head_yaw", Measure(swum.head_yaw, "rad")
+    for model in record.model.values:
+        yield f"speed_{model}", Measure(float(record.model_speed.sel(model=model)), "m/s")
+        yield f"speed_as_printed_{model}", Measure(float(record.printed_model_speed.sel(model=model)), "m/s")
+
+
+def _envelope(free: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
+    """Return how the swing of the free body grows from its least place to the tip."""
+    swings, s = free.swing.values, np.linspace(0.0, 1.0, free.swing.size)
+    least = int(swings.argmin())
+    running = np.maximum.accumulate(np.maximum(swings[least:], np.finfo(float).tiny))
+    dips = 1.0 - np.maximum(swings[least:], np.finfo(float).tiny) / running
+    yield "envelope_growth", Measure(float(swings[-1] / running[0]), "-")
+    yield "envelope_least_place", Measure(float(s[least]), "-")
+    yield "envelope_dip", Measure(float(dips.max()), "-")
+    yield "snout_sway", Measure(float(swings[0]) / robot.length, "-")
+
+
+def _compared(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Return the speed of the conditions that are no rung of the ladder, in their last cycle."""
+    for arm in ARMS[3:]:
+        speeds = record.arm_speed.sel(arm=arm).values
+        yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[np.isfinite(speeds)][-1]), "m/s")
+
+
+def _loads(held: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
+    for joint in held.joint.values:
+        yield f"joint_torque_peak_{joint}", Measure(float(abs(held.joint_torque.sel(joint=joint)).max()), "N m/m")
+    for servo in held.servo.values:
+        peak = float(abs(held.servo_torque.sel(servo=servo)).max())
+        yield f"servo_load_peak_{servo}", Measure(peak / robot.servo(str(servo)).torque, "-")
+
+
+def _ranged(name: str, values: list[float], unit: str) -> Iterator[tuple[str, Measure]]:
+    """Return the value of the last cycle, with the least and the greatest of all cycles."""
+    yield name, Measure(float(values[-1]), unit)
+    yield f"{name}_low", Measure(float(min(values)), unit)
+    yield f"{name}_high", Measure(float(max(values)), unit)
+
+
+experiment = PlaneSwims()

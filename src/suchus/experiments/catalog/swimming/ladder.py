@@ -1,0 +1,530 @@
+"""The rungs of the ladder: one motion and its parts in six models of the water, each until it is settled."""
+
+import json
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from hashlib import sha256
+from importlib import resources
+from math import isfinite, nan, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from suchus.core import rotation
+from suchus.robot.design import Robot
+from suchus.core.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable
+from suchus.experiments.experiment import Measure
+from suchus.experiments.catalog._taken import bare, swum_in_sections
+from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SEEN, SETTLED
+from suchus.core.fingerprint import fingerprint
+from suchus.robot.motion import Gait, check_limits, check_speeds
+from suchus.core.progress import Progress, portion, staged
+from suchus.article.verdict import ladder
+from suchus.swim.water import (
+    MODELS,
+    Fit,
+    Motion,
+    Outline,
+    Sway,
+    Water,
+    cruise,
+    cycle,
+    swing,
+    taken,
+    undulation,
+    unevenness,
+    wave_form,
+)
+from suchus.swim.water.field_samples import COURSE, TICKS
+from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
+from suchus.swim.water.samples import kept_in
+
+MOTIONS = ("trunk and tail", "tail only", "trunk only")
+"""What swims on every rung."""
+SWIMS = (*MOTIONS, "held")
+"""The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
+_READ_OF: Mapping[str, tuple[str, ...]] = {
+    "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
+    "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
+}  # fmt: skip
+"""Of which swims measures are read, by how their names begin."""
+FEWEST = 6
+"""Cycles without which a rung is not settled [-]; two halves of three."""
+_QUARTERS = ("difference", "thrust", "aside")
+GRIDS = "grids.json"
+"""File beside this module: numbers on several grids in three dimensions, see ``tools/ladder_grids.py``."""
+_BENT = 3  # last cycles of the swim on sections over which the joints' midline is averaged
+
+
+def motions(gait: Gait) -> dict[str, Gait]:
+    """Return what swims on every rung, by ``MOTIONS``."""
+    return dict(zip(MOTIONS, (gait, gait.straightened("trunk"), gait.straightened("tail")), strict=True))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Climb:
+    """What is asked of every rung."""
+
+    robot: Robot
+    """Who swims."""
+    fitted: Fit
+    """Its motion, and how the head of a body turns that is held at its snout."""
+    viscosity: float
+    """Of the water on the rungs that resolve it [m2/s]; theories and sections take that of real water."""
+    cycles: int
+    """Cycles that are swum from rest [-]."""
+    cells: int
+    """Cells per body length of the slices [-]."""
+    space_cells: int
+    """Cells per body length in three dimensions [-]."""
+    keep: str = ""
+    """Folder for swims that were not finished; empty keeps nothing."""
+
+    @property
+    def digest(self) -> str:
+        """What a study of grids must have been made for: the body, its motion and its water, whatever the grids."""
+        outline, length = Outline(self.robot), self.robot.length
+        bent = undulation(outline, self.fitted.gait).middles
+        asked = (*outline.silhouette, bent.real, bent.imag, length, self.viscosity, self.fitted.head, self.cycles)
+        return fingerprint([np.round(one, 9) for one in asked])[:16]
+
+    def setting(self, *, space: bool, held: bool) -> SwimSetting:
+        """Return grid, water and time of a rung that resolves the water."""
+        return SwimSetting(
+            axes=3 if space else 2, cells=self.space_cells if space else self.cells, viscosity=self.viscosity,
+            cycles=self.cycles, free=TETHERED if held else FREE,
+        )  # fmt: skip
+
+
+Swims = Mapping[str, xr.Dataset]
+"""Free swims by motion, and the one that is held at its snout as ``held``."""
+
+
+def climbed(
+    climb: Climb, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
+) -> xr.Dataset:
+    """Return what every rung did; why one could not be run stands in ``unable``, as JSON by its name.
+
+    Args:
+        climb: what is asked.
+        progress: told the share that is done.
+        slices: the slice's swims with the commanded midline, where they were swum already.
+        claims: keys of the claims for whose words alone swims are swum. What none of them needs is left out: rungs that
+            disagree stay at odds, whatever the next one says. None swims everything.
+
+    Raises:
+        OutsideLimits: joints or servos cannot follow the motion, so that it is no swim of this robot.
+    """
+    unable: dict[str, str] = {}
+    sections = _attempt("sections", unable, lambda: _in_sections(climb, staged(progress, "sections", 0.0, 0.1)))
+    bent = None if sections is None else _attempt("slice_taken", unable, lambda: _bent(climb, sections))
+    told = {model: _attempt(model, unable, partial(_of_theory, climb, model)) for model in MODELS}
+    if sections is None:
+        unable["slice_taken"] = unable["sections"]
+    else:
+        told["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
+    meant = motions(climb.fitted.gait)
+
+    def resolved(rung: str, moved: Mapping[str, Motion], part: Progress) -> None:
+        wanted = SWIMS if claims is None else _needed(_ladder(climb, told, unable), climb, claims)
+        told[rung] = _attempt(rung, unable, lambda: _of_swims(climb, swims(climb, rung, moved, part, wanted=wanted)))
+
+    if slices is None:
+        check_limits(climb.robot, climb.fitted.gait)  # theories would swim all the same
+        check_speeds(climb.robot, climb.fitted.gait)
+        resolved("slice", meant, staged(progress, "slice", 0.1, 0.35))
+    else:
+        told["slice"] = _of_swims(climb, slices)
+    if bent is not None:
+        resolved("slice_taken", bent, staged(progress, "taken", 0.35, 0.6))
+    resolved("space", meant, staged(progress, "three dimensions", 0.6, 1.0))
+    named = {"units": "1", "long_name": "rms angle of the joints' midline off the commanded, over that"}
+    data = _ladder(climb, told, unable)
+    data["taken_away"] = "ladder_motion", _away(climb, bent), named
+    return data
+
+
+def _ladder(climb: Climb, told: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
+    """Return what the rungs told so far, as a record; NaN of the others."""
+    data = xr.Dataset(
+        {key: _stacked(key, [told.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
+        coords={"rung": list(LADDER), "ladder_motion": list(MOTIONS)},
+    )
+    return data.assign_attrs(unable=json.dumps(unable), grids=json.dumps(kept_grids(climb)))
+
+
+def _needed(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
+    """Return the swims that some claims need of the next rung: those claims on which the rungs do not disagree yet."""
+    numbers = {name: float(one.value) for name, one in _of_rungs(record, climb.robot.length)}
+    rules = [rule for rule in RULES if rule.claim in claims and not ladder.disagree(ladder.voices(rule, numbers))]
+    read = {name for rule in rules for name in (rule.measure, *(clause.measure for clause in rule.holds))}
+    return {swim for name in read for start, of in _READ_OF.items() if name.startswith(start) for swim in of}
+
+
+def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
+    """Return what a rung did, or None, and then the reason is kept by its name.
+
+    Raises:
+        Unwritable: it could not be kept, which says nothing of the rung.
+        UnreadableFile: what was kept of it is damaged, or is of another swim.
+    """
+    try:
+        return run()
+    except (Unwritable, UnreadableFile):
+        raise
+    except SuchusError as refused:
+        unable[name] = f"Not run: {' '.join(str(refused).split())}"
+        return None
+
+
+_SHAPES: Mapping[str, tuple[tuple[str, ...], str]] = {
+    "ladder_speed": (("ladder_motion", "ladder_cycle"), "m/s"),
+    "ladder_centre": (("ladder_tick",), "m"),
+    "ladder_course": (("ladder_tick", "ladder_place"), "m"),
+    **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), "1") for name in _QUARTERS},
+}
+"""Dimensions of what a rung may tell, after its own, and unit; quarters are in the rung's own unit of pressure or
+force."""
+
+
+def _stacked(key: str, found: Iterable[Mapping[str, Any]], cycles: int) -> Any:
+    dims, unit = _SHAPES[key]
+    sizes = {"ladder_motion": len(MOTIONS), "ladder_cycle": cycles, "ladder_tick": TICKS * cycles + 1,
+             "ladder_place": COURSE, "ladder_quarter": 4}  # fmt: skip
+    empty = np.full([sizes[dim] for dim in dims], np.nan)
+    return ("rung", *dims), np.array([np.asarray(one.get(key, empty), float) for one in found]), {"units": unit}
+
+
+def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
+    """Return what a slender-body theory says: the same in every cycle, and of the centre of mass its one harmonic."""
+    outline, water = Outline(climb.robot), Water()
+    swum = {name: cruise(outline, one, MODELS[model], water) for name, one in motions(climb.fitted.gait).items()}
+    whole = swum[MOTIONS[0]]
+    y = cycle(outline, climb.fitted.gait, whole.sway, whole.turn).y
+    wide, high = outline.silhouette
+    centre = np.average(y, axis=1, weights=wide * high)
+    instants = np.arange(TICKS * climb.cycles + 1) / TICKS % 1.0
+    return {
+        "ladder_speed": np.tile([[one.speed] for one in swum.values()], climb.cycles),
+        "ladder_centre": np.interp(instants, np.arange(len(centre) + 1) / len(centre), [*centre, centre[0]]),
+    }
+
+
+def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
+    """Return what the swims of a rung that resolves the water did; NaN of those that were left out."""
+    still = np.full(climb.cycles, np.nan)
+    found: dict[str, Any] = {"ladder_speed": [swims[one].speed.values if one in swims else still for one in MOTIONS]}
+    if (whole := swims.get(MOTIONS[0])) is not None:
+        found |= {"ladder_centre": whole.course_centre.values, "ladder_course": whole.course.values}
+    if (held := swims.get("held")) is not None:
+        first = np.full((climb.cycles - held.sizes["settled"], 4), np.nan)
+        found |= {f"ladder_{name}": np.vstack([first, held[f"quarter_{name}"].values]) for name in _QUARTERS}
+    return found
+
+
+def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
+    """Return the run in six degrees of freedom, the motions along ``run``."""
+    return swum_in_sections(climb.robot, [*motions(climb.fitted.gait).values()], climb.cycles, progress)
+
+
+def _bent(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
+    """Return the midlines that the joints take there, by motion."""
+    outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.fitted.gait.frequency
+    last = min(_BENT, climb.cycles)
+    return {
+        name: taken(outline, record.isel(run=i), frequency=frequency, cycles=last, name=f"{name} as taken")
+        for i, name in enumerate(MOTIONS)
+    }
+
+
+def _away(climb: Climb, bent: Mapping[str, Motion] | None) -> list[float]:
+    """Return how far the midlines that the joints take are off those commanded, the rms angle over that [-]."""
+    if bent is None:
+        return [nan] * len(MOTIONS)
+    outline = Outline(bare(climb.robot), climb.cells + 1)
+    meant = motions(climb.fitted.gait)
+    return [unevenness(undulation(outline, bent[name]), undulation(outline, meant[name])) for name in MOTIONS]
+
+
+def space_swims(climb: Climb, progress: Progress) -> Swims:
+    """Return the swims in three dimensions."""
+    return swims(climb, "space", motions(climb.fitted.gait), progress)
+
+
+def swims(
+    climb: Climb,
+    rung: str,
+    moved: Mapping[str, Motion],
+    progress: Progress,
+    *,
+    frames: int = 0,
+    wanted: Collection[str] = SWIMS,
+) -> Swims:
+    """Return the free swims of a rung by motion, and the first held at its snout.
+
+    Args:
+        climb: what is asked.
+        rung: which; ``space`` is in three dimensions, the others are slices.
+        moved: the motions by name.
+        progress: told the share that is done.
+        frames: pictures of the first that are kept [-].
+        wanted: names of the swims, the others are left out.
+    """
+    found: dict[str, xr.Dataset] = {}
+    asked = [name for name in SWIMS if name in wanted]
+    for i, name in enumerate(asked):
+        held, first = name == "held", name == MOTIONS[0]
+        setting = climb.setting(space=rung == "space", held=held)
+        found[name] = resolved_swim(
+            climb.robot,
+            moved[MOTIONS[0] if held else name],
+            replace(setting, frames=frames) if first else setting,
+            turn=climb.fitted.head if held else 0j,
+            checkpoint=kept_in(climb.keep, f"{rung} {name}"),
+            progress=portion(progress, i, len(asked)),
+        )
+    return found
+
+
+def _of_sections(climb: Climb, record: xr.Dataset) -> dict[str, Any]:
+    """Return speeds and course of the runs in six degrees of freedom, whose y points left, that of a course right."""
+    period, time = 1.0 / climb.fitted.gait.frequency, record.time.values.astype(float)
+    ends = period * np.arange(climb.cycles + 1)
+    along = [np.interp(ends, time, record.centre_of_mass.isel(run=i).sel(xyz="x")) for i in range(len(MOTIONS))]
+    whole, even = record.isel(run=0), period * np.arange(TICKS * climb.cycles + 1) / TICKS
+    outline = Outline(bare(climb.robot))
+    angles = whole.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values
+    middle = 0.5 * (outline.s[1:] + outline.s[:-1])
+    root = outline.joints_at(np.array([outline.tail_root - 1e-6])) @ angles.T  # the heading of the root's segment
+    heading = np.unwrap(rotation.yaw(whole.orientation.values)) + outline.joints_at(middle) @ angles.T - root
+    step = outline.s[1] - outline.s[0]
+    tip = -whole.tail_tip.sel(xyz="y").values
+    ahead = step * np.cumsum(np.sin(heading)[::-1], axis=0)[::-1]  # from each station to the tip
+    across = tip - np.vstack([ahead, np.zeros_like(tip)])
+    places = np.linspace(0.0, len(outline.s) - 1.0, COURSE)
+    seen = np.array([np.interp(places, np.arange(len(outline.s)), one) for one in across.T])
+    return {
+        "ladder_speed": np.diff(along, axis=1) / period,
+        "ladder_centre": np.interp(even, time, -whole.centre_of_mass.sel(xyz="y")),
+        "ladder_course": np.column_stack([np.interp(even, time, one) for one in seen.T]),
+    }
+
+
+def rules_digest() -> str:
+    """Return what the rules ask of three dimensions: a study of grids that was made for other rules is too old."""
+    asked = [
+        f"{rule.claim} {rule.measure} {clause.measure} {clause.relation} {clause.bound} {rule.settled}"
+        for rule in RULES
+        for clause in rule.holds
+    ]
+    return sha256("\n".join([*asked, str(FEWEST)]).encode()).hexdigest()[:16]
+
+
+def kept_grids(climb: Climb) -> dict[str, Any]:
+    """Return the kept study of grids in three dimensions: its cells, and the least and greatest of each measure.
+
+    Nothing where it is of another body, motion or water.
+
+    Raises:
+        IncompatibleRecord: it is older than the rules.
+    """
+    file = resources.files("suchus.experiments.catalog.swimming") / GRIDS
+    if not file.is_file():
+        return {}
+    told: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    if told["rules"] != rules_digest():
+        raise IncompatibleRecord(
+            f"the study of grids that ships with swimming ({GRIDS}) is older than the rules that read it; renew it in "
+            "a checkout with: python tools/ladder_grids.py FOLDER"
+        )
+    return told if told["swim"] == climb.digest else {}
+
+
+class Settled(NamedTuple):
+    """A number of a rung over the cycles in which it is settled."""
+
+    value: float
+    """Mean over halves and starting sides."""
+    low: float
+    """Least of them."""
+    high: float
+    """Greatest of them."""
+    apart: float
+    """Greatest less least, over the size of what is measured [-]; NaN where too few cycles were swum."""
+
+    @classmethod
+    def of(cls, values: Iterable[float], scale: float) -> "Settled":
+        """Return it from the values of halves and sides."""
+        found = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
+        return cls(float(found.mean()), float(found.min()), float(found.max()), float(np.ptp(found)) / scale)
+
+
+def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> Settled:
+    """Return a number over the most cycles, the first left out, two halves of which agree within ``SETTLED``.
+
+    Args:
+        half: the number from one cycle on and up to another, once for each side to which the swim may start.
+        cycles: that were swum [-].
+        scale: size of what is measured, in its unit.
+    """
+    found = None
+    for count in range((cycles - 1) // 2 * 2, FEWEST - 1, -2):
+        ends = cycles - count, cycles - count // 2, cycles
+        found = Settled.of([*half(*ends[:2]), *half(*ends[1:])], scale)
+        if found.apart <= SETTLED:
+            return found
+    return found or Settled.of(half(cycles - 1, cycles), scale)._replace(apart=nan)
+
+
+def numbers_in_space(climb: Climb, swims: Swims) -> Iterator[tuple[str, Settled]]:
+    """Return the numbers of the rung in three dimensions from its swims."""
+    told = _of_swims(climb, swims)
+    rung = xr.Dataset({key: _stacked(key, [told], climb.cycles) for key in _SHAPES}).isel(rung=0)
+    return _numbers(rung.assign_coords(ladder_motion=list(MOTIONS)), climb.robot.length)
+
+
+def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]:
+    """Return every rung's numbers, ``_low``, ``_high`` and ``_apart``, and its speeds.
+
+    Args:
+        record: with what ``climbed`` returned.
+        length: of the robot [m].
+    """
+    yield from _of_rungs(record, length)
+    for motion in MOTIONS:
+        away = float(record.taken_away.sel(ladder_motion=motion))
+        yield f"misfit_{motion.replace(' ', '_')}_as_taken", Measure(away, "-")
+    yield "space_grids", Measure(float(len(json.loads(record.attrs["grids"]).get("cells", [0]))), "-")
+
+
+def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]:
+    grids = json.loads(record.attrs["grids"])
+    for name in record.rung.values:
+        rung = record.sel(rung=name)
+        for motion in MOTIONS:
+            speed = float(rung.ladder_speed.sel(ladder_motion=motion)[-1])
+            yield f"speed_{motion.replace(' ', '_')}_{name}", Measure(speed, "m/s")
+        for what, (value, low, high, apart) in _numbers(rung, length):
+            ends = grids.get("measures", {}).get(what, ()) if name == "space" else ()
+            whole = {"": value, "_low": min(low, *ends, low), "_high": max(high, *ends, high), "_apart": apart}
+            for end, one in whole.items():
+                yield f"{what}_{name}{end}", Measure(one, "rad" if "angle" in what and end != "_apart" else "-")
+
+
+def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
+    cycles = rung.sizes["ladder_cycle"]
+    whole, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
+
+    def gain(without: np.ndarray) -> Settled:
+        def share(a: int, b: int) -> list[float]:
+            both = float(whole[a:b].mean())
+            return [(both - float(without[a:b].mean())) / abs(both) if both else nan]
+
+        return settle(share, cycles)
+
+    yield "gain_tail_share", gain(trunk)
+    yield "gain_spine_share", gain(tail)
+    yield from _swaying(rung.ladder_centre.values / length, cycles)
+    yield from _waving(rung.ladder_course.values / length, cycles)
+    yield from _pressing(rung.ladder_difference.values, cycles)
+    yield from _pushing(np.stack([rung.ladder_thrust.values, rung.ladder_aside.values], axis=-1), cycles)
+
+
+def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+    """Return how far the centre of mass sways, and what of its track is no sine of one cycle [body length]."""
+
+    def sway(a: int, b: int) -> Sway:
+        return Sway.of(centre[a * TICKS : b * TICKS + 1], b - a)
+
+    size = max(sway(1, cycles).amplitude, SEEN) if isfinite(centre.sum()) else nan
+    yield "track_sway", settle(lambda a, b: [sway(a, b).amplitude], cycles, size)
+    yield "track_noise", settle(lambda a, b: [sway(a, b).noise], cycles, size)
+
+
+def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+    """Return which share of the tip's swing is a sine, and which wave of the form (20) the midline follows."""
+    names = ("wave_share", "wave_waves_per_body", "wave_envelope_middle", "wave_envelope_tip")
+    s = np.linspace(0.0, 1.0, course.shape[1])
+
+    @cache
+    def wave(a: int, b: int) -> tuple[float, ...]:
+        part = course[a * TICKS : b * TICKS + 1]
+        side = 1.0 if part[0, -1] >= part[:-1, -1].mean() else -1.0  # so that a mirrored swim gives the same bytes
+        swung = swing(side * part, b - a)
+        linear, quadratic, waves, share = wave_form(s, swung.amplitude, swung.phase_lag)
+        sine = float(np.average(swung.share, weights=swung.amplitude**2))
+        return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
+
+    def tip(a: int, b: int) -> list[float]:
+        each = [course[i * TICKS : (i + 1) * TICKS + 1, -1:] for i in range(a, b)]
+        return [float(np.mean([swing(one, 1).share[0] for one in each]))]
+
+    known = float(np.ptp(course[:, -1])) > 0.0  # neither NaN nor at rest
+    none = Settled(nan, nan, nan, nan)
+    yield "tail_sine_share", settle(tip, cycles) if known else none
+    size = wave(1, cycles)[-1] if known else nan
+
+    def one(which: int, a: int, b: int) -> list[float]:
+        return [wave(a, b)[which]]
+
+    for i, (name, scale) in enumerate(zip(names, (1.0, 1.0, size, size), strict=True)):
+        yield name, settle(partial(one, i), cycles, scale) if known else none
+
+
+def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+    """Return the difference between the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
+
+    A swim that starts to the other side is the mirror image of this one: it does at T/4 what this one does at 3T/4.
+    """
+    size = float(np.sort(np.abs(difference[1:]), axis=None).mean())
+
+    def at(a: int, b: int) -> tuple[float, float]:
+        first, third = difference[a:b, [0, 2]].mean(axis=0) / size
+        return float(first), float(third)
+
+    def fall(a: int, b: int) -> list[float]:
+        first, third = at(a, b)
+        return [abs(first) - abs(third), abs(third) - abs(first)]
+
+    yield "pressure_convex_share", settle(lambda a, b: [*at(a, b)], cycles)
+    yield "pressure_fall_share", settle(fall, cycles)
+
+
+def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
+    """Return angle, asymmetry and forward part of the force, shape (cycle, quarter, 2), started to either side."""
+    size = float(np.sort(np.hypot(force[1:, :, 0], force[1:, :, 1]), axis=None).mean())
+
+    def sides(a: int, b: int) -> list[tuple[np.ndarray, np.ndarray]]:
+        first, third = force[a:b, 0].mean(axis=0), force[a:b, 2].mean(axis=0)
+        return [(first, third), (third * (1.0, -1.0), first * (1.0, -1.0))]
+
+    def angle(first: np.ndarray, third: np.ndarray) -> float:
+        del third
+        return float(np.arctan2(abs(first[1]), first[0]))
+
+    def asymmetry(first: np.ndarray, third: np.ndarray) -> float:
+        apart, most = np.abs(first - third * (1.0, -1.0)).max(), np.abs(first).max()
+        return float(apart / most) if most > 0.0 else nan
+
+    def forward(first: np.ndarray, third: np.ndarray) -> float:
+        del first
+        return float(third[0]) / size
+
+    def both(read: Callable[[np.ndarray, np.ndarray], float], a: int, b: int) -> list[float]:
+        return [read(*pair) for pair in sides(a, b)]
+
+    yield "force_angle_1_quarter", settle(partial(both, angle), cycles, pi / 2)
+    yield "thrust_asymmetry", settle(partial(both, asymmetry), cycles)
+    yield "thrust_3_quarter_share", settle(partial(both, forward), cycles)
+
+
+def table(numbers: Mapping[str, float], unable: Mapping[str, str]) -> str:
+    """Return the ladder of every claim as Markdown: what each model says of this robot's swim, and why."""
+    lines = ["# What each model says", ""]
+    for rule in RULES:
+        lines += [f"## {rule.claim}: `{rule.measure}`", "", "| model | number | says | why |", "|---|---|---|---|"]
+        rows = ladder.rows(ladder.voices(rule, numbers, unable), rule.form)
+        lines += [f"| {row['model']} | {row['number']} | {row['says']} | {row['why']} |" for row in rows] + [""]
+    return "\n".join(lines)

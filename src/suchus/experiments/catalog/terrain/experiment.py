@@ -1,0 +1,474 @@
+"""Which posture for which ground, and can the robot choose by what it feels?"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import permutations
+from math import isfinite, nan
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import AttitudeRule, Change, Control, SwitchRule, Walking
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.core.checks import Checks
+from suchus.robot.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
+from suchus.visual.figures.gait_diagram import GAIT_LINES
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.sim.land import Ground, Run, Tolerances, simulate
+from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
+from suchus.robot.motion import START, Gait, suits
+from suchus.robot.robots import ROBOTS
+
+_TOUCH = 0.5 / (ROBOTS["caiman"].mass * GRAVITY)  # of the weight on the belly, half a newton of that robot
+_AT = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it
+_LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
+"""Heights of the three postures of a body of its own, over that of its gait [-]."""
+_STEPS = 1.75  # by which a body of its own walks more cycles: they are shorter
+Surface = Literal["even", "bumps"]
+FALLEN = np.radians(60)
+"""Roll or pitch beyond which nothing on the robot brings it back [rad]."""
+ROUGH = 0.03
+"""Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
+sprawled crawl is less. For others it is in proportion to their length."""
+_EVEN = 1e-9  # [m]; heights that differ by less are equal
+SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
+"""Arms that keep one posture."""
+_COMPARED = ("low_crawl", "high_walk_level")
+_TWO = ("low_crawl", "high_walk", "high_walk_level")
+"""Arms of the two structures that the article compares."""
+_OF_ROUGH = (
+    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
+    *(f"falls_rough_{name}" for name in _TWO),
+)  # fmt: skip
+"""Measures of these alone, on rough grounds."""
+_OF_TWO = ("flat_cost_ratio", *_OF_ROUGH)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Terrain(Experiment):
+    """Low crawl, semi-erect walk, high walk without and with the IMU, and the robot that switches, on rough ground.
+
+    ``low_crawl`` and ``high_walk`` walk open loop, ``semi_erect`` and ``high_walk_level`` answer the IMU. ``switching``
+    begins semi-erect and returns to it, ``thrifty``, where it walks too, begins crawling and returns to that; both go
+    up when the belly touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step
+    or stone, and a robot and a floor of its own, see ``land.Tolerances``. A run has fallen once it rolled or pitched by
+    more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
+    step, or the chest to the stone. Another body walks its own gait at three heights in the place of the three gaits.
+    """
+
+    title = "Which posture for which ground, and can the robot choose by what it feels?"
+    shows = "Section II.B, Fig. 3"
+    answers = ("erect_ahead_share", "flat_cost_ratio", "met_judged", "transitions_upright", "transition_after_least")
+    needs = ("foot_paths",)
+    judged_with = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
+    judged_from: ClassVar[Mapping[str, float]] = {
+        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 14.0,
+    }  # fmt: skip
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that walks."""
+    crawl: Gait = field(default_factory=lambda: GAITS["low_crawl"])
+    """The sprawled gait."""
+    semi_erect: Gait = field(default_factory=lambda: GAITS["semi_erect"])
+    """The gait between the sprawled and the erect one."""
+    high_walk: Gait = field(default_factory=lambda: GAITS["high_walk"])
+    """The erect gait."""
+    bumps: tuple[float, ...] = (0.04, 0.06)
+    """Heights of random bumps [m]."""
+    steps: tuple[float, ...] = (0.03, 0.04, 0.05)
+    """Heights of a step up [m]."""
+    stones: tuple[float, ...] = (0.04, 0.06, 0.10)
+    """Heights of a stone between the feet [m]."""
+    correlations: tuple[float, ...] = (0.06, 0.10)
+    """Correlation lengths of the bumps, in turn over the seeds [m]."""
+    surfaces: tuple[Surface, ...] = ("even", "bumps")
+    """Grounds on which postures turn into each other; the bumps are 30 mm high."""
+    transitions: int = 6
+    """Number of the six transitions between the three postures that are tried [-]."""
+    thrifty: bool = False
+    """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
+    seeds: int = 4
+    """Runs of each posture on each ground [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """By how much the robots and grounds of the seeds differ from their design."""
+    walked: float = 14.0
+    """Duration for which each run walks [s], 0.5 to 3600."""
+    timestep: float = 0.005
+    """Time step of the physics [s], at most 0.01."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            for heights in ("bumps", "steps", "stones"):
+                if getattr(self, heights):
+                    check.rising(heights, 1e-5, 0.5, "m")
+            check.that(
+                len(self.correlations) > 0, f"{self.name()}.correlations is empty; one length at least is needed"
+            )
+            check.that(len(self.surfaces) > 0, f"{self.name()}.surfaces is empty; even or bumps is needed")
+            check.whole("transitions", 1, 6)
+            check.whole("seeds", 1, 1000)
+            check.number("walked", 0.5, 3600.0, "s")
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+
+    def quick(self) -> "Terrain":
+        """Three grounds, one seed, a short walk, two transitions on even ground."""
+        return replace(
+            self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
+        )
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return three postures of the robot's own gait, low, usual and high, as far as its limbs reach.
+
+        Raises:
+            UnsuitedRobot: its own gait puts no feet at a height.
+        """
+        usual = own_gait(robot)
+        if not usual.has("foot paths"):
+            raise UnsuitedRobot(f"{self.name()} needs a gait of foot paths; robot {robot.name!r} has {usual.name!r}.")
+        more = usual.period / self.semi_erect.period * _STEPS
+        found: dict[str, Any] = {"walked": round(self.walked * more, 2)}
+        for name, share in _LADDER.items():
+            heights = [usual.height * (1.0 + part * (share - 1.0)) for part in (1.0, 0.5, 0.25, 0.0)]
+            tried = [replace(usual, name=f"{usual.name}_{name}", height=height) for height in heights]
+            found[name] = usual if share == 1.0 else next(gait for gait in tried if suits(robot, gait))
+        return found
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Walk on every ground, and turn every posture into every other."""
+        rough = self._rough(staged(progress, "grounds", 0.0, 0.9))
+        changed = self._changes(staged(progress, "transitions", 0.9, 0.97))
+        record = self._example(staged(progress, "example", 0.97, 1.0)).merge(rough).merge(changed)
+        return Simulated(record=record, replays=self._replays(record))
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least; for those of crawl and high walk nobody else walks."""
+        names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
+        if not all(name in _OF_TWO or name.startswith("transition") for name in names):
+            return super(Terrain, self).measured(wanted, progress)
+        on_rough = any(name in _OF_ROUGH for name in names)
+        asked = self if on_rough else replace(self, bumps=(), steps=(), stones=())
+        walked = asked._rough(staged(progress, "grounds", 0.0, 0.9), _TWO)
+        changed = self._changes(staged(progress, "transitions", 0.9, 1.0))
+        found, rough = _flat(walked) | _transitions(changed), _from_rough(walked)
+        return found | _rough(rough) | _falls(rough) if on_rough else found
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
+        rough = _from_rough(record)
+        measures = Measures()
+        for arm in record.arm.values:
+            of_arm = record.sel(arm=arm)
+            flat = of_arm.isel(ground=0, seed=0)
+            measures |= {
+                f"flat_forward_{arm}": Measure(float(flat.forward), "m"),
+                f"flat_cost_{arm}": Measure(float(flat.cost), "-"),
+                f"falls_{arm}": Measure(float(of_arm.fell.sum()), "-"),
+                f"belly_{arm}": Measure(float(of_arm.belly.mean()), "-"),
+                f"aside_{arm}": Measure(float(abs(of_arm.aside).mean()), "m"),
+            }
+            for kind in dict.fromkeys(record.kind.values):
+                covered = of_arm.isel(ground=np.flatnonzero((record.kind.values == kind) & (record.height.values > 0)))
+                measures[f"kept_{kind}_{arm}"] = Measure(float(covered.forward.mean() / flat.forward), "-")
+                measures[f"met_{kind}_{arm}"] = Measure(float(covered.met.mean()), "-")
+        low = record.isel(ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _EVEN))
+        share = _share_of_best(record)
+        return measures | {
+            **_flat(record),
+            **_rough(rough),
+            **_falls(rough),
+            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
+            "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
+            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
+            "grounds": Measure(float(record.sizes["ground"]), "-"),
+            "switching_falls_up_to_40_mm": Measure(float(low.fell.sel(arm="switching").sum()), "-"),
+            **_transitions(record),
+        }
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what each posture keeps of its displacement on rough ground, and what switching is worth."""
+        shares = {kind: measures.get(f"kept_{kind}_low_crawl", nan) for kind in ("bumps", "step", "stone")}
+        return self.told(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
+
+    def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        height = f"{1000 * self._shown_height:.3g}"
+        return replayed(
+            "terrain_replay.html",
+            record.isel(run=1),
+            self.robot,
+            ghost=record.isel(run=0),
+            labels=("semi-erect", "low crawl"),
+            title="Over bumps, semi-erect and low",
+            caption=f"Semi-erect with the IMU, and, half transparent, low, over one field of {height} mm bumps.",
+        )
+
+    def _shown_relief(self) -> Bumps:
+        return self._bumps(self._shown_height, self.correlations[-1], 2)
+
+    @property
+    def _shown_height(self) -> float:
+        return 0.04 * self._size
+
+    @property
+    def _size(self) -> float:
+        """How long the robot is beside the article's [-]."""
+        return round(self.robot.length / ROBOTS["caiman"].length, 9)
+
+    def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
+        size = self._size
+        return Bumps(height=height, correlation=correlation, start=BEFORE * size, seed=seed, scale=size)
+
+    def arms(self) -> Mapping[str, tuple[Gait, Control]]:
+        """Return gait and control of every condition."""
+        ladder, level = (self.crawl, self.semi_erect, self.high_walk), AttitudeRule()
+        arms: dict[str, tuple[Gait, Control]] = {
+            "low_crawl": (self.crawl, Walking()),
+            "semi_erect": (self.semi_erect, Walking(attitude=level)),
+            "high_walk": (self.high_walk, Walking()),
+            "high_walk_level": (self.high_walk, Walking(attitude=level)),
+            "switching": (self.semi_erect, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=1))),
+        }
+        if self.thrifty:
+            arms["thrifty"] = (self.crawl, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=0)))
+        return arms
+
+    def grounds(self) -> list[tuple[str, float, list[Relief | None]]]:
+        """Return kind, height and the relief of every seed."""
+        places = np.random.default_rng(0).uniform(-1.0, 1.0, (self.seeds, 2))
+        size = self._size
+        rows: list[tuple[str, float, list[Relief | None]]] = [("bumps", 0.0, [None] * self.seeds)]
+        for height in self.bumps:
+            lengths = [self.correlations[seed % len(self.correlations)] for seed in range(self.seeds)]
+            fields = [self._bumps(height, length, seed) for seed, length in enumerate(lengths)]
+            rows.append(("bumps", height, list(fields)))
+        for height in self.steps:
+            rows.append(("step", height, [Step(at=float((0.66 + 0.06 * x) * size), height=height) for x, _ in places]))
+        for height in self.stones:
+            stones = [
+                replace(
+                    STONE,
+                    at=float((0.75 + 0.05 * x) * size),
+                    aside=float(0.02 * y * size),
+                    height=height,
+                    length=STONE.length * size,
+                    width=STONE.width * size,
+                )
+                for x, y in places
+            ]
+            rows.append(("stone", height, list(stones)))
+        return rows
+
+    def _rough(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
+        """Return how all conditions, or those that are named, fare on every ground."""
+        grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
+        runs = [
+            self.tolerances.built(
+                Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm, seed=seed),
+                seed,
+            )
+            for _, _, reliefs in grounds
+            for arm, (gait, control) in arms.items()
+            for seed, relief in enumerate(reliefs)
+        ]
+        record = simulate(runs, duration=START + self.walked, timestep=self.timestep, every=5, progress=progress)
+        met = [_met(record.isel(run=j), run) for j, run in enumerate(runs)]
+        table = _look(record, met).reshape(len(grounds), len(arms), -1, len(_UNITS))
+        data = xr.Dataset(
+            {
+                name: (("ground", "arm", "seed"), table[..., i], {"units": unit})
+                for i, (name, unit) in enumerate(_UNITS.items())
+            },
+            coords={"arm": list(arms), "kind": ("ground", [kind for kind, _, _ in grounds])},
+        )
+        data["height"] = ("ground", [height for _, height, _ in grounds], {"units": "m"})
+        data["walked"] = ((), self.walked, {"units": "s"})
+        data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
+        return data
+
+    @property
+    def _pace(self) -> float:
+        """How slow the robot is beside the article's, by the time that gravity needs [-]; a second of it [s]."""
+        return self._size**0.5
+
+    def _until(self, seconds: float) -> float:
+        """Return a time after the start, scaled with the body, at a sample of the record [s]."""
+        sample = 5 * control_period(self.robot)
+        return START + float(np.ceil(round(seconds * self._pace / sample, 6)) * sample)
+
+    def _changes(self, progress: Any) -> xr.Dataset:
+        """Return how far the body tilts while every posture turns into every other."""
+        pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
+        bumps = self._bumps(0.03 * self._size, self.correlations[-1], 1)
+        runs = [
+            Run(
+                robot=self.robot,
+                gait=here,
+                control=Walking(attitude=AttitudeRule(), changes=(Change(at=START + self._pace, gait=there),)),
+                ground=Ground(relief=bumps if surface == "bumps" else None),
+                label=f"{here.name} to {there.name}",
+            )
+            for here, there in pairs
+            for surface in self.surfaces
+        ]
+        record = simulate(runs, duration=self._until(6.0), timestep=self.timestep, every=5, progress=progress)
+        tilted = _most_tilt(record).reshape(len(pairs), len(self.surfaces))
+        after = displacement(record, self._until(4.6)).sel(xyz="x").values.reshape(len(pairs), len(self.surfaces))
+        return xr.Dataset(
+            {
+                "change_tilt": (("change", "surface"), tilted, {"units": "rad"}),
+                "change_after": (("change", "surface"), after, {"units": "m"}),
+            },
+            coords={"change": [f"{a.name} to {b.name}" for a, b in pairs], "surface": list(self.surfaces)},
+        )
+
+    def _example(self, progress: Any) -> xr.Dataset:
+        """Return three robots on one field of bumps, for the figure."""
+        arms = self.arms()
+        relief = self._shown_relief()
+        runs = [
+            Run(robot=self.robot, gait=arms[arm][0], control=arms[arm][1], ground=Ground(relief=relief), label=arm)
+            for arm in ("low_crawl", "semi_erect", "high_walk_level")
+        ]
+        record = simulate(runs, duration=START + self.walked / 2, timestep=self.timestep, every=5, progress=progress)
+        along = np.arange(-1.2, 2.4, 0.01) * self._size
+        shown = xr.Dataset(
+            {"ground_height": ("along", profile(relief, along), {"units": "m"})}, coords={"along": along}
+        )
+        shown.along.attrs["units"] = "m"
+        shown["shown_height"] = ((), self._shown_height, {"units": "m", "long_name": "of the bumps that are shown"})
+        return record.merge(shown)
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the postures on bumps, and the distance on every ground."""
+        record = outcome.record
+        said = "the sprawled crawl, semi-erect legs, and erect legs with elbows behind and knees ahead"
+        if not self.high_walk.erect:
+            said = "the robot's own gait low, as usual and high"
+        return {"postures": draw_on_bumps(self.robot, record, said), "rough_ground": draw_rough(record, GAIT_LINES)}
+
+
+_UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1", "met": "1"}
+
+
+def _look(record: xr.Dataset, met: Sequence[bool]) -> np.ndarray:
+    """Return what ``_UNITS`` names, shape (run, 7)."""
+    part, displaced = between(record), displacement(record)
+    columns: Sequence[Any] = (
+        displaced.sel(xyz="x"),
+        displaced.sel(xyz="y"),
+        heading_change(record),
+        _most_tilt(record) > FALLEN,
+        cost_of_transport(record),
+        (part.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
+        met,
+    )
+    return np.stack([np.asarray(column, dtype=float) for column in columns], axis=-1)
+
+
+def _met(one: xr.Dataset, run: Run) -> bool:
+    """Return whether a robot met what stands in its path; on even ground there is nothing to be met."""
+    place = layout(run.robot)
+    relief, feet = run.ground.relief, one.foot_position.isel(leg=[0, 1]).sel(xyz="x")
+    head, foot = place.robot.axis[0], place.limbs[0].girdle.limb.foot.radius
+    match relief:
+        case Bumps():
+            return bool(feet.max() >= relief.start)
+        case Step():
+            return bool(feet.max() >= relief.at - foot - _AT * run.robot.length)
+        case Stone():
+            chest = float(one.snout.sel(xyz="x").max()) - (head.front + head.rear)
+            pressed = bool((one.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * run.robot.mass).any())
+            return pressed or chest >= relief.at - 0.5 * relief.length
+    return True
+
+
+def _most_tilt(record: xr.Dataset) -> np.ndarray:
+    angles = tilt(between(record))
+    return np.maximum(abs(angles["roll"]).max("time").values, abs(angles["pitch"]).max("time").values)
+
+
+def _flat(record: xr.Dataset) -> Measures:
+    """Return what the crawl costs on even ground, of what the high walk costs, of robots as built."""
+    cost = record.isel(ground=0).cost
+    ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
+    return estimated("flat_cost_ratio", ratio, "-")
+
+
+def _rough(rough: xr.Dataset) -> Measures:
+    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little.
+
+    Each seed of each kind and height is a ground of its own, and a robot of its own.
+    """
+    met = float(rough.met.sel(arm=list(_COMPARED)).mean("seed").min()) if rough.sizes["ground"] else 0.0
+    walked = rough.forward.stack(one=("ground", "seed"))
+    crawl, erect, level = (walked.sel(arm=arm, drop=True) for arm in _TWO)
+    met_enough = met >= 1.0
+    ahead_of_both = Measures()
+
+    def share(name: str, ahead: xr.DataArray) -> Measures:
+        return estimated(name, ahead.astype(float) if met_enough else [float("nan")], "-", middle=np.mean)
+
+    if "semi_erect" in rough.arm.values:
+        semi = walked.sel(arm="semi_erect", drop=True)
+        ahead_of_both = share("semi_erect_ahead_of_both_share", (semi > level) & (semi > crawl))
+    return Measures(
+        {
+            "met_judged": Measure(met, "-"),
+            "rough_grounds": Measure(float(rough.sizes["ground"] * rough.sizes["seed"]), "-"),
+        },
+        share("erect_open_loop_ahead_share", erect > crawl),
+        share("erect_ahead_share", level > crawl),
+        ahead_of_both,
+    )
+
+
+def _from_rough(record: xr.Dataset) -> xr.Dataset:
+    """Return what happened on rough grounds."""
+    return record.isel(ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _EVEN))
+
+
+def _falls(rough: xr.Dataset) -> Measures:
+    """Return how often each condition fell on rough grounds."""
+    fell = rough.fell.sum(("ground", "seed"))
+    return Measures((f"falls_rough_{arm}", Measure(float(fell.sel(arm=arm)), "-")) for arm in rough.arm.values)
+
+
+def _transitions(record: xr.Dataset) -> Measures:
+    """Return how many transitions stay upright, and how far the robot walks after them at least."""
+    return Measures(
+        {
+            "transitions": Measure(float(record.change_tilt.size), "-"),
+            "transitions_upright": Measure(float((record.change_tilt < FALLEN).mean()), "-"),
+            "transition_after_least": Measure(float(record.change_after.min()), "m"),
+        },
+        {
+            f"transition_tilt_{surface}": Measure(float(record.change_tilt.sel(surface=surface).max()), "rad")
+            for surface in record.surface.values
+        },
+        {"transition_tilt": Measure(float(record.change_tilt.max()), "rad")},
+    )
+
+
+def _share_of_best(record: xr.Dataset) -> xr.DataArray:
+    """Return the displacement of the switching robot over that of the best single posture, by ground [-]."""
+    distance = record.forward.mean("seed")
+    return distance.sel(arm="switching", drop=True) / distance.sel(arm=list(SINGLE)).max("arm")
+
+
+experiment = Terrain()

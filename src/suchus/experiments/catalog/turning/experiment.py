@@ -1,0 +1,255 @@
+"""How tightly does it turn, and does it walk the circle that was asked for?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.robot.control import TurningCurve, Walking, turn
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.core.checks import Checks
+from suchus.robot.design.scale import control_period
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.experiments.catalog._replayed import replayed
+from suchus.visual.figures.gait_diagram import gait_lines
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import heading_change
+from suchus.robot.motion import START, Gait, trunk_amplitude
+from suchus.robot.robots import ROBOTS
+
+_STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turning(Experiment):
+    """Curvature of the path against curvature offset, unequal strokes, and both; then circles on command.
+
+    The curvature is the change of heading over the path length, over whole cycles from the second on. The path is
+    measured from cycle to cycle, so that the swaying within one does not count. Bends stop where the trunk's joints do.
+    """
+
+    title = "How tightly does it turn, and does it walk the circle that was asked for?"
+    shows = "Section II.B"
+    answers = (
+        "tightest_bend_low_crawl",
+        "tightest_bend_semi_erect",
+        "tightest_bend_high_walk",
+        "tightest_both_semi_erect",
+    )
+    needs = ("limbs",)
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that turns."""
+    gaits: tuple[Gait, ...] = field(
+        default_factory=lambda: tuple(GAITS[n] for n in ("low_crawl", "semi_erect", "high_walk"))
+    )
+    """The gaits that it walks in."""
+    bends: tuple[float, ...] = (0.0, 0.17, 0.35, 0.52, 0.79)
+    """Curvature offsets of the trunk [rad]."""
+    asymmetries: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    """Fractions by which left strokes are shorter and right ones longer [-]."""
+    mixtures: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
+    """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
+    asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
+    """Radii of the commanded circles [m]."""
+    cycles: int = 10
+    """Number of cycles that are measured, after one more [-]."""
+    timestep: float = 0.005
+    """Time step of the physics [s], at most 0.01."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.rising("bends", 0.0, 2.0, "rad")
+            check.rising("asymmetries", 0.0, 1.0, "")
+            check.rising("mixtures", 0.0, 1.0, "")
+            check.rising("asked", 0.05, 1000.0, "m")
+            check.whole("cycles", 1, 1000)
+            check.number("timestep", 1e-5, control_period(self.robot), "s")
+            check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
+
+    def quick(self) -> "Turning":
+        """One gait, three mixtures, one circle."""
+        return replace(
+            self,
+            gaits=(GAITS["semi_erect"],) if GAITS["semi_erect"] in self.gaits else self.gaits[:1],
+            bends=(0.0, 0.52),
+            asymmetries=(0.0, 0.5),
+            mixtures=(0.0, 0.5, 1.0),
+            asked=(1.0,),
+            cycles=3,
+        )
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Turn in every gait, and walk circles on command."""
+        rows, shown = [], []
+        for i, gait in enumerate(self.gaits):
+            share = i / len(self.gaits), (i + 1) / len(self.gaits)
+            row, pair = self._of(gait, staged(progress, gait.name, *share))
+            rows.append(row)
+            shown.append(pair)
+        record = xr.concat(rows, "gait").assign_coords(gait=[gait.name for gait in self.gaits])
+        tightest = int(record.curvature_mixture.max("mixture").values.argmax())
+        return Simulated(record=record, replays=self._replays(shown[tightest]))
+
+    def _replays(self, pair: tuple[xr.Dataset, xr.Dataset]) -> Mapping[str, Replay]:
+        """Return the replay of the gait that turns tightest, and of its first circle."""
+        asked = f"on a circle of {self.asked[0]:.3g} m, or the tightest it can walk on command"
+        return replayed(
+            "turning_replay.html",
+            pair[0],
+            self.robot,
+            ghost=pair[1],
+            labels=("as tightly as it can", "on a circle"),
+            title=f"Turning, {str(pair[0].gait.item()).replace('_', ' ')}",
+            overlaid=True,
+            caption=f"Turning as tightly as it can, and, half transparent, {asked}.",
+        )
+
+    def _of(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
+        """Return the curvatures of one gait, and its tightest turn and first circle as records."""
+        room = self._room(gait)
+        bent = [Walking(bend=min(bend, room)) for bend in self.bends]
+        uneven = [Walking(asymmetry=share) for share in self.asymmetries]
+        most = min(self.bends[-1], room), self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0
+        mixed = [Walking(bend=m * most[0], asymmetry=m * most[1]) for m in self.mixtures]
+        record = self._walk(gait, [*bent, *uneven, *mixed], staged(progress, "", 0.0, 0.7))
+        found = self._curvatures(gait, record)
+        a, b = len(bent), len(bent) + len(uneven)
+        curve = _curve(most, self.mixtures, found[b:])
+        tightest = np.inf if curve is None else curve.tightest
+        circles = [mixed[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest)) for radius in self.asked]
+        circled = self._walk(gait, circles, staged(progress, "", 0.7, 1.0))
+        walked = self._curvatures(gait, circled)
+        data = xr.Dataset(
+            {
+                "curvature_bend": ("bend", found[:a], {"units": "1/m"}),
+                "curvature_asymmetry": ("asymmetry", found[a:b], {"units": "1/m"}),
+                "curvature_mixture": ("mixture", found[b:], {"units": "1/m"}),
+                "radius": (
+                    "asked",
+                    np.where(np.array(self.asked) >= tightest, 1.0 / np.maximum(walked, _STRAIGHT), np.nan),
+                    {"units": "m"},
+                ),
+            },
+            coords={
+                "bend": list(self.bends),
+                "asymmetry": list(self.asymmetries),
+                "mixture": list(self.mixtures),
+                "asked": list(self.asked),
+            },
+        )
+        for name, unit in (("bend", "rad"), ("asymmetry", "1"), ("mixture", "1"), ("asked", "m")):
+            data[name].attrs["units"] = unit
+        return data, (record.isel(run=b + int(found[b:].argmax())), circled.isel(run=0))
+
+    def _room(self, gait: Gait) -> float:
+        """Return how far the trunk can bend besides what the gait asks of it [rad]."""
+        yaw = list(layout(self.robot).trunk_yaw)
+        gait.needs_steering(self.name())
+        bent = trunk_amplitude(self.robot, gait)
+        return max(float(np.abs(servo_ranges(self.robot)[yaw]).min(axis=1, initial=np.inf).sum()) - bent, 0.0)
+
+    def _end(self, gait: Gait) -> float:
+        return START + (self.cycles + 1) * gait.period
+
+    def _walk(self, gait: Gait, controls: Sequence[Walking], progress: Any) -> xr.Dataset:
+        runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
+        return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
+
+    def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
+        """Return the curvature of each path [1/m]."""
+        end = self._end(gait)
+        cycles = START + gait.period * np.arange(1, self.cycles + 2)
+        points = record.centre_of_mass.sel(xyz=["x", "y"]).sel(time=cycles, method="nearest")
+        length = ((points.diff("time") ** 2).sum("xyz") ** 0.5).sum("time")
+        return np.asarray(heading_change(record, START + gait.period, end) / length)
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return the tightest radius of every gait by bend, by stroke and by both, and how well circles come out."""
+        measures = Measures()
+        for name in record.gait.values:
+            of_gait = record.sel(gait=name)
+            off = abs(of_gait.radius / of_gait.asked - 1.0)
+            measures |= {
+                f"tightest_bend_{name}": Measure(_radius(of_gait.curvature_bend), "m"),
+                f"tightest_asymmetry_{name}": Measure(_radius(of_gait.curvature_asymmetry), "m"),
+                f"tightest_both_{name}": Measure(_radius(of_gait.curvature_mixture), "m"),
+                f"circles_walked_{name}": Measure(float(of_gait.radius.notnull().sum()), "-"),
+                f"radius_off_{name}": Measure(float(off.max()), "-"),
+                f"bend_times_radius_{name}": Measure(
+                    float(of_gait.bend[-1] * _radius(of_gait.curvature_bend[-1:])), "m"
+                ),
+            }
+        return measures
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say by what each gait turns tightest, and how far commanded circles are off."""
+        names = [gait.name for gait in self.gaits]
+        return self.told(
+            measures,
+            circles=len(names) * len(self.asked),
+            walked=sum(measures[f"circles_walked_{name}"] for name in names),
+            off=max(measures[f"radius_off_{name}"] for name in names),
+        )
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw curvatures and circles."""
+        return {"turning": draw_turning(outcome.record, gait_lines(outcome.record.gait.values))}
+
+
+def _curve(most: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve | None:
+    """Return the part of a measured curve that rises; None where nothing does."""
+    level, rising = curvatures, 1
+    while rising < len(level) and level[rising] > level[rising - 1] + _STRAIGHT:
+        rising += 1
+    if rising < 2:
+        return None
+    return TurningCurve(
+        bend=most[0],
+        asymmetry=most[1],
+        mixtures=tuple(float(m) for m in mixtures[:rising]),
+        curvatures=tuple(float(c) for c in level[:rising]),
+    )
+
+
+def _radius(curvature: xr.DataArray) -> float:
+    return float(1.0 / max(float(curvature.max()), _STRAIGHT))
+
+
+def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
+    """Draw curvature against bend and asymmetry, and asked against measured radius."""
+    with styled():
+        figure, axes = panels(1, 3, width=11.5, height=4.0)
+        for ax, name, label, scale in (
+            (axes[0, 0], "bend", "curvature offset of the trunk [deg]", 180 / np.pi),
+            (axes[0, 1], "asymmetry", "asymmetry of strokes [-]", 1.0),
+        ):
+            for gait in record.gait.values:
+                ax.plot(scale * record[name], record[f"curvature_{name}"].sel(gait=gait), **lines[str(gait)])
+            ax.set_xlabel(label)
+            ax.set_ylabel("curvature of the path [1/m]")
+            ax.set_ylim(-0.1, max(2.8, 1.05 * float(record.curvature_mixture.max())))
+        axes[0, 0].legend(loc="upper left")
+        ax = axes[0, 2]
+        asked = record.asked.values
+        ax.fill_between(asked, 0.9 * asked, 1.1 * asked, color="#E3E3E3", zorder=0, label="within 10 %")
+        ax.plot(asked, asked, color=COLOURS["neutral"], linewidth=0.9)
+        for gait in record.gait.values:
+            style = dict(lines[str(gait)]) | {"linestyle": "none", "label": None}
+            ax.plot(asked, record.radius.sel(gait=gait), **style)
+        ax.set_xlabel("commanded radius [m]")
+        ax.set_ylabel("measured radius [m]")
+        ax.legend(loc="upper left")
+    return captioned(
+        figure,
+        "How the robot turns: left and middle, curvature of its path with a bent trunk and with unequal strokes; "
+        "right, a turn command that mixes both.",
+    )
+
+
+experiment = Turning()

@@ -1,0 +1,178 @@
+"""How much room does the snout reach, on four feet and on hind feet and tail?"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from suchus.robot.design import LEGS, Robot
+from suchus.core.checks import Checks
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.visual.figures import captioned
+from suchus.visual.figures.style import COLOURS, panels, styled
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
+from suchus.robot.motion.working_space import Extent, Reached, extent, outline, reached
+from suchus.robot.robots import ROBOTS
+
+STATES = ("crawling", "standing")
+"""On four feet; on hind feet and tail."""
+_ROLES = ("limbs_only", "coordinated")
+_VIEWS = (("from the side", (0, 2), "height [m]"), ("from above", (0, 1), "to the left [m]"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkingSpace(Experiment):
+    """Volume and side-view area that the tip of the snout reaches without a step, by kinematics and balance.
+
+    It needs a robot with four legs, a trunk that bends, a head and a tail, and a gait that says where its feet stand.
+    """
+
+    title = "How much room does the snout reach, on four feet and on hind feet and tail?"
+    shows = "Section IV.D, Figs 23 and 24"
+    answers = ("volume_crawling", "volume_standing", "volume_ratio", "area_ratio", "highest_standing")
+    needs = ("legs", "shells", "article_spine", "tail")
+    judged_with = ("robot", "gait")
+    judged_from: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot that reaches."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """Gait whose stance gives the places of the feet."""
+    crawling: int = 2**19
+    """Configurations that are drawn on four feet; about one in two hundred is possible [-]."""
+    standing: int = 2**18
+    """Configurations that are drawn on hind feet and tail; about one in ten is possible [-]."""
+    cell: float = 0.025
+    """Edge of the cells that are counted [m]."""
+    seed: int = 0
+    """Seed of the drawing [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks(self.name(), self) as check:
+            check.whole("crawling", 1, 2**24)
+            check.whole("standing", 1, 2**24)
+            check.whole("seed", 0, 2**31)
+            check.number("cell", 0.002, 0.2, "m")
+
+    def quick(self) -> "WorkingSpace":
+        """Return it with few configurations in coarse cells."""
+        return replace(self, crawling=2**15, standing=2**13, cell=0.04)
+
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Draw configurations and keep those that can be."""
+        record = xr.Dataset(attrs={"cell": self.cell}, coords={"xyz": ["x", "y", "z"], "leg": ["LF", "LH"]})
+        for state, share in zip(STATES, (0.0, 0.6), strict=True):
+            progress(state, share)
+            found = reached(
+                self.robot, self.gait, standing=state == "standing", count=getattr(self, state), seed=self.seed
+            )
+            record[f"snout_{state}"] = ((f"kept_{state}", "xyz"), found.snout, {"units": "m"})
+            record[f"tried_{state}"] = ((), found.tried, {"units": "1"})
+            record = record.merge(_highest(self.robot, found, state))
+        return Simulated(record=record)
+
+    def measure(self, record: xr.Dataset) -> Measures:
+        """Return volumes, areas and heights of both states with what the counting leaves open."""
+        cell, rooms = record.attrs["cell"], {}
+        measures = Measures()
+        for state in STATES:
+            snout = record[f"snout_{state}"].values
+            both = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])  # what a robot can do, its mirror image can
+            rooms[state] = {"volume": (extent(both, cell), "m3"), "area": (extent(snout[:, [0, 2]], cell), "m2")}
+            for name, (room, unit) in rooms[state].items():
+                measures |= {
+                    f"{name}_{state}": Measure(room.value, unit),
+                    f"{name}_{state}_low": Measure(room.low, unit),
+                    f"{name}_{state}_high": Measure(room.high, unit),
+                }
+            measures[f"highest_{state}"] = Measure(float(snout[:, 2].max()) if len(snout) else float("nan"), "m")
+            measures[f"possible_{state}"] = Measure(len(snout) / float(record[f"tried_{state}"]), "-")
+        for name in ("volume", "area"):
+            low, high = (rooms[state][name][0] for state in STATES)
+            measures |= {f"{name}_ratio{end}": Measure(v, "-") for end, v in _quotient(high, low).items()}
+        return measures
+
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Draw the room from the side and from above."""
+        return {
+            "working_space": captioned(
+                room(outcome.record, STATES),
+                "Where the tip of the snout can be without a step: on four feet (orange) and on hind feet and tail "
+                "(blue), from the side and from above, with the configuration of each that reaches highest. Feet stand "
+                f"as in the gait; cells of {1000 * self.cell:g} mm.",
+            )
+        }
+
+
+def _quotient(over: Extent, under: Extent) -> dict[str, float]:
+    """Return the ratio of two extents by end; NaN where there is nothing to compare with."""
+    pairs = {"": (over.value, under.value), "_low": (over.low, under.high), "_high": (over.high, under.low)}
+    return {end: a / b if b > 0 else float("nan") for end, (a, b) in pairs.items()}
+
+
+def _highest(robot: Robot, room: Reached, state: str) -> xr.Dataset:
+    """Return the body's line and the left legs of the configuration that reaches highest [m]."""
+    if not len(room.snout):
+        return xr.Dataset()
+    best = int(np.argmax(room.snout[:, 2]))
+    line, legs = outline(robot, room.angles[best : best + 1], room.pelvis[best : best + 1])
+    metres = {"units": "m"}
+    left = [LEGS.index("LF"), LEGS.index("LH")]
+    return xr.Dataset(
+        {
+            f"body_{state}": (("point", "xyz"), line[0], metres),
+            f"legs_{state}": (("leg", "end", "xyz"), legs[0, left], metres),
+        }
+    )
+
+
+def room(record: xr.Dataset, states: Sequence[str]) -> Figure:
+    """Draw the cells that the snout reaches in two states, and the highest configuration of each.
+
+    Args:
+        record: with ``snout_STATE`` (kept, xyz), ``body_STATE`` (point, xyz), ``legs_STATE`` (leg, end, xyz) [m].
+        states: their names, the smaller room first.
+    """
+    with styled():
+        figure, axes = panels(1, 2, width=12.0, height=5.6)
+        for ax, (title, (across, up), label) in zip(axes[0], _VIEWS, strict=True):
+            for state, role in reversed(tuple(zip(states, _ROLES, strict=True))):
+                snout, colour = record[f"snout_{state}"].values, COLOURS[role]
+                if up == 1:
+                    snout = np.concatenate([snout, snout * [1.0, -1.0, 1.0]])
+                _cells(ax, snout[:, [across, up]], record.attrs["cell"], colour)
+                ax.plot([], [], "s", color=colour, alpha=0.55, markersize=10, label=state)
+            for state, role in zip(states, _ROLES, strict=True):
+                if f"body_{state}" in record:
+                    _posture(ax, record, state, (across, up), COLOURS[role])
+            ax.set_aspect("equal")
+            ax.set(title=title, xlabel="ahead of the hind feet [m]", ylabel=label)
+        axes[0, 0].axhline(0.0, color=COLOURS["ground"], linewidth=2.0, zorder=1)
+        axes[0, 0].legend(loc="upper left")
+    return figure
+
+
+def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
+    """Fill the cells that hold a point."""
+    if len(points) == 0:
+        return
+    edges = [np.arange(p.min(), p.max() + 2 * cell, cell) for p in points.T]
+    counts, _ = np.histogramdd(points, bins=edges)
+    there = np.ma.masked_equal(counts.T > 0, False)
+    ax.pcolormesh(*edges, there, cmap=ListedColormap([colour]), alpha=0.38, antialiased=False, linewidth=0, zorder=1)
+
+
+def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], colour: str) -> None:
+    body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
+    ax.plot(*body.T, color=colour, linewidth=4.0, solid_capstyle="round", solid_joinstyle="round", zorder=3)
+    for leg in legs:
+        ax.plot(*leg.T, color=colour, linewidth=2.2, marker="o", markersize=4, zorder=3)
+    ax.plot(*body[-1], "o", color=colour, markersize=7, markeredgecolor="white", zorder=4)
+
+
+experiment = WorkingSpace()

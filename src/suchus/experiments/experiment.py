@@ -1,0 +1,501 @@
+"""The contract of an experiment: a frozen question, its outcome, and verdicts on the article's claims."""
+
+import re
+import sys
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field, fields, replace
+from functools import cache
+from math import isfinite
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+import numpy as np
+import xarray as xr
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
+from jinja2.ext import Extension
+
+from suchus.robot.design import Robot, check_needs
+from suchus.robot.design.scale import coarse_step, control_period, scaled_fields
+from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
+from suchus.robot.gaits import in_size, own_gait
+from suchus.robot.motion import Gait, check_limits, suits
+from suchus.core.progress import Progress, silent, staged
+from suchus.article.verdict import Reading, Rule, Verdict, compared, judge, listed
+from suchus.experiments.claims import rules_of
+
+__all__ = [
+    "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged",
+    "silent", "staged", "stopwatch", "templates", "write",
+]  # fmt: skip
+EXPLANATION = "explanation.md"
+"""Template of what an experiment in a folder says decided its outcome."""
+_NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A number with its unit."""
+
+    value: float
+    unit: str
+    """SI unit, ``-`` for none."""
+
+
+class Measures(dict[str, Measure]):
+    """Numbers by name, each name once: a second number of a name is refused, and never overwrites the first.
+
+    ``Measures(one, other)``, ``one | other``, ``one |= other`` and ``one[name] = number`` all hold to that.
+    """
+
+    def __init__(self, *parts: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> None:
+        super().__init__()
+        for part in parts:
+            self |= part
+
+    def __setitem__(self, name: str, measure: Measure) -> None:
+        """Add a number.
+
+        Raises:
+            AmbiguousName: there is one of that name.
+        """
+        if name in self:
+            there, new = (f"{one.value:g} {one.unit}" for one in (self[name], measure))
+            raise AmbiguousName("measure", name, there, new)
+        super().__setitem__(name, measure)
+
+    def __ior__(self, other: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
+        for name, measure in other.items() if isinstance(other, Mapping) else other:
+            self[name] = measure
+        return self
+
+    def __or__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(self, other)
+
+    def __ror__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(other, self)
+
+    def update(self, *parts: Any, **named: Measure) -> None:
+        """Add numbers, as ``|=``."""
+        self |= Measures(*parts, named)
+
+
+_RESAMPLES = 2000
+"""Number of times an ensemble is drawn anew for an interval [-]."""
+_COVERED = 0.95
+"""Share of the resamples whose middle lies in the interval [-]."""
+
+
+def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> Measures:
+    """Return the middle of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
+
+    The interval is that of the bootstrap (Efron 1979): the middle of ensembles that are drawn from this one with
+    replacement, by the same draws for every ensemble of this size. It tells how well the repeats know the middle, and
+    becomes narrower with their number.
+
+    Args:
+        name: of the measure.
+        repeats: a number of every repeat; none that is not finite makes a middle.
+        unit: of the numbers.
+        middle: median or mean, along an axis.
+    """
+    values = np.asarray(repeats, float).ravel()
+    found = float(middle(values, axis=-1))
+    if np.isfinite(values).all():
+        low, high = np.quantile(middle(values[_drawn(values.size)], axis=-1), [(1 - _COVERED) / 2, (1 + _COVERED) / 2])
+    else:
+        low = high = found
+    return Measures(
+        {
+            name: Measure(found, unit),
+            f"{name}_low": Measure(float(min(low, found)), unit),
+            f"{name}_high": Measure(float(max(high, found)), unit),
+        }
+    )
+
+
+@cache
+def _drawn(count: int) -> np.ndarray:
+    """Return which repeats each resample holds."""
+    return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
+
+
+def ranged(name: str, value: Any, repeats: Any, unit: str) -> Measures:
+    """Return a number as ``NAME``, and the least and the greatest of its repeats as ``NAME_low`` and ``NAME_high``."""
+    return Measures({name: Measure(float(value), unit)}, ends(name, repeats, unit))
+
+
+def ends(name: str, values: Any, unit: str) -> Measures:
+    """Return the least and the greatest of some values as ``NAME_low`` and ``NAME_high``."""
+    low, high = (Measure(float(end(values)), unit) for end in (np.min, np.max))
+    return Measures({f"{name}_low": low, f"{name}_high": high})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replay:
+    """A run to look at: a page of its own that plays in a browser."""
+
+    caption: str
+    """Caption: what the replay shows."""
+    make: Callable[[], str]
+    """Makes the page, when it is wanted. See ``suchus.visual.replay``."""
+
+    @property
+    def html(self) -> str:
+        """The page; it needs nothing else."""
+        return self.make()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulated:
+    """What an experiment did, before anything is measured."""
+
+    record: xr.Dataset
+    """What happened; measures are read and figures are drawn from this alone."""
+    tables: Mapping[str, str] = field(default_factory=dict)
+    """Further text files to stand beside the figures, by file name."""
+    films: Mapping[str, bytes] = field(default_factory=dict)
+    """Moving pictures to stand beside the figures: a GIF by file name; see ``figures.film``."""
+    replays: Mapping[str, Replay] = field(default_factory=dict)
+    """Runs to look at, to stand beside the figures, by file name ending in .html."""
+    kept: tuple[Path, ...] = ()
+    """Files from which the run would have gone on; who has saved its outcome removes them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome(Simulated):
+    """The result: numbers, verdicts, and the record they were read from."""
+
+    experiment: str
+    """Name on the shelf."""
+    measures: Mapping[str, Measure]
+    """Every number, by name."""
+    verdicts: tuple[Verdict, ...]
+    """One for each claim that the experiment touches; none where ``unjudged`` says why."""
+    settings: Mapping[str, Any]
+    """The experiment's own fields, as plain values."""
+    decides: str = ""
+    """What decided the outcome: one paragraph for the report, made from the measures."""
+    unjudged: str = ""
+    """Why there are no verdicts, in a sentence; empty where the claims were judged."""
+    seconds: float = 0.0
+    """Wall-clock duration of the run [s]; of its last part where it went on from what an earlier one had kept."""
+
+
+CONDUCT = ("keep", "jobs", "scheduler")
+"""Names of fields that say where and by how many processes an experiment is conducted: they decide nothing of what
+comes out, and stand in no result."""
+
+
+class Experiment(ABC):
+    """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters.
+
+    A run simulates, measures what was recorded, judges the article's claims by the rules of ``suchus.article.verdict``, and
+    says what decided. Subclasses fill in ``simulate``, ``measure`` and ``draw``, and say what decided in
+    ``explanation.md`` beside them, or in ``explain``.
+    """
+
+    __slots__ = ()
+
+    title: ClassVar[str]
+    """The question in one line, as a person would ask it."""
+    shows: ClassVar[str]
+    """Which sections, figures or equations of the article it answers."""
+    answers: ClassVar[tuple[str, ...]] = ()
+    """Names of the measures that carry the answer: the terminal shows the first six of them that a run has, three at
+    least; the first that are finite where none is named."""
+    needs: ClassVar[tuple[str, ...]] = ()
+    """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
+    reproduces: ClassVar[bool] = True
+    """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
+    follows_gait: ClassVar[bool] = True
+    """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
+    judged_with: ClassVar[tuple[str, ...]] = ("robot",)
+    """Fields that must be as on the shelf for a verdict: another robot is not judged by the article's metres."""
+    judged_from: ClassVar[Mapping[str, float]] = {}
+    """Fields, and the least number (of a tuple: the least length) with which a run can answer what is judged."""
+
+    @property
+    def claims(self) -> tuple[str, ...]:
+        """Keys of the article's claims that get a verdict."""
+        return tuple(rule.claim for rule in self.rules())
+
+    @classmethod
+    def rules(cls) -> tuple[Rule, ...]:
+        """Return what decides each verdict."""
+        return rules_of(cls.name())
+
+    def run(self, progress: Progress = silent) -> Outcome:
+        """Answer the question.
+
+        Raises:
+            UnsuitedRobot: the robot lacks what the experiment needs.
+            OutsideLimits: the gait is one for other limbs, or asks its joints for more than they can.
+            InvalidDesign: a field holds two things of one name, so that their numbers would have one name too.
+        """
+        self._check_names()
+        if hasattr(self, "robot"):
+            check_needs(self.robot, self.needs, self.name())
+            gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
+            for gait in gaits if self.follows_gait else ():
+                check_limits(self.robot, gait)  # by the name that the user knows, before what is derived from it
+        with stopwatch() as seconds:
+            simulated = self.simulate(progress)
+            measures = self.measure(simulated.record)
+            numbers = {name: float(measure.value) for name, measure in measures.items()}
+            unjudged = self.unjudged()
+            return Outcome(
+                experiment=self.name(),
+                measures=measures,
+                verdicts=() if unjudged else self._judged(numbers, simulated.record),
+                record=simulated.record,
+                settings=self.settings(),
+                tables=simulated.tables,
+                films=simulated.films,
+                replays=simulated.replays,
+                kept=simulated.kept,
+                decides=" ".join(self.explain(numbers).split()),
+                unjudged=unjudged,
+                seconds=seconds(),
+            )
+
+    def _check_names(self) -> None:
+        for one in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, one.name)
+            held = value if isinstance(value, tuple) else ()
+            names = [part if isinstance(part, str) else part.name for part in held if isinstance(part, (str, Gait))]
+            twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+            if twice:
+                raise InvalidDesign(
+                    f"{self.name()}.{one.name} has {' and '.join(map(repr, twice))} more than once; leave one out, or "
+                    f"give it another name."
+                )
+
+    @abstractmethod
+    def simulate(self, progress: Progress = silent) -> Simulated:
+        """Do what is to be measured, and return the record of it."""
+
+    def _judged(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
+        unable = self.unable(record)
+        return tuple(judge(rule, numbers, unable=unable) for rule in self.rules())
+
+    def unable(self, record: xr.Dataset) -> Mapping[str, str]:
+        """Return why models could not be run, in a sentence, by the names of rungs; none by default."""
+        del record
+        return {}
+
+    @abstractmethod
+    def measure(self, record: xr.Dataset) -> Mapping[str, Measure]:
+        """Return every number, read from the record alone; ``Measures`` keep two from having one name."""
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
+        """Return measures, those that are wanted at least, as a run gives them.
+
+        By default all are simulated for; whoever has runs that some measures do not take leaves those runs out here.
+
+        Args:
+            wanted: names of measures.
+            progress: told the share that is done.
+        """
+        del wanted
+        return Measures(self.measure(self.simulate(progress).record))
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Return what decided the outcome, in a paragraph whose every statement follows from the measures.
+
+        It is the template ``explanation.md`` beside the experiment, see ``templates``, in which ``m`` holds the
+        measures by name, and ``question`` is the experiment.
+
+        Raises:
+            InvalidDesign: there is no such file.
+            BrokenFile: it cannot be filled in: it names a measure that there is not, or cannot be read.
+        """
+        return self.told(measures)
+
+    def told(self, measures: Mapping[str, float], **further: Any) -> str:
+        """Return the template ``explanation.md``, filled in with measures and what else it names; see ``explain``."""
+        folder = Path(getattr(sys.modules[type(self).__module__], "__file__", None) or ".").parent
+        try:
+            text = templates(folder).get_template(EXPLANATION).render(m=measures, question=self, **further)
+        except TemplateNotFound as error:
+            raise InvalidDesign(
+                f"{self.name()} does not say what decided: there is neither a method explain nor {EXPLANATION} in the "
+                f"folder {folder.name}; write one of them."
+            ) from error
+        except TemplateError as error:
+            names = ", ".join(list(measures)[:20]) + ", ..." * (len(measures) > 20)
+            raise BrokenFile(
+                f"{folder.name}/{EXPLANATION} cannot be filled in: {error}. The measures, m.NAME, are {names}."
+            ) from error
+        return re.sub(r" ([,.;:)])", r"\1", " ".join(text.split()))
+
+    @abstractmethod
+    def draw(self, outcome: Outcome) -> Mapping[str, Any]:
+        """Return matplotlib figures by name, drawn from ``outcome.record`` and nothing else.
+
+        The first line of each figure's ``suchus_caption`` attribute is its caption; see ``figures.captioned``.
+        """
+
+    @abstractmethod
+    def quick(self) -> "Experiment":
+        """Return the same question, small enough for a test."""
+
+    def on(self, robot: Robot) -> Self:
+        """Return the same question for another robot.
+
+        Where the robot is of about the same size, walks in the same gait and can follow the gaits, nothing else
+        changes. If not, they become its own gait, and lengths, times, forces and masses change with its size.
+
+        Raises:
+            UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
+        """
+        check_needs(robot, self.needs, self.name())
+        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        if "robot" not in names:
+            return self
+        values = {name: getattr(self, name) for name in names}
+        here: Robot = values["robot"]
+        gaits = [gait for value in values.values() for gait in _gaits(value)]
+        alike = control_period(robot) == control_period(here) and (not gaits or own_gait(robot) == own_gait(here))
+        if alike and all(suits(robot, gait) for gait in gaits):
+            return replace(self, robot=robot)  # type: ignore[type-var]
+        plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
+        sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
+        finer = coarse_step(robot) / coarse_step(here)  # time steps divide the control period
+        for name in names:
+            if "timestep" in name:
+                value = values[name]
+                sized[name] = tuple(finer * one for one in value) if isinstance(value, tuple) else finer * value
+        return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
+
+    def gaits_on(self, robot: Robot) -> dict[str, Any]:
+        """Return the fields that hold gaits, for a robot that cannot follow those of now or is of another size.
+
+        They are those of now in its size where it can follow them all and would walk so by itself, else its own gait.
+
+        Raises:
+            UnsuitedRobot: no gait on the shelf suits it.
+        """
+        here: Robot = self.robot  # type: ignore[attr-defined]
+        own, names = own_gait(robot), [one.name for one in fields(self)]  # type: ignore[arg-type]
+        held = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
+        if own.name == own_gait(here).name:
+            sized = {name: tuple(in_size(gait, robot, here) for gait in _gaits(value)) for name, value in held.items()}
+            if all(suits(robot, gait) for gaits in sized.values() for gait in gaits):
+                return {name: gaits if isinstance(held[name], tuple) else gaits[0] for name, gaits in sized.items()}
+        found = {"gait": own, "gaits": (own,)}
+        return {name: value for name, value in found.items() if name in names}
+
+    def unjudged(self) -> str:
+        """Return why a run with these settings gets no verdicts, in a sentence; empty if it does."""
+        if not self.rules():
+            return ""
+        shelf = type(self)()
+        for name in self.judged_with:
+            if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
+                here, there = (_called(getattr(one, name)) for one in (self, shelf))
+                here = f"another {here}" if here == there else here
+                return f"Not judged: {name} is {here}, and its claims are judged with {there}."
+        for name, least in self.judged_from.items():
+            value = getattr(self, name)
+            count = len(value) if isinstance(value, tuple) else value
+            if count < least:
+                what = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
+                return f"Not judged: {what}, and {least:g} at least are needed to meet what is judged."
+        return ""
+
+    def settings(self) -> dict[str, Any]:
+        """Return the fields as plain values, without those of ``CONDUCT``."""
+        return {name: value for name, value in asdict(self).items() if name not in CONDUCT}  # type: ignore[call-overload]
+
+    @classmethod
+    def name(cls) -> str:
+        """Return the name on the shelf: of the module, or of the folder whose module ``experiment`` it is."""
+        return cls.__module__.removesuffix(".experiment").rpartition(".")[2]
+
+
+def _gaits(value: Any) -> tuple[Gait, ...]:
+    """Return the gaits that a field holds."""
+    many = value if isinstance(value, tuple) else (value,)
+    return tuple(one for one in many if isinstance(one, Gait))
+
+
+def _called(value: Any) -> str:
+    """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
+    if isinstance(value, tuple):
+        return ", ".join(_called(one) for one in value)[:80]
+    return str(getattr(value, "name", value))[:80]
+
+
+class _NumberFormats(Extension):
+    """``{{ number:.3f }}`` in a template."""
+
+    def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:
+        """Return the template with formats as a filter."""
+        del name, filename
+        return _NUMBER.sub(r'{{ (\1) | write("\2") }}', source)
+
+
+@cache
+def templates(folder: Path) -> Environment:
+    """Return the Jinja templates of a folder, whose numbers are filled in by name.
+
+    ``{{ m.speed:.3f }}`` is written as Python's format does, or in another unit where the format begins with it, as
+    ``mm.1f`` (``suchus.article.verdict.Reading``); where the format is a variable, ``{{ m.speed | write(form) }}``. Beside
+    ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence,
+    ``either_sign(m, name)`` and ``spanned(m, name, form)`` for measures whose interval may hold both signs, the filter
+    ``sentence`` for parts any of which may be missing, and the test ``is finite``. A name that is not there is an
+    error.
+    """
+    environment = Environment(
+        loader=FileSystemLoader(folder),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        extensions=[_NumberFormats],
+        autoescape=False,
+    )
+    environment.filters |= {"write": write, "sentence": sentence}
+    environment.tests["finite"] = isfinite
+    environment.globals |= {"compared": compared, "listed": listed, "separator": separator}
+    environment.globals |= {"either_sign": either_sign, "spanned": spanned}
+    return environment
+
+
+def write(value: float, form: str) -> str:
+    """Return a number as written, zero without a minus."""
+    text = format(Reading(value), form)
+    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
+
+
+def either_sign(measures: Mapping[str, float], name: str) -> bool:
+    """Return whether the interval of a measure holds both signs, so that no sentence can say which it has."""
+    return measures.get(f"{name}_low", 0.0) < 0.0 < measures.get(f"{name}_high", 0.0)
+
+
+def spanned(measures: Mapping[str, float], name: str, form: str) -> str:
+    """Return a measure as written, or between which numbers it lies where its interval holds both signs."""
+    if not either_sign(measures, name):
+        return write(measures[name], form)
+    low, high = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
+    return f"between {low} and {high}"
+
+
+def separator(loop: Any) -> str:
+    """Return what stands before an item of a list in a sentence: nothing, a comma, or ``and`` before the last."""
+    return "" if loop.first else " and " if loop.last else ", "
+
+
+def sentence(parts: str) -> str:
+    """Return parts that stand one behind the other as a sentence; nothing of none."""
+    text = parts.strip(" \n,;")
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+@contextmanager
+def stopwatch() -> Iterator[Callable[[], float]]:
+    """Yield a function that returns the seconds since the block was entered."""
+    start = time.perf_counter()
+    yield lambda: time.perf_counter() - start

@@ -1,0 +1,144 @@
+"""What can be aimed at, and what can be limited: a number for each run of a batch."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from suchus.sim import metrics
+from suchus.robot.control import Standing
+from suchus.sim.land import Run
+from suchus.robot.motion import START
+from suchus.experiments.optimise.clearance import clearance
+
+Measured = Callable[[Sequence[Run], xr.Dataset], np.ndarray]
+"""From runs and their record to one number for each run."""
+_LOOKS = 0.04  # [s]; between looks at the parts' clearance: a hundredth of the article's cycle
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A quantity that can be aimed at or limited."""
+
+    measure: Measured
+    """Function that measures it from a record."""
+    unit: str
+    """SI unit, ``-`` for none."""
+    good: Literal["more", "less"]
+    """What is better; a limit is the least value where more is better, the greatest where less is."""
+    tells: str
+    """Description of the quantity."""
+    scale: float = 1.0
+    """What counts as one unit of excess where the limit itself is zero, in the unit."""
+
+
+def _forward(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.displacement(record).sel(xyz="x").values, dtype=float)
+
+
+def _sideways(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.abs(metrics.displacement(record).sel(xyz="y").values.astype(float))
+
+
+def _cost(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.cost_of_transport(record).values, dtype=float)
+
+
+def _height_std(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.height_std(record).values, dtype=float)
+
+
+def _roll(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.roll_peak_to_peak(record).values, dtype=float)
+
+
+def _turn(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.abs(metrics.heading_change(record).values.astype(float))
+
+
+def _slip(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.slip(record).values, dtype=float)
+
+
+def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return the root mean square of the torque of the highest-loaded servo, over its limit."""
+    torque = metrics.between(record).servo_torque.transpose("run", "time", "servo").values
+    names = [str(name) for name in record.servo.values]
+    limits = np.array([[run.robot.servo(name).torque for name in names] for run in runs])
+    return np.asarray((np.sqrt((torque**2).mean(axis=1)) / limits).max(axis=1))
+
+
+def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    step = float(record.time[1] - record.time[0])
+    every = max(1, round(_LOOKS / step))
+    part = metrics.between(record, START)
+    least = [float(clearance(run.robot, part.isel(run=i), every=every)) for i, run in enumerate(runs)]
+    return np.array(least)
+
+
+def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return how far the foot is lifted that is lifted least."""
+    del runs
+    return np.asarray(metrics.foot_clearance(record).min("leg").values, dtype=float)
+
+
+def _stands_most(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.duty_factor(record).max("leg").values, dtype=float)
+
+
+def _stands_least(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    del runs
+    return np.asarray(metrics.duty_factor(record).min("leg").values, dtype=float)
+
+
+def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return the least height reached while it is meant to stand; zero for a run that does not stand up."""
+    seconds = np.zeros(len(runs))
+    for i, run in enumerate(runs):
+        if isinstance(run.control, Standing):
+            height = metrics.reach(run.robot, record.isel(run=i))
+            up, down = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
+            while_up = height.sel(time=slice(up, down))
+            seconds[i] = float(while_up.min()) if while_up.sizes["time"] else 0.0
+    return seconds
+
+
+AIMS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "displacement": Kind(_forward, "m", "more", "displacement of the centre of mass along the first heading"),
+        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
+        "stability": Kind(_height_std, "m", "less", "standard deviation of the height of the centre of mass"),
+        "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis"),
+        "turning": Kind(_turn, "rad", "more", "change of heading, to whichever side"),
+        "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least"),
+        "standing_reach": Kind(_standing, "m", "more", "least height reached while standing on hind legs and tail"),
+    }
+)
+"""Quantities that a search can optimise, by name."""
+LIMITS: Mapping[str, Kind] = MappingProxyType(
+    {
+        "torque": Kind(_torque, "-", "less", "root mean square torque of the highest-loaded servo over its limit"),
+        "slip": Kind(_slip, "-", "less", "sliding of loaded feet over displacement"),
+        "clearance": Kind(_clearance, "m", "more", "least distance between parts of the body", 0.01),
+        "turn": Kind(_turn, "rad", "less", "change of heading", 0.1),
+        "sideways": Kind(_sideways, "m", "less", "displacement across the first heading", 0.1),
+        "roll": Kind(_roll, "rad", "less", "greatest less least roll of the pelvis", 0.1),
+        "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
+        "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
+        "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least", 0.01),
+        "duty_greatest": Kind(_stands_most, "-", "less", "share of the time in which the foot stands that stands most"),
+        "duty_least": Kind(_stands_least, "-", "more", "share of the time in which the foot stands that stands least"),
+    }
+)
+"""Quantities that a search can limit, by name."""

@@ -1,0 +1,273 @@
+"""Conducting a search: generation after generation, each kept, the best so far always on disk.
+
+At its end comes whether an optimum is one: with a finer time step, on other ground, begun otherwise; and what lies
+around it.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot import blueprint
+from suchus.core import large
+from suchus.robot.design import with_values
+from suchus.robot.design.scale import physics_step
+from suchus.core.errors import IncompatibleRecord, NotConverged
+from suchus.core.jobs import MADE_BY, InMemory, Job, Place, Store, Tally, deciding, finish, place_for
+from suchus.sim.land import Run, Tolerances, simulate
+from suchus.sim.land.extent import processor_seconds
+from suchus.experiments.optimise.aims import AIMS
+from suchus.experiments.optimise.evaluate import allowed, columns, evaluate, losses, measure, score, units
+from suchus.experiments.optimise.search import SearchResult, search, titled
+from suchus.experiments.optimise.spec import Optimisation
+from suchus.core.progress import Progress, portion, silent
+
+LIBRARIES = ("cma", "comocma", "moarchiving")
+"""Packages whose versions decide which candidates are tried."""
+ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
+"""Whose code decides what a candidate reaches."""
+_DECIDING = partial(deciding, ROOMS, LIBRARIES)
+_CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
+
+
+def optimise(
+    spec: Optimisation, folder: str | Path, *, progress: Progress = silent, client: Any = None
+) -> tuple[SearchResult, ...]:
+    """Search each condition, check what was found, and return it.
+
+    Generations are stored as they are finished: whatever stops the program, at most the running one is lost. Started
+    again it goes on, and ends with the same bytes as if nothing had happened. The best gait so far is always a file,
+    ``ARM.toml``; a robot that changes too is ``ARM_robot.toml``.
+
+    Args:
+        spec: the search; with more evaluations than before, an earlier one is continued.
+        folder: for its results and, below it, the store of each condition.
+        progress: told which condition is searched, how many candidates were tried, and how good the best is.
+        client: a ``distributed.Client``, among whose workers each generation is shared out; this process if None. The
+            bytes are the same.
+
+    Raises:
+        Unwritable: the folder cannot be written to.
+        IncompatibleRecord: a store below it is another search's or another version's.
+        NoOptimiser: a library is missing.
+        NotConverged: nothing that was tried keeps all limits.
+        NoCluster: the cluster was lost.
+        InvalidDesign: it is larger than anybody asked for, see ``suchus.core.large``.
+    """
+    folder = Path(folder)
+    place, count = place_for("a search", client=client), len(spec.arms)
+    walks = count * spec.evaluations * len(spec.friction_scales)
+    seconds = walks * processor_seconds(spec.run, spec.duration, spec.timestep)
+    large.check_work(f"search {spec.name!r} of {walks} walks", seconds, "ask for fewer evaluations or shorter walks")
+    return tuple(
+        _arm(spec.of(arm), folder, portion(progress, number, count), place) for number, arm in enumerate(spec.arms)
+    )
+
+
+def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> SearchResult:
+    """Search one condition."""
+    name = spec.arms[0].name
+    with opened(spec, folder / name) as store:
+        result = _searched(spec, store, folder, progress, place)
+        if not result.chosen:
+            raise NotConverged(
+                f"nothing of {result.history.sizes['candidate']} candidates of {name} keeps all limits; widen ranges "
+                "or limits, or raise evaluations."
+            )
+        write_runs(result.spec, result.runs, folder)
+        generations = int(result.history.generation.max())
+        check = _kept(store, _CHECKED + generations, lambda: checked(spec, result.runs))
+        near = _kept(store, _AROUND + generations, lambda: around(spec, result.shares[0], partial(tried, place)))
+        return result.with_checks(check, near)
+
+
+@contextmanager
+def opened(spec: Optimisation, folder: Path) -> Iterator[Store]:
+    """Hold the store of one condition; the budget does not distinguish searches."""
+    with Store(folder, replace(spec, evaluations=1), kind="optimisation", versions=_DECIDING).opened() as store:
+        yield store
+
+
+def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progress = silent) -> xr.Dataset:
+    """Try candidates, an equal share of them in each piece; a candidate reaches the same in company as alone.
+
+    Args:
+        place: where they are tried.
+        spec: the search, of one condition.
+        shares: as of ``evaluate``.
+        progress: told how many are tried.
+
+    Returns:
+        As of ``evaluate``, to the same bytes.
+    """
+    pieces = np.array_split(shares, min(len(shares), place.at_once))
+    job = Job(
+        name=spec.name,
+        kind="optimisation",
+        piece="part of a generation",
+        unit="candidates",
+        work=partial(evaluate, spec),
+        items=pieces,
+        sizes=[len(piece) for piece in pieces],
+        versions=partial(deciding, ROOMS),
+    )
+    tables = InMemory[xr.Dataset]()
+    finish(job, tables, place=place, progress=progress)
+    return xr.concat([tables.get(number) for number in range(len(pieces))], "candidate")
+
+
+def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, place: Place) -> SearchResult:
+    """Run what is not in the store yet; return all candidates."""
+    start = _generation(store, 0, np.array([spec.start]), lambda x: tried(place, spec, x))
+    parts, driver = units(spec, start), search(spec)
+    name, aim = spec.arms[0].name, spec.aims[0].name
+    tally = Tally(spec.evaluations, "tried", lambda stage, share: progress(f"{name}: {stage}", share))
+    tables, best = [_numbered(start, 0)], np.inf
+    while tally.done < spec.evaluations:
+        shares, number = driver.ask(), len(tables)
+        known = store.has(number)
+
+        def tell(stage: str, share: float, number: int = number, count: int = len(shares)) -> None:
+            del stage
+            tally.under_way(number, share * count)
+
+        table = _generation(store, number, shares, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
+        driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
+        tables.append(_numbered(table, number))
+        values = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
+        if values.min() < best:
+            i, best = int(values.argmin()), float(values.min())
+            tally.note = f"best {float(table[f'aim_{aim}'][i]):.3g} {AIMS[aim].unit}"
+            if not spec.pareto and not known:
+                run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, shares[i], strict=True)})
+                write_runs(spec, [titled(spec, run, name)], folder)
+        tally.finished(number, len(shares), fresh=not known)
+    whole = xr.concat(tables, "candidate")
+    return SearchResult(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
+
+
+def _numbered(table: xr.Dataset, number: int) -> xr.Dataset:
+    return table.assign(generation=("candidate", np.full(table.sizes["candidate"], number)))
+
+
+def _generation(store: Store, number: int, asked: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]) -> xr.Dataset:
+    """Return one generation, from the store if it is there."""
+    table = _kept(store, number, lambda: make(asked))
+    if not np.array_equal(table.share.values, asked):
+        raise IncompatibleRecord(
+            f"{store.part(number)} holds other candidates than the search asks for; this machine or its libraries "
+            "round differently: choose another place."
+        )
+    return table
+
+
+def _kept(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
+    """Return a part, made and stored if it is not there yet."""
+    if not store.has(number):
+        store.put(number, make())
+    return store.get(number)
+
+
+def write_runs(spec: Optimisation, runs: Sequence[Run], folder: Path) -> None:
+    """Write each run's gait as ``LABEL.toml``, and the robot where it varies as ``LABEL_robot.toml``."""
+    for run in runs:
+        for name, value in zip(run_files(spec, run.label), (run.gait, run.robot), strict=False):
+            blueprint.write(value, folder / name)
+
+
+def run_files(spec: Optimisation, label: str) -> list[str]:
+    """Return which files ``write_runs`` writes for a run: of its gait, and of its robot if that varies."""
+    varies = any(vary.field.startswith("robot.") for vary in spec.vary)
+    return [f"{label}.toml", *[f"{label}_robot.toml"] * varies]
+
+
+Evaluate = Callable[..., xr.Dataset]
+"""Tries candidates; see ``evaluate.evaluate``."""
+_NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """One condition of a check, and how it differs from the search."""
+
+    tells: str
+    """Description of the condition."""
+    friction_scale: float = 1.0
+    """Factor on the friction [-]."""
+    built: int | None = None
+    """Seed of the errors of a robot that is built of the design, see ``land.Tolerances``; None as designed."""
+    later: float = 0.0
+    """Phase by which the walk begins later in its cycle [cycle]."""
+
+
+CONDITIONS = (
+    Condition("2 ms"),
+    Condition("foot friction 0.5", friction_scale=0.625),
+    Condition("foot friction 0.65", friction_scale=0.8125),
+    Condition("foot friction 1.0", friction_scale=1.25),
+    Condition("a robot as built, seed 1", built=1),
+    Condition("a robot as built, seed 2", built=2),
+    Condition("begun a quarter of a cycle later", later=0.25),
+    Condition("begun 0.4 of a cycle later", later=0.4),
+)
+"""All with the robot's own time step, 2 ms for the caiman. Frictions are those of the caiman, whose feet have 0.8: a
+rubber foot on floors from 0.5 to 1."""
+
+
+def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
+    """Run the chosen, and where the search started, under every condition with the robot's own time step.
+
+    Returns:
+        ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
+        diverged.
+    """
+    who = [*runs, replace(spec.run, label="start")]
+    batch = [_under(run, condition) for run in who for condition in CONDITIONS]
+    record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), every=2)
+    shape = len(who), len(CONDITIONS)
+    sound = record.cause.values == ""
+    return xr.Dataset(
+        {
+            name: (("run", "condition"), np.where(sound, values, np.nan).reshape(shape))
+            for name, values in measure(spec, batch, record).items()
+        },
+        coords={"run": [run.label for run in who], "condition": [c.tells for c in CONDITIONS]},
+    )
+
+
+def _under(run: Run, condition: Condition) -> Run:
+    phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
+    gait = replace(run.gait, limb_phases=phases)
+    other = replace(run, gait=gait if condition.later else run.gait)
+    other = with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
+    return other if condition.built is None else Tolerances().built(other, condition.built)
+
+
+def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:
+    """Move each field alone to both sides of the best, by a twentieth and a tenth of its range.
+
+    Args:
+        spec: the search.
+        best: the shares of the ranges at which the best lies.
+        tried: what tries candidates.
+
+    Returns:
+        ``share``, ``aim_...``, ``limit_...``, ``status`` over ``moved`` (which field) and ``step``.
+    """
+    fields = [v.field for v in spec.vary]
+    points = np.array([best] * (len(fields) * len(_NEAR))).reshape(len(fields), len(_NEAR), -1)
+    for i in range(len(fields)):
+        points[i, :, i] = np.clip(best[i] + np.array(_NEAR), 0.0, 1.0)
+    table = tried(spec, points.reshape(-1, len(fields)))
+    shape = len(fields), len(_NEAR)
+    return xr.Dataset(
+        {name: (("moved", "step"), table[name].values.reshape(shape)) for name in ("status", *columns(spec))}
+        | {"at": (("moved", "step"), np.array([points[i, :, i] for i in range(len(fields))]))},
+        coords={"moved": fields, "step": list(_NEAR)},
+    )

@@ -1,0 +1,174 @@
+"""One generation: its candidates in one batch, what each reaches and breaks, and what is made small."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import Runs
+from suchus.robot.design import with_values
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import SuchusError
+from suchus.sim.land import Run, simulate
+from suchus.robot.motion import check_limits, excess
+from suchus.experiments.optimise.aims import AIMS, LIMITS, Kind
+from suchus.experiments.optimise.spec import Limit, Optimisation
+from suchus.core.progress import Progress, silent
+
+WALKED, REFUSED, APART = "walked", "refused", "diverged"
+_EVERY = 2  # control periods; 50 looks a second
+
+
+def evaluate(
+    spec: Optimisation, shares: np.ndarray, progress: Progress = silent, *, timestep: float | None = None
+) -> xr.Dataset:
+    """Try candidates, all that can be built in one batch.
+
+    Args:
+        spec: the search, of one condition.
+        shares: where each candidate's fields lie in their ranges, shape (candidate, field), 0 to 1.
+        progress: told the share that is done.
+        timestep: of the physics [s]; that of the search if None.
+
+    Returns:
+        A table along ``candidate``: ``share`` over ``field``; ``aim_...`` and ``limit_...``, NaN where it did not walk;
+        ``status``; ``beyond``, see ``suchus.robot.motion.excess``, infinite for a candidate that cannot be at all.
+    """
+    count = len(shares)
+    status, beyond = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
+    runs: dict[int, Run] = {}
+    for i, point in enumerate(shares):
+        try:
+            run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, point, strict=True)})
+            beyond[i] = excess(run.robot, run.gait)
+            if beyond[i] == 0.0:
+                check_limits(run.robot, run.gait)
+                # refuses what it cannot steer
+                run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
+                runs[i] = run
+        except SuchusError:
+            beyond[i] = np.inf
+    table = {name: np.full(count, np.nan) for name in columns(spec)}
+    walked = _walked(spec, runs, progress, timestep or spec.timestep)
+    beyond[[i for i in runs if i not in walked]] = np.inf
+    for i, numbers in walked.items():
+        status[i] = APART if numbers is None else WALKED
+        for name, value in (numbers or {}).items():
+            table[name][i] = value
+    return xr.Dataset(
+        {
+            "share": (("candidate", "field"), np.asarray(shares, dtype=float)),
+            "beyond": ("candidate", beyond),
+            "status": ("candidate", status),
+            **{name: ("candidate", values) for name, values in table.items()},
+        },
+        coords={"field": [v.field for v in spec.vary]},
+    )
+
+
+def columns(spec: Optimisation) -> dict[str, Kind]:
+    """Return what is measured, by column: ``aim_displacement``, ``limit_slip``."""
+    return {f"aim_{aim.name}": AIMS[aim.name] for aim in spec.aims} | {
+        f"limit_{limit.name}": LIMITS[limit.name] for limit in spec.limits
+    }
+
+
+def _walked(
+    spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
+) -> dict[int, dict[str, float] | None]:
+    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts.
+
+    A candidate that the simulation refuses, as for a foot point between those that were looked at, has no row; the
+    batch is halved until it is found.
+    """
+    if not runs:
+        return {}
+    scales = spec.friction_scales
+    laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
+    try:
+        record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+    except SuchusError:
+        if len(runs) == 1:
+            return {}
+        items = list(runs.items())
+        halves = dict(items[: len(items) // 2]), dict(items[len(items) // 2 :])
+        return {i: row for half in halves for i, row in _walked(spec, half, progress, timestep).items()}
+    measured = measure(spec, laid, record)
+    broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
+    measures_of: dict[int, dict[str, float] | None] = {}
+    for row, i in enumerate(runs):
+        rows = slice(row * len(scales), (row + 1) * len(scales))
+        measures_of[i] = (
+            None if broken[row] else {name: _joined(name, values[rows]) for name, values in measured.items()}
+        )
+    return measures_of
+
+
+def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return every aim and limit of some runs by column."""
+    known: dict[Any, np.ndarray] = {}
+    for kind in columns(spec).values():
+        if kind.measure not in known:
+            known[kind.measure] = kind.measure(runs, record)
+    return {name: known[kind.measure] for name, kind in columns(spec).items()}
+
+
+def _joined(name: str, values: np.ndarray) -> float:
+    """Return what a candidate has over all grounds: the mean of an aim, the worst of a limit."""
+    if name.startswith("aim_"):
+        return float(values.mean())
+    worst = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
+    return float(worst())
+
+
+_PENALTY = 5.0  # per limit exceeded by its own size, in parts of what the start has
+_REFUSED, _APART, _NEVER = 1e3, 2e3, 4e3  # ranks below all that walk, the nearer to walking the better
+ACTIVE = 0.03
+"""A limit that is kept by less than this part of it counts as active [-]."""
+
+
+def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
+    """Return by which part of itself each limit is exceeded, negative where it is kept, shape (candidate, limit)."""
+    rows = [over(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
+    return np.array(rows).T if rows else np.zeros((table.sizes["candidate"], 0))
+
+
+def over(limit: Limit, values: np.ndarray) -> np.ndarray:
+    """Return by which part of itself a limit is exceeded."""
+    kind = LIMITS[limit.name]
+    sign = 1.0 if kind.good == "less" else -1.0
+    return np.asarray(sign * (values - limit.value) / max(abs(limit.value), 1e-9 if limit.value else kind.scale))
+
+
+def allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
+    """Tell which candidates walked and kept every limit."""
+    walked = table.status.values == WALKED
+    return np.asarray(walked & (excesses(spec, table) <= 0.0).all(axis=1))
+
+
+def units(spec: Optimisation, start: xr.Dataset) -> np.ndarray:
+    """Return what one part of each aim is: the start's own value, or 1 where it has none."""
+    values = np.array([abs(float(start[f"aim_{aim.name}"][0])) for aim in spec.aims])
+    return np.where(np.isfinite(values) & (values > 1e-9), values, 1.0)
+
+
+def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:
+    """Return each aim as something to make small, in parts of the start's, shape (candidate, aim).
+
+    Limits that are exceeded make all aims worse; what cannot walk comes after everything that does.
+    """
+    signs = np.array([-1.0 if AIMS[aim.name].good == "more" else 1.0 for aim in spec.aims])
+    values = np.column_stack([table[f"aim_{aim.name}"].values for aim in spec.aims])
+    penalty = _PENALTY * np.maximum(excesses(spec, table), 0.0).sum(axis=1)
+    weighted = signs * values / parts + penalty[:, None]
+    status, beyond = table.status.values, table.beyond.values
+    worst = np.where(status == APART, _APART, np.where(np.isfinite(beyond), _REFUSED + np.minimum(beyond, 1e3), _NEVER))
+    bad = (status != WALKED) | ~np.isfinite(weighted).all(axis=1)
+    return np.where(bad[:, None], worst[:, None], weighted)
+
+
+def score(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:
+    """Return the weighted sum of all losses, shape (candidate,); the smallest is best."""
+    weights = np.array([aim.weight for aim in spec.aims])
+    return np.asarray(losses(spec, table, parts) @ weights)

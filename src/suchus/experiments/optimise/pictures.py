@@ -1,0 +1,228 @@
+"""Pictures of a search: how it converged, the front, the best gaits, what lies around them."""
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suchus.robot.control import Standing
+from suchus.robot.design import unit_at
+from suchus.visual.figures import COLOURS, LINES, captioned, panels, styled
+from suchus.visual.figures.posture import draw_posture, draw_strip
+from suchus.sim.land import Run
+from suchus.robot.motion import START
+from suchus.experiments.optimise.aims import AIMS, Kind
+from suchus.experiments.optimise.evaluate import allowed
+from suchus.experiments.optimise.search import SearchResult
+from suchus.experiments.optimise.spec import at_share
+
+_ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
+_APART, _GAP = 0.6, 0.06  # [m]; between two robots that stand, between two that walk
+_MM = {"m": (1000.0, "mm"), "rad": (180 / np.pi, "deg")}
+
+
+def role(number: int) -> str:
+    """Return the role of ``figures.COLOURS`` of a condition."""
+    return _ROLES[number % len(_ROLES)]
+
+
+def label(name: str) -> str:
+    """Return the name of a field, a limit or a condition as pages and figures show it."""
+    if name in LINES and LINES[name]["label"]:
+        return str(LINES[name]["label"])
+    name = name.rpartition("gait.")[2].removeprefix("robot.").replace("_", " ").replace(".", ", ")
+    return f"{name.removeprefix('control, ')} (control)" if name.startswith("control, ") else name
+
+
+def draw_convergence(searches: Sequence[SearchResult]) -> Figure:
+    """Draw the first aim of the best so far of every condition over the candidates tried."""
+    kind, name = AIMS[searches[0].spec.aims[0].name], label(searches[0].spec.aims[0].name)
+    with styled():
+        figure, axes = panels(1, 1, height=4.0)
+        ax = axes[0, 0]
+        for i, search in enumerate(searches):
+            colour, values = COLOURS[role(i)], search.history[f"aim_{search.spec.aims[0].name}"].values
+            kept = allowed(search.spec, search.history)
+            ax.plot(np.flatnonzero(kept), values[kept], ".", color=colour, markersize=3, alpha=0.35)
+            ax.plot(search.best_so_far(), color=colour, drawstyle="steps-post", label=label(search.arm))
+            ax.plot(
+                0, float(search.start[f"aim_{search.spec.aims[0].name}"][0]), "D", color=colour, markeredgecolor="black"
+            )
+        _limit_axis(ax, searches)
+        ax.set_xlabel("candidates tried [-]")
+        ax.set_ylabel(f"{name} [{kind.unit}]")
+        ax.legend(loc="lower right" if kind.good == "more" else "upper right")
+    return captioned(
+        figure,
+        f"How the search converged: {kind.tells}. Lines: best so far among candidates that keep all limits; dots: each "
+        "such candidate; diamonds: where the search started.",
+    )
+
+
+def _limit_axis(ax: Axes, searches: Sequence[SearchResult]) -> None:
+    """Leave wild candidates out of the picture."""
+    shown = np.concatenate([search.best_so_far() for search in searches])
+    shown = shown[np.isfinite(shown)]
+    if shown.size:
+        low, high = float(shown.min()), float(shown.max())
+        pad = max(0.15 * (high - low), 0.02 * abs(high), 1e-6)
+        ax.set_ylim(low - pad, high + pad)
+
+
+def draw_front(search: SearchResult) -> Figure:
+    """Draw the two aims of every candidate that keeps all limits, and the front."""
+    first, second = (f"aim_{aim.name}" for aim in search.spec.aims)
+    kinds = [AIMS[aim.name] for aim in search.spec.aims]
+    kept, table, front, chosen = allowed(search.spec, search.history), search.history, search.front, search.chosen
+    with styled():
+        figure, axes = panels(1, 2, width=10.5, height=4.2, width_ratios=[1.4, 1])
+        ax = axes[0, 0]
+        x, y = table[first].values, table[second].values
+        ax.plot(x[kept], y[kept], ".", color=COLOURS["neutral"], markersize=4, alpha=0.4, label="keeps all limits")
+        ax.plot(x[front], y[front], "o-", color=COLOURS["ours"], markersize=4, linewidth=1.2, label="front")
+        ax.plot(x[chosen], y[chosen], "o", color=COLOURS["alarm"], markersize=9, label="gait files")
+        ax.plot(x[0], y[0], "D", color="white", markeredgecolor="black", markersize=8, label="start")
+        if front:
+            spread = np.ptp(y[front]) + 0.1 * abs(y[front]).max()
+            ax.set_ylim(y[front].min() - 0.3 * spread, max(y[front].max() + spread, y[0] + 0.2 * spread))
+        for i, name in zip(chosen, search.names, strict=True):
+            ax.annotate(name.rpartition("_")[2], (x[i], y[i]), (7, 5), textcoords="offset points")
+        for axis, aim, kind in zip((ax.set_xlabel, ax.set_ylabel), search.spec.aims, kinds, strict=True):
+            axis(f"{label(aim.name)} [{kind.unit}], {kind.good} is better")
+        ax.legend(loc="best", fontsize=10)
+        areas = search.covered()
+        axes[0, 1].plot(areas, color=COLOURS["ours"])
+        axes[0, 1].set_xlabel("generation [-]")
+        axes[0, 1].set_ylabel("area that the front covers [-]")
+    return captioned(
+        figure,
+        "Left: both aims of every candidate that keeps all limits; no other betters those of the front in both. Right: "
+        "the area that the front covers, in parts of what the start has.",
+    )
+
+
+def draw_gaits(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
+    """Draw what every run does: from above at its beginning, half-way and at its end; who stands from its side.
+
+    Args:
+        runs: the start, and the best.
+        record: of them.
+        texts: what is written beside each.
+    """
+    if all(isinstance(run.control, Standing) for run in runs):
+        return _draw_standing(runs, record, texts)
+    end = float(record.time[-1])
+    times = [START, (START + end) / 2, end]
+    aside, depth = _lanes(runs, record, times)
+    with styled(axes__grid=False):
+        figure, axes = panels(1, 1, width=10.5, height=1.0 + 3.8 * depth)
+        ax = axes[0, 0]
+        for i, run in enumerate(runs):
+            walk, hue = record.isel(run=i), _shade(run.label, i)
+            draw_strip(ax, run.robot, walk, times, role=hue, aside=aside[i])
+            beside = float(walk.centre_of_mass.sel(xyz="y").sel(time=end, method="nearest")) + aside[i]
+            right = float(_seen(walk, times)[:, 0].max())
+            ax.text(
+                right + _GAP, beside, f"{label(run.label)}\n{texts[i]}", color=COLOURS[hue], va="center", fontsize=13
+            )
+        ax.set_xlim(right=float(_seen(record, times)[:, 0].max()) + 0.45)
+        ax.set_axis_off()
+    return captioned(
+        figure,
+        f"From above at {times[0]:g}, {times[1]:g} and {times[2]:g} s, with the track of the centre of mass. Filled "
+        "feet stand.",
+    )
+
+
+def _seen(record: xr.Dataset, times: Sequence[float]) -> np.ndarray:
+    """Return where feet, snout and tail tip are at some times, shape (point, 3) [m]."""
+    near = record.sel(time=list(times), method="nearest")
+    return np.concatenate([near[name].values.reshape(-1, 3) for name in ("foot_position", "snout", "tail_tip")])
+
+
+def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> tuple[list[float], float]:
+    """Return how far to the left each run is drawn so that none lies on another, and how deep all are together [m]."""
+    aside, top = [], 0.0
+    for i in range(len(runs)):
+        y = _seen(record.isel(run=i), times)[:, 1]
+        aside.append(top - float(y.max()))
+        top += float(y.min() - y.max()) - 1.5 * _GAP  # hands reach beyond the feet' middles
+    return aside, -top
+
+
+def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
+    """Draw every run from its right side, half of the time that it is meant to stand."""
+    with styled():
+        figure, axes = panels(1, 1, width=3.0 + 2.6 * len(runs), height=5.6)
+        ax = axes[0, 0]
+        for i, run in enumerate(runs):
+            assert isinstance(run.control, Standing)
+            walk = record.isel(run=i)
+            time = (run.control.upright_from(run.robot) + run.control.upright_until(run.robot)) / 2
+            hips = float(walk.position.sel(xyz="x").sel(time=time, method="nearest"))
+            moved = walk.assign(
+                {name: walk[name] + _beside(walk, _APART * i - hips) for name in ("position", "centre_of_mass")}
+            )
+            draw_posture(ax, run.robot, moved, time, view="side", support=False)
+            ax.text(_APART * i, -0.05, f"{label(run.label)}\n{texts[i]}", ha="center", va="top", fontsize=12,
+                    color=COLOURS[_shade(run.label, i)])  # fmt: skip
+        ax.set_ylim(bottom=-0.17)
+        ax.set_xticks([])
+        ax.spines["bottom"].set_visible(False)
+        ax.set_ylabel("height [m]")
+    return captioned(figure, "From the right side, half of the time that it is meant to stand.")
+
+
+def _beside(record: xr.Dataset, ahead: float) -> xr.DataArray:
+    return xr.DataArray([ahead, 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
+
+
+def _shade(name: str, number: int) -> str:
+    return "neutral" if name == "start" else role(number - 1)
+
+
+def draw_around(search: SearchResult) -> Figure:
+    """Draw the first aim as each field alone moves to both sides of the best; crosses break a limit."""
+    near = search.near
+    assert near is not None
+    aim = search.spec.aims[0].name
+    kind: Kind = AIMS[aim]
+    fields, columns = search.fields, 4
+    rows = ceil(len(fields) / columns)
+    values, best = near[f"aim_{aim}"].values, float(near[f"aim_{aim}"].sel(step=0.0)[0])
+    with styled(axes__labelsize=10, xtick__labelsize=9, ytick__labelsize=9):
+        figure, axes = panels(rows, columns, width=10.5, height=0.7 + 1.9 * rows, sharey=True)
+        for i, vary in enumerate(search.spec.vary):
+            ax = axes.flat[i]
+            scale, shown = scaled(search.spec.run, vary.field)
+            at = np.array([at_share(vary, float(share)) for share in near["at"].values[i]]) * scale
+            kept = _kept(search, near, i)
+            ax.plot(at, values[i], color=COLOURS["ours"], linewidth=1.2)
+            ax.plot(at[kept], values[i][kept], "o", color=COLOURS["ours"], markersize=5)
+            ax.plot(at[~kept], values[i][~kept], "x", color=COLOURS["alarm"], markersize=6, markeredgewidth=1.6)
+            ax.axhline(best, color=COLOURS["neutral"], linewidth=0.8, linestyle=(0, (2, 2)))
+            ax.set_xlabel(f"{label(vary.field)}{f' [{shown}]' if shown else ''}")
+        for ax in axes.flat[len(fields) :]:
+            ax.set_axis_off()
+        for ax in axes[:, 0]:
+            ax.set_ylabel(f"{label(aim)} [{kind.unit}]")
+    return captioned(
+        figure,
+        f"Around the best of {label(search.arm)}: each field alone moves by a twentieth and a tenth of its range. "
+        "Crosses break a limit; what is missing could not be walked.",
+    )
+
+
+def _kept(search: SearchResult, near: xr.Dataset, row: int) -> np.ndarray:
+    """Tell which of the points beside the best keep all limits."""
+    part = near.isel(moved=row).rename(step="candidate")
+    return allowed(search.spec, part)
+
+
+def scaled(run: Run, field: str) -> tuple[float, str]:
+    """Return the factor and the unit in which people read a field: millimetres, degrees."""
+    held = unit_at(run, field)
+    return _MM.get(held, (1.0, "" if held == "-" else held))

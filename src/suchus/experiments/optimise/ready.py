@@ -1,0 +1,162 @@
+"""Ready-made searches, by name."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from suchus.robot.control import Standing, Walking
+from suchus.robot.design import value_at
+from suchus.robot.gaits import GAITS, conditions_of
+from suchus.robot.gaits.belly_crawl import FRONT, HIND
+from suchus.sim.land import Run
+from suchus.experiments.optimise.spec import Aim, Limit, Optimisation
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study import Arm, Vary
+
+_LEGS = (
+    ("duty_factor", 0.5, 0.8),
+    ("stroke", 0.0, 0.12 / FRONT),
+    ("lift", 0.01 / FRONT, 0.05 / FRONT),
+    ("limbs[0].outward", 0.02 / FRONT, 0.13 / FRONT),
+    ("limbs[1].outward", 0.02 / HIND, 0.14 / HIND),
+    ("limbs[0].ahead", -0.06 / FRONT, 0.06 / FRONT),
+    ("limbs[1].ahead", -0.06 / HIND, 0.06 / HIND),
+    ("height", 0.06 / HIND, 0.13 / HIND),
+)
+_BODY = (
+    ("trunk_bend", 0.0, 2.3),
+    ("axis_lag", -0.2, 0.2),
+    ("tail_bend", 0.0, 1.5),
+    ("tail_lag", 0.0, 1.0),
+    ("tail_pitch", -0.3, 0.4),
+)
+_LIMITS = (
+    Limit(name="torque", value=0.65),
+    Limit(name="slip", value=0.5),
+    Limit(name="clearance", value=0.005),
+    Limit(name="sideways", value=0.25),
+)
+_WHY = (
+    "The cycle stays at the article's four seconds, so that two cycles compare with its 0.73 m; feet stand at least "
+    "half of it, so that it is a walk. Legs and trunk may go as far as joints and reach let them.",
+    "Torque and slip may be a little more than in the article's crawl on this robot (0.60 and 0.46); parts of the "
+    "body, whose contacts the physics does not know, stay 5 mm apart; it walks straight within 0.25 m.",
+    "Both conditions have the same legs, ranges, limits, population and budget; limbs_only holds trunk and tail "
+    "straight and the tail off the ground.",
+)
+
+
+def _vary(rows: tuple[tuple[str, float, float], ...]) -> tuple[Vary, ...]:
+    return tuple(Vary(field=f"gait.{name}", low=low, high=high) for name, low, high in rows)
+
+
+def _limbs_only() -> Arm:
+    limbs = GAITS["limbs_only"]
+    return Arm(name="limbs_only", values={f"gait.{name}": value_at(limbs, name) for name, _, _ in _BODY})
+
+
+def crawl() -> Optimisation:
+    """The farthest two cycles with spine and tail, and the farthest with limbs only, on the same budget."""
+    return Optimisation(
+        name="crawl",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),
+        vary=_vary((*_LEGS, *_BODY)),
+        aims=(Aim(name="displacement"),),
+        limits=_LIMITS,
+        arms=(Arm(name="coordinated"), _limbs_only()),
+        evaluations=960,
+        seed=1,
+        reasons=_WHY,
+    )
+
+
+def thrift() -> Optimisation:
+    """The front between displacement and cost of transport, with spine and tail."""
+    return Optimisation(
+        name="thrift",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"]),
+        vary=_vary((*_LEGS, *_BODY)),
+        aims=(Aim(name="displacement"), Aim(name="cost_of_transport")),
+        limits=_LIMITS,
+        pareto=True,
+        evaluations=1200,
+        population=10,
+        seed=1,
+        reasons=_WHY[:2],
+    )
+
+
+def turn() -> Optimisation:
+    """The greatest change of heading in two cycles of the low crawl."""
+    return Optimisation(
+        name="turn",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["low_crawl"], control=Walking(bend=0.4, asymmetry=0.5)),
+        vary=(
+            Vary(field="control.bend", low=0.0, high=1.2),
+            Vary(field="control.asymmetry", low=0.0, high=1.5),
+            *_vary((("stroke", 0.01 / FRONT, 0.08 / FRONT), ("trunk_bend", 0.0, 1.5), ("duty_factor", 0.5, 0.8))),
+        ),
+        aims=(Aim(name="turning"),),
+        limits=(Limit(name="torque", value=0.65), Limit(name="clearance", value=0.005)),
+        evaluations=240,
+        population=12,
+        duration=5.0,
+        seed=1,
+    )
+
+
+def stand() -> Optimisation:
+    """The greatest height that it reaches standing, with other lengths of hind legs and spine."""
+    return Optimisation(
+        name="stand",
+        run=Run(robot=ROBOTS["caiman"], gait=GAITS["limbs_only"], control=Standing(at=1.1, hold=3.0)),
+        vary=(
+            Vary(field="robot.hind_leg.femur", low=0.08, high=0.095),
+            Vary(field="robot.hind_leg.tibia", low=0.08, high=0.098),
+            Vary(field="robot.spine.link", low=0.055, high=0.067),
+            Vary(field="robot.pelvis.mass", low=0.45, high=0.9),
+            Vary(field="robot.spine.pitch_servo.torque", low=2.5, high=5.0),
+        ),
+        aims=(Aim(name="standing_reach"),),
+        limits=(Limit(name="torque", value=0.9),),
+        evaluations=120,
+        population=10,
+        duration=14.0,
+        seed=1,
+    )
+
+
+def lifted() -> Optimisation:
+    """A plausible design on which limbs alone, the tail held in the air, walk: the control group of the article."""
+    robot, gait = ROBOTS["caiman"], GAITS["limbs_only"]
+    fixed = ("_range[", ".ki", ".integral_limit")  # limits only forbid; robots of a batch have equal integral action
+    numbers = ROBOTS.beside(robot.name, "chosen", ())
+    rows = [(f"robot.{one.field}", one) for one in numbers if not any(part in one.field for part in fixed)]
+    still = {name for name, _, _ in _BODY}
+    rows += [(f"gait.{one.field}", one) for one in GAITS.beside(gait.name, "chosen", ()) if one.field not in still]
+    control = conditions_of(robot, GAITS["belly_crawl"], gait)["limbs_tail_lifted"]
+    return Optimisation(
+        name="lifted",
+        run=Run(robot=robot, gait=control),
+        vary=tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows),
+        aims=(Aim(name="foot_lift"),),
+        limits=(
+            Limit(name="duty_greatest", value=0.85),
+            Limit(name="duty_least", value=0.5),
+            Limit(name="sideways", value=0.25),
+        ),
+        evaluations=960,
+        population=24,
+        seed=1,
+        reasons=(
+            "All numbers of robot and gait that the article does not give, within their plausible ranges, but for the "
+            "limits of joints and integral action.",
+            "In a walk each foot stands for at least half of the cycle; one that hardly leaves the ground, more than "
+            "0.85 of it, walks in no gait. The lift of the foot that is lifted least says whether all four step.",
+        ),
+    )
+
+
+READY: Mapping[str, Callable[[], Optimisation]] = MappingProxyType(
+    {made.__name__: made for made in (crawl, thrift, turn, stand, lifted)}
+)
+"""What makes each; its docstring says what it is."""

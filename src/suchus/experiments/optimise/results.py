@@ -1,0 +1,293 @@
+"""What a search leaves: gait files, numbers, a record of the best, a page."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from suchus.core import files as records
+from suchus.robot.design.scale import physics_step
+from suchus.sim.land import Run, simulate
+from suchus.experiments.optimise.aims import AIMS, LIMITS
+from suchus.experiments.optimise.conduct import write_runs
+from suchus.experiments.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
+from suchus.experiments.optimise.search import SearchResult
+from suchus.experiments.optimise.spec import Optimisation
+from suchus.visual.replay import replay
+from suchus.experiments.study.result_table import ResultTable, Section, write_tables
+
+RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
+_TOLD = 5  # fields that the sentence names
+_END = 0.02  # of its range; a field that is nearer to an end is at it
+
+
+def write_results(spec: Optimisation, searches: Sequence[SearchResult], folder: str | Path) -> Path:
+    """Write everything into ``folder/result``, which appears complete or not at all, and return that folder.
+
+    Args:
+        spec: the search.
+        searches: of each condition.
+        folder: of the search.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    folder = Path(folder)
+    runs = [run for search in searches for run in search.runs]
+    shown = [_start(spec), *runs]
+    record = simulate(shown, duration=spec.duration, timestep=physics_step(spec.run.robot))
+    numbers = outcome(spec, searches)
+    with records.new_folder(folder / RESULT, lasting=True) as draft:
+        for search in searches:
+            write_runs(search.spec, search.runs, draft)
+        records.save(record, draft / RECORD)
+        for i, run in enumerate(shown):
+            if i:
+                _write_replay(shown, record, i, draft / f"{run.label}_replay.html")
+        pictures = _pictures(spec, searches, shown, record)
+        sections = _sections(spec, searches, numbers, pictures)
+        write_tables(draft, f"Optimised: {spec.name}", _lead(searches), sections, pictures)
+        text = json.dumps(numbers, indent=2, ensure_ascii=False, allow_nan=False)
+        (draft / OUTCOME).write_text(text + "\n", encoding="utf-8")
+    return folder / RESULT
+
+
+def _start(spec: Optimisation) -> Run:
+    return replace(spec.run, label="start")
+
+
+def _write_replay(shown: Sequence[Run], record: xr.Dataset, i: int, path: Path) -> None:
+    run, same = shown[i], shown[i].robot == shown[0].robot
+    page = replay(
+        record.isel(run=i),
+        run.robot,
+        ghost=record.isel(run=0) if same else None,
+        labels=(label(run.label), "start"),
+        title=f"{run.gait.name.replace('_', ' ')}, as found",
+    )
+    path.write_text(page, encoding="utf-8")
+
+
+def outcome(spec: Optimisation, searches: Sequence[SearchResult]) -> dict[str, Any]:
+    """Return every number of a search as JSON holds it; what is not finite becomes null."""
+    return {
+        "optimisation": spec.name,
+        "aims": {aim.name: {"unit": AIMS[aim.name].unit, "better": AIMS[aim.name].good} for aim in spec.aims},
+        "reasons": list(spec.reasons),
+        "seed": spec.seed,
+        "population": spec.population,
+        "duration": spec.duration,
+        "timestep": spec.timestep,
+        "arms": {search.arm: _numbers_of(search) for search in searches},
+        "versions": records.versions(),
+    }
+
+
+def _numbers_of(search: SearchResult) -> dict[str, Any]:
+    return {
+        "tried": search.history.sizes["candidate"] - 1,
+        "walked": int((search.history.status == "walked").sum()),
+        "start": {aim.name: _finite(search.start[f"aim_{aim.name}"][0]) for aim in search.spec.aims},
+        "best": {name: _best(search, i) for i, name in enumerate(search.names)},
+        "front": [
+            [_finite(search.history[f"aim_{aim.name}"][i]) for aim in search.spec.aims]
+            for i in (search.front if search.spec.pareto else ())
+        ],
+    }
+
+
+def _best(search: SearchResult, which: int) -> dict[str, Any]:
+    assert search.checks is not None
+    candidate, ranges = search.chosen[which], {v.field: (v.low, v.high) for v in search.spec.vary}
+    return {
+        "sentence": sentence(search, which),
+        "aims": {aim.name: _finite(search.history[f"aim_{aim.name}"][candidate]) for aim in search.spec.aims},
+        "fields": {
+            name: {"start": start, "best": best, "low": ranges[name][0], "high": ranges[name][1]}
+            for name, (start, best) in search.values(which).items()
+        },
+        "limits": {
+            name: {"limit": limit, "has": has, "active": active, "unit": LIMITS[name].unit}
+            for name, (limit, has, active) in search.active(which).items()
+        },
+        "checks": {
+            str(condition): {
+                str(name): _finite(search.checks[name].sel(condition=condition).isel(run=which))
+                for name in search.checks.data_vars
+            }
+            for condition in search.checks.condition.values
+        },
+    }
+
+
+def _finite(value: Any) -> float | None:
+    number = float(value)
+    return number if np.isfinite(number) else None
+
+
+def sentence(search: SearchResult, which: int) -> str:
+    """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
+    ranges = {
+        v.field: (float(v.low), float(v.high)) for v in search.spec.vary if v.low is not None and v.high is not None
+    }
+
+    def moved(item: tuple[str, tuple[float, float]]) -> float:
+        low, high = ranges[item[0]]
+        return abs(item[1][1] - item[1][0]) / (high - low)
+
+    changes = sorted((item for item in search.values(which).items() if moved(item) > 0.0), key=moved, reverse=True)
+    said = []
+    for field, (start, best) in changes[:_TOLD]:
+        factor, unit = scaled(search.spec.run, field)
+        shown = f" {unit}" if unit else ""
+        said.append(f"{label(field)} {_round(best * factor)}{shown} instead of {_round(start * factor)}")
+    stops = [label(name) for name, (_, _, active) in search.active(which).items() if active]
+    stopped = f" Limits that stop it: {', '.join(stops)}." if stops else " No limit stops it."
+    ends = [label(name) for name, (_, best) in search.values(which).items() if _at_end(best, *ranges[name])]
+    ended = f" At the end of its range: {', '.join(ends)}." if ends else ""
+    takes = f"It takes {'; '.join(said)}" if said else "It is the start itself"
+    return f"{takes}.{stopped}{ended}"
+
+
+def _at_end(best: float, low: float, high: float) -> bool:
+    return min(best - low, high - best) < _END * (high - low)
+
+
+def _round(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def _pictures(
+    spec: Optimisation, searches: Sequence[SearchResult], shown: Sequence[Run], record: xr.Dataset
+) -> dict[str, Figure]:
+    values = [(AIMS[aim.name], AIMS[aim.name].measure(shown, record)) for aim in spec.aims]
+    reached = [
+        ", ".join(f"{value[i]:#.3g} {kind.unit}".removesuffix(" -") for kind, value in values)
+        for i in range(len(shown))
+    ]
+    pictures = {"gaits": draw_gaits(shown, record, reached)}
+    if not spec.pareto:
+        pictures["convergence"] = draw_convergence(searches)
+    for search in searches:
+        if search.spec.pareto:
+            pictures[f"front_{search.arm}"] = draw_front(search)
+        pictures[f"around_{search.arm}"] = draw_around(search)
+    return pictures
+
+
+def _lead(searches: Sequence[SearchResult]) -> str:
+    said = []
+    for search in searches:
+        front = search.front if search.spec.pareto else []
+        changes = []
+        for aim in search.spec.aims if front else search.spec.aims[:1]:
+            ends = (front[0], front[-1]) if front else (0, search.chosen[0])
+            first, last = (float(search.history[f"aim_{aim.name}"][i]) for i in ends)
+            changes.append(f"{label(aim.name)} {first:.3g} to {last:.3g} {AIMS[aim.name].unit}".removesuffix(" -"))
+        what = f"a front of {len(front)}, " if front else ""
+        said.append(f"{label(search.arm)}: {what}{', '.join(changes)}")
+    each = " each" if len(searches) > 1 else ""
+    return f"{'; '.join(said)}; {searches[0].history.sizes['candidate'] - 1} candidates{each}."
+
+
+def _sections(
+    spec: Optimisation, searches: Sequence[SearchResult], numbers: Mapping[str, Any], pictures: Mapping[str, Figure]
+) -> list[Section]:
+    links = [
+        (f"{name}_replay.html", f"Replay of {label(name)} beside the start")
+        for search in searches
+        for name in search.names
+    ]
+    links += [(f"{name}.toml", f"{name}.toml: the gait as a file") for search in searches for name in search.names]
+    if any(vary.field.startswith("robot.") for vary in spec.vary):
+        links += [
+            (f"{n}_robot.toml", f"{n}_robot.toml: the robot as a file") for search in searches for n in search.names
+        ]
+    best = [(search, i) for search in searches for i in range(len(search.chosen))]
+    return [
+        Section(title="What it found", texts=[*_best_said(numbers), *_beyond(spec)], links=links, figures=("gaits",)),
+        Section(title="How it converged", texts=spec.reasons,
+                figures=[name for name in pictures if name == "convergence" or name.startswith("front_")]),
+        Section(title="The numbers", tables=[_fields(search, i) for search, i in best]
+                + [_limits(search, i) for search, i in best if search.spec.limits]),
+        Section(
+            title="Is it an optimum?",
+            texts=(
+                f"The search ran with {1000 * spec.timestep:g} ms; here the best is run again with "
+                f"{1000 * physics_step(spec.run.robot):g} ms, on other "
+                "ground, as robots that are built of the design, and begun elsewhere in its cycle, beside the start.",
+            ),
+            figures=tuple(f"around_{search.arm}" for search in searches),
+            tables=[_checks(search) for search in searches],
+        ),
+    ]  # fmt: skip
+
+
+def _beyond(spec: Optimisation) -> list[str]:
+    """Say what a gait file cannot hold."""
+    if not any(vary.field.startswith("control.") for vary in spec.vary):
+        return []
+    return ["What is the control's is in the table below: a gait file holds the gait alone."]
+
+
+def _best_said(numbers: Mapping[str, Any]) -> list[str]:
+    best = [item for arm in numbers["arms"].values() for item in arm["best"].items()]
+    return [f"{label(name).capitalize()}. {each['sentence']}" for name, each in best]
+
+
+def _fields(search: SearchResult, which: int) -> ResultTable:
+    rows = []
+    ends = {v.field: (v.low, v.high) for v in search.spec.vary}
+    for name, (start, best) in search.values(which).items():
+        factor, unit = scaled(search.spec.run, name)
+        low, high = (float(e or 0.0) for e in ends[name])
+        at = "at its end" if _at_end(best, low, high) else ""
+        words = (label(name), unit, *(_round(factor * x) for x in (start, best)),
+                 f"{_round(factor * low)} to {_round(factor * high)}", at)  # fmt: skip
+        rows.append(words)
+    return ResultTable(
+        caption=f"{label(search.names[which])}: what the search changed",
+        heads=("field", "unit", "start", "best", "range", ""),
+        rows=rows,
+        words=(0, 1, 5),
+    )
+
+
+def _limits(search: SearchResult, which: int) -> ResultTable:
+    rows = [
+        (
+            label(name),
+            LIMITS[name].tells,
+            LIMITS[name].unit,
+            f"{'at least' if LIMITS[name].good == 'more' else 'at most'} {limit:.3g}",
+            f"{has:.3g}",
+            "active" if active else "",
+        )
+        for name, (limit, has, active) in search.active(which).items()
+    ]
+    return ResultTable(
+        caption=f"{label(search.names[which])}: limits; joint limits, reach and servo speeds hold besides",
+        heads=("limit", "what it is", "unit", "allowed", "has", ""),
+        rows=rows,
+        words=(0, 1, 2, 5),
+    )
+
+
+def _checks(search: SearchResult) -> ResultTable:
+    assert search.checks is not None
+    checks, names = search.checks, [str(run) for run in search.checks.run.values]
+    columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in search.spec.aims]
+    columns += [(f"limit_{limit.name}", LIMITS[limit.name]) for limit in search.spec.limits]
+    rows = []
+    for i, who in enumerate(names):
+        for condition in checks.condition.values:
+            cells = [checks[name].sel(condition=condition).isel(run=i) for name, _ in columns]
+            numbers = [f"{float(cell):.3g}" if np.isfinite(cell) else "diverged" for cell in cells]
+            rows.append((f"{label(who)}, {condition}", *numbers))
+    heads = [f"{label(name.partition('_')[2])} [{kind.unit}]" for name, kind in columns]
+    return ResultTable(caption=f"{label(search.arm)}: under other conditions", heads=("condition", *heads), rows=rows)

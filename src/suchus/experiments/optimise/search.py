@@ -1,0 +1,260 @@
+"""The search itself: CMA-ES for one number, COMO-CMA-ES for a front of two; the same seed asks the same again.
+
+A ``SearchResult`` holds all that it tried, the front, the best, and what was checked about them.
+"""
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import value_at, with_values
+from suchus.core.errors import SuchusError
+from suchus.sim.land import Run
+from suchus.experiments.optimise.aims import AIMS
+from suchus.experiments.optimise.evaluate import ACTIVE, allowed, losses, over, units
+from suchus.experiments.optimise.spec import Optimisation
+
+_EDGE = 0.02  # how far inside its range a start is moved, where the search could not look to both sides
+
+
+class NoOptimiser(SuchusError, ImportError):
+    """A library that the search needs and that is not installed."""
+
+
+class Strategy(Protocol):
+    """Asks for candidates and receives their losses."""
+
+    def ask(self) -> np.ndarray:
+        """Return the next generation, shape (candidate, field), each from 0 to 1."""
+
+    def tell(self, losses: np.ndarray) -> None:
+        """Tell the losses of what was asked for: one number each, or two for a front."""
+
+
+def search(spec: Optimisation) -> Strategy:
+    """Return the search that a spec asks for.
+
+    Raises:
+        NoOptimiser: its library is not installed.
+    """
+    return Front(spec) if spec.pareto else Single(spec)
+
+
+class Single:
+    """CMA-ES; when it has converged it starts again from where it began, with twice as many candidates."""
+
+    def __init__(self, spec: Optimisation) -> None:
+        self._cma = library("cma")
+        self._spec = spec
+        self._randoms = np.random.default_rng(spec.seed)
+        self._population = spec.population
+        self._es = self._begun()
+
+    def _begun(self) -> Any:
+        return self._cma.CMAEvolutionStrategy(
+            np.clip(self._spec.start, _EDGE, 1 - _EDGE),
+            self._spec.sigma,
+            _options(self._spec, self._population, self._randoms),
+        )
+
+    def ask(self) -> np.ndarray:
+        """Return the next generation."""
+        if self._es.stop():
+            self._population *= 2
+            self._es = self._begun()
+        self._asked = self._es.ask()
+        return np.clip(np.array(self._asked), 0.0, 1.0)
+
+    def tell(self, losses: np.ndarray) -> None:
+        """Tell one loss for each."""
+        self._es.tell(self._asked, losses.tolist())
+
+
+class Front:
+    """COMO-CMA-ES: several searches, each of which makes the area that the front covers larger.
+
+    Source: C. Toure, N. Hansen, A. Auger, D. Brockhoff, Uncrowded Hypervolume Improvement: COMO-CMA-ES and the
+    Sofomore framework, GECCO 2019.
+    """
+
+    WORST = (0.0, 2.0)
+    """What no front reaches: nothing of an aim where more is better, twice the start's where less is [-]."""
+
+    def __init__(self, spec: Optimisation) -> None:
+        como = library("comocma")
+        randoms = np.random.default_rng(spec.seed)
+        first = np.clip(spec.start, _EDGE, 1 - _EDGE)
+        spread = np.clip(
+            first + 0.5 * spec.sigma * randoms.standard_normal((spec.points, len(first))), _EDGE, 1 - _EDGE
+        )
+        spread[0] = first
+        kernels = como.get_cmas([list(x) for x in spread], spec.sigma, _options(spec, spec.population, randoms))
+        self._search = como.Sofomore(kernels, reference_of(spec), {"update_order": _in_order, "archive": False})
+
+    def ask(self) -> np.ndarray:
+        """Return the next generation of all points."""
+        self._asked = self._search.ask("all")
+        return np.clip(np.array(self._asked), 0.0, 1.0)
+
+    def tell(self, losses: np.ndarray) -> None:
+        """Tell two losses for each."""
+        self._search.tell(self._asked, losses.tolist())
+
+
+def reference_of(spec: Optimisation) -> list[float]:
+    """Return the losses that a front is measured from."""
+    return [Front.WORST[0] if AIMS[aim.name].good == "more" else Front.WORST[1] for aim in spec.aims]
+
+
+def _in_order(kernel: int) -> int:
+    return kernel
+
+
+def _options(spec: Optimisation, population: int, randoms: np.random.Generator) -> dict[str, Any]:
+    """Return settings of CMA-ES: within the cube, silent, and drawing from a generator of our own."""
+    alone = {"maxstd": np.inf} if len(spec.vary) == 1 else {}  # cma 4.5 cannot bound the spread of a single field
+    return alone | {
+        "bounds": [0.0, 1.0],
+        "popsize": population,
+        "randn": lambda *shape: randoms.standard_normal(shape),
+        "seed": float("nan"),
+        "verbose": -9,
+        "tolfun": 1e-4,
+        "tolx": 1e-4,
+    }
+
+
+def library(name: str) -> Any:
+    """Return a library of the extra ``optimise``.
+
+    Raises:
+        NoOptimiser: it is not installed.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return __import__(name)
+    except ImportError as error:
+        raise NoOptimiser(f"the search needs {name}; install it with: pip install 'suchus[optimise]'.") from error
+
+
+_SHOWN = 3  # points of a front whose gaits are written and checked: both ends and the middle
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchResult:
+    """The result of the search in one condition."""
+
+    spec: Optimisation
+    """The search, of this condition alone."""
+    start: xr.Dataset
+    """Where it started, as ``evaluate`` returns it."""
+    history: xr.Dataset
+    """All candidates in order, the start first, with ``generation`` and ``score``."""
+    checks: xr.Dataset | None = None
+    """The best under other conditions; see ``checks.checked``."""
+    near: xr.Dataset | None = None
+    """Around the best; see ``checks.around``."""
+
+    @property
+    def arm(self) -> str:
+        """Name of the condition."""
+        return self.spec.arms[0].name
+
+    @property
+    def front(self) -> list[int]:
+        """The candidates that no other allowed one betters in both aims, by the first aim."""
+        return front_of(self.spec, self.history, units(self.spec, self.start))
+
+    @property
+    def chosen(self) -> list[int]:
+        """The best candidate; of a front both ends and the middle; empty if none keeps all limits."""
+        if self.spec.pareto:
+            front = self.front
+            picked = [round(i * (len(front) - 1) / (_SHOWN - 1)) for i in range(_SHOWN)] if front else []
+            return [front[i] for i in dict.fromkeys(picked)]
+        kept = np.flatnonzero(allowed(self.spec, self.history))
+        return [int(kept[self.history.score.values[kept].argmin()])] if kept.size else []
+
+    @property
+    def shares(self) -> list[np.ndarray]:
+        """Where the fields of the chosen lie in their ranges, each of shape (field,) [-]."""
+        return [self.history.share.values[i] for i in self.chosen]
+
+    @property
+    def names(self) -> list[str]:
+        """What the chosen are called: the arm, numbered where there are several."""
+        several = len(self.chosen) > 1
+        return [f"{self.arm}_{i + 1}" if several else self.arm for i in range(len(self.chosen))]
+
+    @property
+    def runs(self) -> list[Run]:
+        """The chosen, their gaits called after search and condition."""
+        return [
+            titled(self.spec, self.spec.candidate(dict(zip(self.fields, share.tolist(), strict=True))), name)
+            for share, name in zip(self.shares, self.names, strict=True)
+        ]
+
+    @property
+    def fields(self) -> list[str]:
+        """Dotted paths of the fields that varied."""
+        return [v.field for v in self.spec.vary]
+
+    def values(self, which: int) -> dict[str, tuple[float, float]]:
+        """Return by field what the start has and what a chosen one has."""
+        run = self.runs[which]
+        return {f: (float(value_at(self.spec.run, f)), float(value_at(run, f))) for f in self.fields}
+
+    def active(self, which: int) -> dict[str, tuple[float, float, bool]]:
+        """Return by limit its value, what a chosen one has, and whether the limit is what stops it."""
+        limits = {}
+        for limit in self.spec.limits:
+            has = float(self.history[f"limit_{limit.name}"][self.chosen[which]])
+            limits[limit.name] = (limit.value, has, bool(over(limit, np.array([has]))[0] > -ACTIVE))
+        return limits
+
+    def best_so_far(self) -> np.ndarray:
+        """Return after each candidate the value of the first aim of the best so far, NaN before there is one."""
+        kept = allowed(self.spec, self.history)
+        score = np.where(kept, self.history.score.values, np.inf)
+        at = np.array([int(score[: i + 1].argmin()) for i in range(len(score))])
+        values = self.history[f"aim_{self.spec.aims[0].name}"].values[at]
+        return np.where(np.isfinite(score[at]), values, np.nan)
+
+    def covered(self) -> np.ndarray:
+        """Return after each generation the area that the front covers, in parts of the start's aims."""
+        table, parts = self.history, units(self.spec, self.start)
+        loss, kept = losses(self.spec, table, parts), allowed(self.spec, table)
+        archive, areas = library("moarchiving").get_mo_archive([], reference_point=reference_of(self.spec), n_obj=2), []
+        for number in range(int(table.generation.max()) + 1):
+            for i in np.flatnonzero((table.generation.values == number) & kept):
+                archive.add(loss[i].tolist())
+            areas.append(float(archive.hypervolume))
+        return np.array(areas)
+
+    def with_checks(self, checks: xr.Dataset, near: xr.Dataset) -> "SearchResult":
+        """Return the same with what was checked."""
+        return replace(self, checks=checks, near=near)
+
+
+def titled(spec: Optimisation, run: Run, name: str) -> Run:
+    """Return a run whose gait, and robot if it varies, is called after search and condition."""
+    called = f"{spec.name}_{name}"
+    varied = any(v.field.startswith("robot.") for v in spec.vary)
+    robot = with_values(run.robot, {"name": called}) if varied else run.robot
+    return replace(run, gait=replace(run.gait, name=called), robot=robot, label=name)
+
+
+def front_of(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> list[int]:
+    """Return the allowed candidates that no other betters in both aims, by the first aim; all aims of a sum as one."""
+    kept = [int(i) for i in np.flatnonzero(allowed(spec, table))]
+    if not kept or len(spec.aims) != 2:
+        return []
+    points = losses(spec, table, parts)[kept]
+    archive = library("moarchiving").get_mo_archive(
+        points.tolist(), reference_point=reference_of(spec), infos=kept, n_obj=2
+    )
+    return [int(i) for i in archive.infos]

@@ -1,0 +1,178 @@
+"""What the rules of the verdicts read of one design: its runs, and their numbers by the names that the rules use."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import LEGS
+from suchus.core.errors import IncompatibleRecord
+from suchus.robot.gaits import CONDITIONS
+from suchus.sim.land import FAILED_JOINTS
+from suchus.experiments.claims import RULES, varied_of
+from suchus.article.verdict import Rule, Word, ladder, word_of
+
+FAULTY = ("coordinated", "limbs_only")
+"""Conditions in which joints fail, too: the article's two groups."""
+RUNS = (*CONDITIONS, *(f"{condition}_{joint}" for condition in FAULTY for joint in FAILED_JOINTS))
+"""The runs of each sample: every condition intact, the two groups with each failed joint."""
+_IN_EACH = {
+    "forward": "displacement_x",
+    "com_height_pp": "height_peak_to_peak",
+    "com_height_std": "height_std",
+    "roll_pp": "roll_peak_to_peak",
+    "two_feet_share": "two_feet_share",
+    "line_distance_max": "line_distance_max",
+    "tail_load_share": "tail_load_share",
+}
+"""Measures of every condition, ``NAME_CONDITION``, and the column of the study that holds them."""
+_OF_CRAWL = {
+    "spine_sine_r2": "spine_sine_share",
+    "diagonal_phase_error": "diagonal_phase_error",
+    "spine_changes_per_cycle": "spine_swings",
+    "tail_changes_per_cycle": "tail_swings",
+    "spine_amplitude": "spine_amplitude",
+    "tail_amplitude": "tail_amplitude",
+    "tail_swing_least": "tail_swing_least",
+    "tail_joint_spread": "tail_joint_spread_max",
+}
+"""Measures of the crawl with spine and tail, and their column."""
+_GAINS = {
+    "gain_spine_swing": ("coordinated", "tail_drag"),
+    "gain_tail_swing": ("coordinated", "tail_still"),
+    "gain_tail_contact": ("tail_still", "spine_only"),
+}
+"""Differences of displacement between two conditions."""
+_CHANGES = {
+    "com_height_pp_change": ("coordinated", "limbs_only"),
+    "com_height_pp_change_tail_lifted": ("coordinated", "limbs_tail_lifted"),
+    "wagging_pp_change": ("coordinated", "tail_still"),
+    "tail_contact_pp_change": ("tail_still", "spine_only"),
+    "tail_contact_pp_change_limbs_only": ("limbs_only", "limbs_tail_lifted"),
+    "spine_swing_pp_change": ("coordinated", "tail_drag"),
+}
+"""Relative changes of the height's fluctuation from the second condition to the first."""
+METRICS = (
+    "displacement", "duty_factor", "foot_clearance", "height_peak_to_peak", "height_std", "roll_peak_to_peak",
+    "two_feet_share", "line_distance_max", "tail_load_share", "diagonal_phase_error", "spine_sine_share",
+    "spine_swings", "tail_swings", "spine_amplitude", "tail_amplitude", "tail_swing_least", "tail_joint_spread_max",
+)  # fmt: skip
+"""What a study of the claims measures of every run."""
+_LEAST_RATIO = 0.02  # a displacement with limbs only below this part of that with spine and tail makes a ratio of 50
+_STANDS = 0.01  # [m]; an intact robot that gets no farther has nothing to keep when a joint fails
+
+
+def asked_rules() -> tuple[Rule, ...]:
+    """Return the rules of the claims that the walks of a study of designs answer."""
+    varied = claims_varied()
+    return tuple(rule for rule in RULES.values() if not rule.unswept and rule.claim not in varied)
+
+
+def claims_varied() -> frozenset[str]:
+    """Return the claims that are answered by asking their experiment again, see ``verdict.Varied``."""
+    declared = (varied_of(name) for name in {rule.experiment for rule in RULES.values()})
+    return frozenset(claim for varied in declared if varied is not None for claim in varied.claims)
+
+
+def measures_of(record: xr.Dataset, least: float) -> Mapping[str, np.ndarray]:
+    """Return the measures that the rules read, each over all samples; NaN where there is nothing to measure.
+
+    Args:
+        record: the columns of ``METRICS`` over ``sample`` and ``run``, see ``RUNS``.
+        least: an intact robot with spine and tail that gets no farther has nothing to lose [m].
+    """
+
+    def of(column: str, run: str) -> np.ndarray:
+        nothing = np.full(record.sizes["sample"], np.nan)
+        return record[column].sel(run=run).values if column in record else nothing
+
+    found = {f"{name}_{c}": of(column, c) for name, column in _IN_EACH.items() for c in CONDITIONS}
+    found |= {name: of(column, "coordinated") for name, column in _OF_CRAWL.items()}
+    duty = [of(f"duty_factor_{leg}", "coordinated") for leg in LEGS]
+    found["duty_factor_greatest"] = np.max(duty, axis=0)
+    for c in CONDITIONS:
+        found[f"hind_duty_{c}"] = np.maximum(*(of(f"duty_factor_{leg}", c) for leg in ("LH", "RH")))
+        found[f"hind_clearance_{c}"] = np.minimum(*(of(f"foot_clearance_{leg}", c) for leg in ("LH", "RH")))
+    found |= {name: found[f"forward_{one}"] - found[f"forward_{other}"] for name, (one, other) in _GAINS.items()}
+    found |= {
+        name: found[f"com_height_pp_{one}"] / found[f"com_height_pp_{other}"] - 1
+        for name, (one, other) in _CHANGES.items()
+    }
+    ours = found["forward_coordinated"]
+    able = np.where(ours > least, ours, np.nan)
+    for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
+        found[name] = able / np.maximum(found[f"forward_{control}"], _LEAST_RATIO * able)
+    return found | _faults({run: of("displacement_x", run) for run in RUNS}, able)
+
+
+def _faults(forward: Mapping[str, np.ndarray], able: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what each failed joint costs, and how much less of its own displacement is lost with spine and tail."""
+    found: dict[str, np.ndarray] = {}
+    for joint in FAILED_JOINTS:
+        kept = []
+        for condition in FAULTY:
+            got, own = forward[f"{condition}_{joint}"], forward[condition]
+            found[f"loss_{joint}_limp_one_{condition}"] = got / able - 1.0
+            kept.append(np.maximum(got / np.where(own > _STANDS, own, np.nan), 0.0))
+        found[f"gain_{joint}_limp_one"] = kept[0] - kept[1]
+    return found
+
+
+def once(rule: Rule, measures: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return what a rule needs; a sample is run once, so that its value stands for the ends of an interval.
+
+    Args:
+        rule: the claim's.
+        measures: of all samples, see ``measures_of``.
+
+    Raises:
+        IncompatibleRecord: a measure is not there.
+    """
+    found = {}
+    for name in sorted(rule.needs):
+        plain = name if name in measures else name.removesuffix("_low").removesuffix("_high")
+        if plain not in measures:
+            raise IncompatibleRecord(
+                f"the rule for {rule.claim} needs {name}, which the study of the claims does not measure; "
+                "measure it there, or say in the rule's `unswept` why no share of designs is known."
+            )
+        found[name] = measures[plain]
+    return found
+
+
+def held(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the number of a claim in every sample, NaN where it is not judged, and whether its statement holds.
+
+    A sample whose intervals leave the statement undecided is not judged, nor one whose control group does not do what
+    the claim needs, nor one of which models disagree.
+
+    Args:
+        rule: the claim's.
+        measures: of all samples, see ``measures_of``.
+    """
+    needed, rows = once(rule, measures), _rows(rule, measures)
+    if rule.rungs:
+        said = [ladder.voices(rule, row) for row in rows]
+        number = np.array([ladder.spread(voices)[0] for voices in said], dtype=float)
+        answers = [None if ladder.disagree(voices) else ladder.agreed(voices) for voices in said]
+    else:
+        number = np.asarray(needed[rule.measure], dtype=float)
+        answers = [rule.held(row) if rule.testable(row) else None for row in rows]
+    number = np.where([answer is None for answer in answers], np.nan, number)
+    return number, np.array([answer is True for answer in answers], dtype=bool) & np.isfinite(number)
+
+
+def words(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[Word]:
+    """Return the word of a claim in every sample.
+
+    Args:
+        rule: the claim's.
+        measures: of all samples, see ``measures_of``.
+    """
+    return [word_of(rule, row) for row in _rows(rule, measures)]
+
+
+def _rows(rule: Rule, measures: Mapping[str, np.ndarray]) -> list[dict[str, float]]:
+    """Return what a rule needs of each sample."""
+    needed = once(rule, measures)
+    return [dict(zip(needed, row, strict=True)) for row in zip(*(one.tolist() for one in needed.values()), strict=True)]

@@ -1,0 +1,232 @@
+"""The ready-made study of the article's claims: plausible designs and gaits, with and without spine, tail, joints."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import Robot, unit_at, value_at
+from suchus.core.checks import Checks
+from suchus.core.errors import UnreadableFile
+from suchus.robot.gaits import GAITS, conditions_of
+from suchus.core.jobs import deciding
+from suchus.core.jobs.store import made_by
+from suchus.sim.land import FAILED_JOINTS, Run, joint_failure
+from suchus.robot.motion import START, Gait
+from suchus.article.paper import CYCLES
+from suchus.core.progress import Progress, silent
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study.answers import agreement, answers
+from suchus.experiments.study.arm import Arm
+from suchus.experiments.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
+from suchus.experiments.study.conduct import conduct, finished
+from suchus.experiments.study.plan import only_forbids
+from suchus.experiments.study.study import Study, Vary
+
+FINE = 0.002  # [s]; the time step of results
+_TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claims:
+    """Every number that the article does not give, drawn from its plausible range, all at once.
+
+    The numbers are those of ``chosen`` beside the robot and the gait on the shelf, but for the limits of the joints: a
+    limit only forbids, and whether a gait is forbidden is counted apart. Each sample is a robot and a gait, run in
+    every condition of spine and tail, see ``claim_measures.RUNS``.
+    """
+
+    robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
+    """The robot whose other fields all samples share."""
+    gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
+    """The crawl whose other fields all samples share."""
+    samples: int = 2048
+    """Number of designs and gaits, best a power of two, as Sobol's sequence asks [-]; about a quarter cannot walk."""
+    together: int = 16
+    """Number of samples that are simulated together, and lost when the study is killed [-]."""
+    coarse: tuple[float, ...] = (0.01, 0.005)
+    """Time steps that are tried, the first that agrees with 2 ms is taken; 2 ms if none does [s]."""
+    compared: int = 64
+    """So many samples are run with 2 ms as well, to see which time step agrees [-]."""
+    alike: float = 0.95
+    """Share of the compared samples and claims whose truth must be the same [-]."""
+    biased: float = 0.05
+    """A time step that turns a claim one way so much more often than the other that chance does so less often than
+    this is refused too [-]."""
+    least: float = 0.05
+    """An intact robot with spine and tail that gets no farther cannot lose anything that could be measured [m]."""
+    cycles: int = int(CYCLES)
+    """Number of cycles that are measured [-]."""
+    seed: int = 0
+    """Seed of the Sobol sequence's scrambling [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("claims", self) as check:
+            check.whole("samples", 1, 1_000_000)
+            check.whole("together", 1, 1_000)
+            check.whole("compared", 1, 100_000)
+            check.whole("cycles", 1, 1_000)
+            check.whole("seed", 0, 2**32 - 1)
+            check.number("alike", 0.0, 1.0, "")
+            check.number("biased", 0.0, 1.0, "")
+
+    def study(self, samples: int, timestep: float) -> Study:
+        """Return the study of so many samples; the first ones stay the same, however many."""
+        rows = [(f"robot.{one.field}", one) for one in ROBOTS.beside("caiman", "chosen", ())]
+        rows += [(f"gait.{one.field}", one) for one in GAITS.beside("belly_crawl", "chosen", ())]
+        return Study(
+            name="claims",
+            run=Run(robot=self.robot, gait=self.gait),
+            vary=tuple(Vary(field=path, low=one.low, high=one.high) for path, one in rows if not only_forbids(path)),
+            measure=METRICS,
+            design="sobol",
+            samples=samples,
+            arms=self._arms(),
+            seed=self.seed,
+            duration=START + self.cycles * self.gait.period,
+            timestep=timestep,
+            every=5,
+            chunk=self.together * len(RUNS),
+        )
+
+    def _arms(self) -> tuple[Arm, ...]:
+        """Return what each run of a sample sets, after everything that varies."""
+        crawl = GAITS["belly_crawl"]
+        sets: dict[str, Mapping[str, Any]] = {}
+        for name, gait in conditions_of(ROBOTS["caiman"], crawl, GAITS["limbs_only"]).items():
+            of = {one: (value_at(gait, one), value_at(crawl, one)) for one in _TRUNK}
+            sets[name] = {f"gait.{one}": there for one, (there, here) in of.items() if there != here}
+        sets |= {
+            f"{name}_{joint}": {**sets[name], "faults": joint_failure(self.robot, self.gait, joint, "limp")}
+            for name in FAULTY
+            for joint in FAILED_JOINTS
+        }
+        return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
+
+    def record(self, study: Study, results: xr.Dataset) -> xr.Dataset:
+        """Return the results by sample and run, with what became of each claim."""
+        names = [v.field for v in study.vary]
+        shape = results.sizes["sample"] // len(RUNS), len(RUNS)
+        status = np.array([_status(row) for row in results.error.values.reshape(shape)])
+        walked = np.isin(status, ("walked", "came apart"))[:, None]
+        columns = [str(c) for c in results.data_vars if c not in (*names, "seed", "arm", "error")]
+        found = {
+            c: (("sample", "run"), np.where(walked, results[c].values.reshape(shape), np.nan), results[c].attrs)
+            for c in columns
+        }
+        values = np.column_stack([results[name].values[:: len(RUNS)] for name in names])
+        record = xr.Dataset(
+            found
+            | {
+                "status": ("sample", status, {"units": "1", "long_name": "what became of it"}),
+                "value": (("sample", "parameter"), values, {"units": "1", "long_name": "each in its own unit"}),
+            },
+            coords={
+                "run": list(RUNS),
+                "parameter": names,
+                "parameter_unit": ("parameter", [unit_at(study.run, name) for name in names]),
+            },
+        )
+        return record.merge(answers(record, self.least)).assign_attrs(
+            timestep=study.timestep, seed=self.seed, cycles=self.cycles, agreed="[]", made_by=json.dumps(deciding())
+        )
+
+
+def conduct_claims(
+    asked: Claims, folder: str | Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
+) -> xr.Dataset:
+    """Find the time step that agrees with the full one, run what is not in the stores yet, and answer.
+
+    Args:
+        asked: the study.
+        folder: for its stores, one below it for each time step that is compared and one for the runs.
+        progress: told which study runs, and how many of its runs are done.
+        client: a ``distributed.Client``, whose workers then run the batches; this process if None.
+        jobs: number of processes of this machine, see ``conduct``.
+
+    Returns:
+        See ``Claims.record``; attributes say which time step was taken, as JSON how it and the others agreed, and
+        what made the runs.
+
+    Raises:
+        Unwritable: a store cannot be written to.
+        IncompatibleRecord: a store is another study's or another version's, or a rule needs what is not measured.
+        NoCluster: the cluster was lost.
+    """
+    folder = Path(folder)
+    nothing = measures_of(xr.Dataset(coords={"sample": []}), asked.least)
+    for rule in asked_rules():  # an hour before it would be found out
+        held(rule, nothing)
+
+    def run(samples: int, timestep: float, place: str) -> xr.Dataset:
+        study = replace(asked.study(samples, timestep), name=f"claims_{place}")
+
+        def tell(stage: str, share: float) -> None:
+            progress(f"{place.replace('_', ' ')}: {stage}", share)
+
+        return asked.record(study, conduct(study, folder / place, progress=tell, client=client, jobs=jobs))
+
+    full = run(asked.compared, FINE, _compared(FINE))
+    taken, agreed = FINE, []
+    for timestep in asked.coarse:
+        found = agreement(run(asked.compared, timestep, _compared(timestep)), full)
+        agreed.append({"timestep": timestep, **found._asdict()})
+        if found.same >= asked.alike and found.chance >= asked.biased:
+            taken = timestep
+            break
+    record = run(asked.samples, taken, "runs")
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+
+
+def answer_finished(asked: Claims, folder: str | Path) -> xr.Dataset:
+    """Answer from what ``conduct_claims`` has stored so far, whatever version stored it, and run nothing.
+
+    Args:
+        asked: the study.
+        folder: of its stores.
+
+    Returns:
+        As of ``conduct_claims``, of as many finished samples as make a power of two.
+
+    Raises:
+        UnreadableFile: not even one batch of the runs is finished.
+    """
+    folder = Path(folder)
+
+    def read(place: str) -> tuple[Study, xr.Dataset]:
+        makers = made_by(folder / place, key="fields")
+        samples, timestep = int(makers["samples"]), float(makers["timestep"])
+        study = asked.study(samples, timestep)
+        results = finished(study, folder / place)
+        count = results.sizes["sample"] // len(RUNS)
+        whole = 1 << max(count.bit_length() - 1, 0)
+        if count == 0 or list(results.arm.values[: len(RUNS)]) != list(RUNS):
+            raise UnreadableFile(f"{folder / place} holds no finished runs of this study; start it, or let it go on.")
+        return study, results.isel(sample=slice(0, whole * len(RUNS)))
+
+    full = asked.record(*read(_compared(FINE)))
+    agreed = [
+        {"timestep": timestep, **agreement(asked.record(*read(_compared(timestep))), full)._asdict()}
+        for timestep in asked.coarse
+        if (folder / _compared(timestep)).is_dir()
+    ]
+    record = asked.record(*read("runs"))
+    return record.assign_attrs(agreed=json.dumps(agreed), made_by=json.dumps(made_by(folder / "runs")))
+
+
+def _compared(timestep: float) -> str:
+    return f"compared_{1000 * timestep:g}ms"
+
+
+def _status(errors: np.ndarray) -> str:
+    """Return what became of a sample: of its runs none may be refused."""
+    kinds = {str(error).partition(":")[0] for error in errors if error}
+    if "OutsideLimits" in kinds:
+        return "outside limits"
+    if kinds - {"Diverged"}:
+        return "impossible"
+    return "came apart" if kinds else "walked"

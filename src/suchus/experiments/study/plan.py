@@ -1,0 +1,182 @@
+"""The points of a study: which values each run takes."""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import stats
+from scipy.stats import qmc
+
+from suchus.robot.design import with_values
+from suchus.core.errors import InvalidDesign
+from suchus.sim.land import Run
+from suchus.experiments.study.arm import Arm
+from suchus.experiments.study.study import Study, Vary
+
+_MOST = 10_000_000
+
+
+class Point(NamedTuple):
+    """One run of a study."""
+
+    values: Mapping[str, Any]
+    """By field."""
+    seed: int
+    """Seed of the run."""
+    arm: Arm | None = None
+    """Of the comparison, where there is one."""
+
+
+class Plan(Sequence[Point]):
+    """Every run of a study in order: the samples, in each the arms, in each the combinations, in each the seeds.
+
+    Args:
+        study: the study.
+
+    Raises:
+        InvalidDesign: it has more than ten million runs.
+    """
+
+    def __init__(self, study: Study) -> None:
+        self.study = study
+        factorial = study.design == "factorial"
+        self._each = [v for v in study.vary if factorial or v.each]
+        self._sampled = [v for v in study.vary if not (factorial or v.each)]
+        self._whole = {v.field: study.whole(v.field) for v in study.vary}
+        self._levels = [levels(v, whole=self._whole[v.field]) for v in self._each]
+        self._combinations = prod(len(v) for v in self._levels)
+        count = (study.samples or 1) if self._sampled else 1
+        self._arms = study.arms or (None,)
+        self._length = count * len(self._arms) * self._combinations * study.seeds
+        if self._length > _MOST:
+            raise InvalidDesign(f"study {study.name!r} has {self._length} runs; up to {_MOST} are allowed.")
+        self._shares = evenly(study.design, count, len(self._sampled), study.seed)
+        self._varied: dict[tuple[int, int], Run] = {}
+
+    def __len__(self) -> int:
+        return self._length
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        if not 0 <= index < len(self):
+            raise IndexError(index)
+        sample, arm, combination, repeat = self._place(index)
+        chosen: dict[str, Any] = {}
+        for vary, levels_ in zip(reversed(self._each), reversed(self._levels), strict=True):
+            combination, level = divmod(combination, len(levels_))
+            chosen[vary.field] = levels_[level]
+        for vary, share in zip(self._sampled, self._shares[sample], strict=True):
+            chosen[vary.field] = value_of(vary, float(share), whole=self._whole[vary.field])
+        return Point({v.field: chosen[v.field] for v in self.study.vary}, self.study.seed + repeat, self._arms[arm])
+
+    def _place(self, index: int) -> tuple[int, int, int, int]:
+        """Return the numbers of a run's sample, arm, combination and seed."""
+        rest, repeat = divmod(index, self.study.seeds)
+        rest, combination = divmod(rest, self._combinations)
+        return *divmod(rest, len(self._arms)), combination, repeat
+
+    @property
+    def chunks(self) -> int:
+        """Number of batches [-]."""
+        return -(-len(self) // self.study.chunk)
+
+    def chunk(self, number: int) -> range:
+        """Return which runs a batch holds; batches of a study differ by one run at most."""
+        least, more = divmod(len(self), self.chunks)
+        first = number * least + min(number, more)
+        return range(first, first + least + (number < more))
+
+    def run(self, index: int) -> Run:
+        """Return one run.
+
+        Raises:
+            InvalidDesign: its values cannot be together.
+        """
+        point, (sample, _, combination, _) = self[index], self._place(index)
+        if (sample, combination) not in self._varied:  # arms and seeds of a point share robot and gait
+            varied = self._vary(point.values)
+            self._varied = {key: run for key, run in self._varied.items() if key[0] == sample}
+            self._varied[sample, combination] = varied
+        run = with_values(self._varied[sample, combination], {"seed": point.seed, "label": str(index)})
+        return run if point.arm is None else with_values(run, point.arm.values)
+
+    def _vary(self, values: Mapping[str, Any]) -> Run:
+        """Return the run from which all differ, with the values of a point."""
+        run = self.study.run
+        for depth in sorted({_depth(path) for path in values}):  # a whole gait first, then its fields
+            run = with_values(run, {path: v for path, v in values.items() if _depth(path) == depth})
+        return run
+
+
+def _depth(path: str) -> int:
+    return path.count(".") + path.count("[")
+
+
+def levels(vary: Vary, *, whole: bool = False) -> tuple[Any, ...]:
+    """Return the values of a field that are combined.
+
+    Args:
+        vary: the field.
+        whole: whether it takes whole numbers only.
+    """
+    if vary.values is not None:
+        return vary.values
+    assert vary.steps is not None
+    values = [value_of(vary, i / (vary.steps - 1)) for i in range(vary.steps)]
+    return tuple(dict.fromkeys(round(value) for value in values)) if whole else tuple(values)
+
+
+def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
+    """Return the value below which a share of a field's values lies.
+
+    Args:
+        vary: the field.
+        share: 0 to 1.
+        whole: whether the field takes whole numbers only; those of an even range are then equally frequent.
+    """
+    if vary.values is not None:
+        return vary.values[min(int(share * len(vary.values)), len(vary.values) - 1)]
+    if whole:
+        return _whole(vary, share)
+    if vary.mean is not None and vary.spread is not None:
+        low = -np.inf if vary.low is None else (vary.low - vary.mean) / vary.spread
+        high = np.inf if vary.high is None else (vary.high - vary.mean) / vary.spread
+        inside = stats.norm.cdf(low) + share * (stats.norm.cdf(high) - stats.norm.cdf(low))
+        inside = float(np.clip(inside, 1e-12, 1 - 1e-12))
+        return float(vary.mean + vary.spread * np.clip(stats.norm.ppf(inside), low, high))
+    assert vary.low is not None
+    assert vary.high is not None
+    if vary.scale == "log":
+        return float(np.clip(vary.low * (vary.high / vary.low) ** share, vary.low, vary.high))
+    return float(vary.low + (vary.high - vary.low) * share)
+
+
+def _whole(vary: Vary, share: float) -> int:
+    if vary.mean is not None or vary.scale == "log":
+        return round(value_of(vary, share))
+    assert vary.low is not None
+    assert vary.high is not None
+    return int(min(vary.low + np.floor(share * (vary.high - vary.low + 1)), vary.high))
+
+
+@lru_cache(maxsize=4)
+def evenly(design: str, count: int, fields: int, seed: int) -> np.ndarray:
+    """Return evenly spread points of the unit cube, shape (count, fields)."""
+    if fields == 0:
+        return np.empty((count, 0))
+    if design == "latin":
+        return np.asarray(qmc.LatinHypercube(fields, rng=np.random.default_rng(seed)).random(count))
+    sobol = qmc.Sobol(fields, rng=np.random.default_rng(seed))
+    return np.asarray(sobol.random_base2(max(count - 1, 0).bit_length())[:count])
+
+
+def only_forbids(path: str) -> bool:
+    """Return whether a field is a limit of a joint: it changes no motion, and whether it forbids one is counted apart.
+
+    Args:
+        path: of the field, from the run or the experiment.
+    """
+    return "range[" in path

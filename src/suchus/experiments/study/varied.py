@@ -1,0 +1,213 @@
+"""An experiment asked again with other plausible designs and settings: what its walks of the claims cannot answer."""
+
+import json
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import Robot, unit_at, value_at, with_values
+from suchus.core.checks import Checks
+from suchus.core.errors import IncompatibleRecord, SuchusError
+from suchus.robot.gaits import GAITS
+from suchus.core.jobs import Job, Store, finish, place_for
+from suchus.core.jobs.store import MARK, made_by, together
+from suchus.core.progress import Progress, silent
+from suchus.robot.robots import ROBOTS
+from suchus.experiments.study.answers import answered
+from suchus.experiments.study.claim_measures import held, words
+from suchus.experiments.study.plan import evenly, only_forbids, value_of
+from suchus.experiments.study.study import Vary
+from suchus.experiments.claims import RULES, varied_of
+from suchus.article.verdict import Rule, listed
+
+LEAST = 8
+"""Fewer points than these make no share: its interval would be half of the whole [-]."""
+
+
+class Question(Protocol):
+    """What is asked: an experiment, a frozen dataclass."""
+
+    def name(self) -> str:
+        """Return its name on the shelf."""
+
+    def measured(self, wanted: Collection[str], progress: Progress = silent) -> Mapping[str, Any]:
+        """Return the numbers that are wanted at least, each with its ``value``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VariedStudy:
+    """An experiment that is asked once for each of some points: another design, other settings."""
+
+    name: str
+    """Name of the experiment."""
+    experiment: Question
+    """The question from which all differ."""
+    vary: tuple[Vary, ...]
+    """Fields of the experiment that vary, over their plausible ranges."""
+    claims: tuple[str, ...]
+    """Keys of the claims that are judged."""
+    samples: int
+    """Number of points of the Sobol sequence [-]."""
+    seed: int = 0
+    """Seed of its scrambling [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("the study of settings", self) as check:
+            check.whole("samples", 1, 100_000)
+            check.whole("seed", 0, 2**32 - 1)
+            check.that(len(self.vary) > 0, f"{self.name} varies nothing; name at least one field in VARIED")
+
+    @property
+    def rules(self) -> tuple[Rule, ...]:
+        """The rules that judge each point."""
+        return tuple(RULES[claim] for claim in self.claims)
+
+    def point(self, sample: int) -> dict[str, Any]:
+        """Return the values of a point, by field; the first points stay the same, however many there are."""
+        shares = evenly("sobol", self.samples, len(self.vary), self.seed)[sample]
+        whole = [isinstance(value_at(self.experiment, one.field), int) for one in self.vary]
+        rows = zip(self.vary, shares, whole, strict=True)
+        return {one.field: value_of(one, float(share), whole=is_whole) for one, share, is_whole in rows}
+
+    def asked(self, sample: int) -> Question:
+        """Return the question of a point.
+
+        Raises:
+            InvalidDesign: its values cannot be together.
+        """
+        return with_values(self.experiment, self.point(sample))
+
+
+def varied_study(question: Question, samples: int | None = None) -> VariedStudy | None:
+    """Return the study of an experiment's designs and settings, or None where it declares none.
+
+    Args:
+        question: the experiment, as on the shelf.
+        samples: number of points; as many as the experiment asks for if None [-].
+    """
+    declared = varied_of(question.name())
+    if declared is None:
+        return None
+    experiment: Any = replace(question, **declared.settings)  # type: ignore[type-var]
+    rows = [(path, low, high) for path, (low, high, _) in declared.over.items()]
+    for held_in in declared.designs:
+        thing = getattr(experiment, held_in)
+        shelves: Any = ROBOTS if isinstance(thing, Robot) else GAITS
+        chosen = shelves.beside(thing.name, "chosen", ())
+        rows += [(f"{held_in}.{one.field}", one.low, one.high) for one in chosen if not only_forbids(one.field)]
+    return VariedStudy(
+        name=question.name(),
+        experiment=experiment,
+        vary=tuple(Vary(field=path, low=low, high=high) for path, low, high in rows),
+        claims=declared.claims,
+        samples=declared.samples if samples is None else samples,
+    )
+
+
+def conduct_varied(
+    study: VariedStudy, folder: Path, *, progress: Progress = silent, client: Any = None, jobs: int = 1
+) -> xr.Dataset:
+    """Ask the experiment at every point that is not in the store yet, and answer.
+
+    Args:
+        study: what is asked.
+        folder: of the stores, one below it for each experiment; each point is kept as it is finished.
+        progress: told how many points are done.
+        client: a ``distributed.Client``, whose workers then ask; this machine if None.
+        jobs: number of processes of this machine.
+
+    Returns:
+        Number, truth and word of each claim at every point, see ``answers.answered``, ``value`` over ``sample`` and
+        ``parameter``, and ``status``.
+
+    Raises:
+        Unwritable: the store cannot be written to.
+        IncompatibleRecord: the store is another study's or another version's, or a rule needs what is not measured.
+    """
+    job = Job(
+        name=f"claims of {study.name}",
+        kind="study",
+        piece="design",
+        unit="designs",
+        work=partial(ask, study),
+        items=range(study.samples),
+        failures=lambda result: int((result.error != "").sum()),
+    )
+    with Store(folder / study.name, study).opened() as store:
+        finish(job, store, place=place_for("a study", client=client, jobs=jobs), progress=progress)
+        return _made_by(answer_varied(study, store.gather(study.samples)), folder / study.name)
+
+
+def varied_finished(study: VariedStudy, folder: Path) -> xr.Dataset | None:
+    """Return the answer from the points that are stored, whatever version stored them; None where there are too few.
+
+    Args:
+        study: what is asked.
+        folder: of the stores.
+
+    Raises:
+        IncompatibleRecord: they are points of another plan, so that nobody knows any more what varied.
+    """
+    store = Store(folder / study.name, study)
+    said = made_by(folder / study.name, key="fields") if (folder / study.name / MARK).is_file() else {}
+    other = [name for name in ("vary", "seed") if said and said.get(name) != repr(getattr(study, name))]
+    if other:
+        raise IncompatibleRecord(
+            f"{folder / study.name} holds points of another plan, which differs in {listed(other)}: numbers were added "
+            f"or have other ranges since. Renew it: suchus study claims --only {study.name} --out FOLDER"
+        )
+    done = [store.get(sample) for sample in range(study.samples) if store.has(sample)]
+    return _made_by(answer_varied(study, together(done)), folder / study.name) if len(done) >= LEAST else None
+
+
+def _made_by(record: xr.Dataset, folder: Path) -> xr.Dataset:
+    return record.assign_attrs(made_by=json.dumps(made_by(folder)))
+
+
+def ask(study: VariedStudy, sample: int, progress: Progress = silent) -> xr.Dataset:
+    """Return what the experiment measures at one point: what its rules read, or why there is nothing, in ``error``."""
+    needed = sorted(set().union(*(rule.needs for rule in study.rules)))
+    numbers, error = dict.fromkeys(needed, np.nan), ""
+    try:
+        measures = study.asked(sample).measured(needed, progress)
+        numbers = {name: float(measures[name].value) for name in needed}
+    except SuchusError as refused:
+        error = f"{type(refused).__name__}: {' '.join(str(refused).split())}"
+    columns: dict[str, Any] = {name: ("sample", [value]) for name, value in numbers.items()}
+    return xr.Dataset(columns | {"error": ("sample", [error])}, coords={"sample": [sample]})
+
+
+def answer_varied(study: VariedStudy, results: xr.Dataset) -> xr.Dataset:
+    """Return what became of each claim from what was measured at the points.
+
+    Args:
+        study: what was asked.
+        results: of ``ask``, one or more points.
+    """
+    points = [study.point(int(sample)) for sample in results.sample.values]
+    measures = {str(name): results[name].values for name in results.data_vars if name != "error"}
+    kinds = [str(error).partition(":")[0] for error in results.error.values]
+    value = np.array([[float(point[one.field]) for one in study.vary] for point in points])
+    record = xr.Dataset(
+        {
+            "status": ("sample", np.array([_STATUS.get(kind, "impossible") for kind in kinds])),
+            "value": (("sample", "parameter"), value, {"units": "1", "long_name": "each in its own unit"}),
+        },
+        coords={
+            "parameter": [one.field for one in study.vary],
+            "parameter_unit": ("parameter", [unit_at(study.experiment, one.field) for one in study.vary]),
+        },
+    )
+    found = {rule.claim: held(rule, measures) for rule in study.rules}
+    said = np.array([words(rule, measures) for rule in study.rules], dtype=object)
+    said[:, record.status.values != "asked"] = ""
+    record["word"] = ("claim", "sample"), said.astype(str), {"units": "1", "long_name": "what it says of the claim"}
+    return record.merge(answered(found, value))
+
+
+_STATUS: Mapping[str, str] = {"": "asked", "OutsideLimits": "outside limits", "Diverged": "diverged"}

@@ -1,7 +1,0 @@
-"""The crawl with the trunk straight and the tail on the ground, swinging as in the full crawl."""
-
-from suchus.gaits import belly_crawl
-
-gait = belly_crawl.gait.without("trunk", name="tail_drag")
-"""Legs and tail."""
-chosen = belly_crawl.chosen

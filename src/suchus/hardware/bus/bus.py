@@ -1,0 +1,219 @@
+"""One bus as its host sees it: requests out, replies in, each by a deadline; what goes wrong is counted."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from time import monotonic
+
+from suchus.hardware.bus.packets import Framing, Packet
+from suchus.hardware.bus.ports import Port
+from suchus.hardware.bus.tables import Register
+from suchus.hardware.bus.wiring import CLOCK
+from suchus.core.errors import BusFailure
+
+WAIT = 0.008
+"""How long replies are waited for [s]; the bytes of a tick come on top."""
+_STEPPING = 60.0
+"""How long an emulator may take for the ticks that its clock is told to let pass [s]."""
+
+
+class NoAnswer(BusFailure):
+    """A servo that did not answer, or not in a way that could be understood."""
+
+
+@dataclass(slots=True)
+class Counts:
+    """What went wrong on a bus."""
+
+    missing: int = 0
+    """Replies that did not come in time [-]."""
+    stale: int = 0
+    """Replies that came to a question that was no longer asked, or of the wrong length [-]."""
+
+
+class Bus:
+    """One bus.
+
+    Neither protocol numbers its packets: a reply that comes late looks like one to the next question. So after a reply
+    is missing, nothing else is asked (``settled``) until the bus has been silent for twice the wait. The same question
+    may be asked again: a late reply to it is at worst older.
+
+    Args:
+        port: to it.
+        framing: what is spoken.
+        wait: for replies [s].
+        clocked: whether an emulator's clock says when all have answered, so that nothing needs to be waited for.
+    """
+
+    def __init__(self, port: Port, framing: Framing, *, wait: float = WAIT, clocked: bool = False) -> None:
+        self.port, self.framing, self.wait, self.clocked = port, framing, wait, clocked
+        self.counts = Counts()
+        self._decoder = framing.replies()
+        self._quiet_from = 0.0
+        self._asked: dict[int, int] = {}  # whom ``begin`` asked for how many bytes
+        self._kept: dict[int, Packet] = {}  # replies to that which came too late
+        self.late: frozenset[int] = frozenset()
+        """Whose replies of the last ``end`` were late ones to the question before."""
+
+    @property
+    def broken(self) -> int:
+        """Replies whose checksum was wrong [-]."""
+        return self._decoder.broken
+
+    @property
+    def dropped(self) -> int:
+        """Bytes that belonged to no reply [-]."""
+        return self._decoder.dropped
+
+    @property
+    def settled(self) -> bool:
+        """Whether no late reply is to be expected any more."""
+        return self.clocked or monotonic() >= self._quiet_from
+
+    def settle(self) -> None:
+        """Take what still comes until the bus has been silent for twice the wait."""
+        while not self.settled:
+            if self.port.receive(max(self._quiet_from - monotonic(), 0.0)):
+                self.counts.stale += 1
+                self._quiet_from = monotonic() + 2 * self.wait
+        self._decoder.clear()
+
+    def send(self, data: bytes) -> None:
+        """Send a request that nobody answers."""
+        self.port.send(data, max(self.wait, 0.05))
+
+    def ask(self, request: bytes, servo: int, length: int | None = None, wait: float | None = None) -> Packet:
+        """Send a request to one servo and return its reply.
+
+        Args:
+            request: the bytes.
+            servo: whose reply it is.
+            length: of the data in it; None for any [byte].
+            wait: for it; that of the bus if None [s].
+
+        Raises:
+            NoAnswer: it did not come in time.
+        """
+        self.settle()
+        self.send(request)
+        found = self._collect((servo,), length, self.wait if wait is None else wait)
+        if servo not in found:
+            raise NoAnswer(f"number {servo} on {self.port.name} does not answer.")
+        return found[servo]
+
+    def begin(self, servos: Collection[int], address: int, length: int) -> None:
+        """Ask several servos for the same bytes; ``end`` returns what they say."""
+        if not self.clocked:
+            for packet in self._decoder.feed(self.port.receive(0.0)):
+                self._keep(packet)
+        self._asked |= dict.fromkeys(servos, length)
+        asked = [*servos, CLOCK] if self.clocked else [*servos]
+        self.send(self.framing.sync_read(asked, address, length))
+
+    def end(self, servos: Collection[int], length: int, wait: float | None = None) -> dict[int, Packet]:
+        """Return the replies to ``begin`` that come in time, by servo.
+
+        A servo whose reply is missing has a late one to the same question as before taken for it, if there is one.
+
+        Args:
+            servos: that were asked.
+            length: of what they were asked for [byte].
+            wait: for them; that of the bus if None [s].
+        """
+        wait = self.wait if wait is None else wait
+        found = self._collect(servos, length, _STEPPING if self.clocked else wait, told=self.clocked)
+        late = {servo: self._kept.pop(servo) for servo in servos if servo in self._kept}
+        self.late = frozenset(late) - frozenset(found)
+        return late | found
+
+    def _keep(self, packet: Packet) -> None:
+        """Keep a reply that was not waited for any more, if it can only be one to ``begin``."""
+        if self._asked.get(packet.id) == len(packet.data):
+            self._kept[packet.id] = packet
+        else:
+            self.counts.stale += 1
+
+    def _collect(
+        self, servos: Collection[int], length: int | None, wait: float, *, told: bool = False
+    ) -> dict[int, Packet]:
+        """Return replies by servo; where the end of the answers is told, until then."""
+        found: dict[int, Packet] = {}
+        end = monotonic() + wait
+        while told or len(found) < len(servos):
+            data = self.port.receive(max(end - monotonic(), 0.0))
+            for packet in self._decoder.feed(data):
+                if told and packet.id == CLOCK:
+                    self.counts.missing += len(servos) - len(found)
+                    return found
+                if packet.id in servos and length in (None, len(packet.data)):
+                    found[packet.id] = packet
+                else:
+                    self._keep(packet)
+            if not data:
+                break
+        if len(found) < len(servos):
+            self.counts.missing += len(servos) - len(found)
+            self._quiet_from = monotonic() + 2 * self.wait
+        return found
+
+    def ping(self, servo: int) -> Packet | None:
+        """Return the reply of a servo to the question whether it is there; None if none comes."""
+        try:
+            return self.ask(self.framing.ping(servo), servo)
+        except NoAnswer:
+            return None
+
+    def read(self, servo: int, register: Register) -> int:
+        """Return the value of a register of a servo.
+
+        Raises:
+            NoAnswer: it did not come in time.
+        """
+        request = self.framing.read(servo, register.address, register.size)
+        return register.decode(self.ask(request, servo, register.size).data)
+
+    def write(self, servo: int, register: Register, value: int) -> Packet:
+        """Write a register of a servo and return its reply.
+
+        Raises:
+            NoAnswer: the reply did not come in time.
+            BusFailure: the servo refused it.
+        """
+        reply = self.ask(self.framing.write(servo, register.address, register.encode(value)), servo)
+        why = self.framing.refusal(reply.code)
+        if why:
+            raise BusFailure(f"number {servo} on {self.port.name} refused {register.name} = {value}: {why}.")
+        return reply
+
+    def write_all(self, register: Register, values: Mapping[int, int]) -> None:
+        """Write a register of several servos at once; none answers."""
+        if values:
+            self.send(self.framing.sync_write(register.address, {one: register.encode(v) for one, v in values.items()}))
+
+    def pass_until(self, tick: int) -> None:
+        """Let an emulator's robot move until a tick, counted from when the emulator began.
+
+        Raises:
+            NoAnswer: there is no such clock on the bus, or the robot cannot go on.
+        """
+        request = self.framing.write(CLOCK, 0, tick.to_bytes(4, "little"))
+        try:
+            reply = self.ask(request, CLOCK, wait=_STEPPING)
+        except NoAnswer as error:
+            raise NoAnswer(
+                f"no clock answers on {self.port.name}: only an emulator has one, started with --clock bus; a robot is "
+                "driven with --clock wall."
+            ) from error
+        if reply.code:
+            raise BusFailure("the emulated robot cannot go on: its simulation diverged.")
+
+    def clock(self) -> int | None:
+        """Return the tick of an emulator's clock; None where there is none."""
+        try:
+            reply = self.ask(self.framing.read(CLOCK, 0, 4), CLOCK, 4)
+        except NoAnswer:
+            return None
+        return int.from_bytes(reply.data, "little")
+
+    def close(self) -> None:
+        """Let go of the port."""
+        self.port.close()

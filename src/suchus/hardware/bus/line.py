@@ -1,0 +1,182 @@
+"""A plain line protocol for boards of one's own: lines of text with whole numbers, which a terminal can type and read.
+
+A board holds, for each of its servos, a row of 16-bit registers, as ``tables`` lists them. A line is what it says, a
+star, the CRC-16 of what stands before the star (as of Dynamixel 2.0, four hexadecimal digits), and a line feed:
+
+* ``p 3``: is number 3 there? It answers ``3 0``: its number, and its error.
+* ``r 3 15 2``: read two registers of it from register 15 on; it answers ``3 0 2048 -12``. With several numbers, as in
+  ``r 1,2,3 15 2``, each answers in the order asked.
+* ``w 3 14 2100``: write from register 14 on; it answers ``3 0``. With several numbers, ``w 1,2,3 14 2048,2100,1990``,
+  and none answers.
+* ``b 3``: begin anew, which ends an alert; it answers.
+
+An error is 0 or the number of Dynamixel 2.0 for it, and 128 more while there is an alert. The host waits for no answer;
+a line whose CRC is wrong is dropped by either side, and the next one counts.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from suchus.hardware.bus.dynamixel import ALERT, REFUSALS, crc
+from suchus.hardware.bus.packets import BROADCAST, Decoder, Framing, Instruction, Packet
+
+_LONGEST = 4096  # bytes of a line; what is longer is noise
+_TAIL = 5  # bytes of the star and the CRC
+_WORDS = {Instruction.PING: "p", Instruction.READ: "r", Instruction.WRITE: "w", Instruction.REBOOT: "b"}
+_INSTRUCTIONS = {word: instruction for instruction, word in _WORDS.items()}
+_SEVERAL = {Instruction.READ: Instruction.SYNC_READ, Instruction.WRITE: Instruction.SYNC_WRITE}
+
+
+def _line(text: str) -> bytes:
+    said = text.encode("ascii")
+    return said + f"*{crc(said):04X}\n".encode("ascii")
+
+
+def _numbers(data: bytes) -> list[int]:
+    """Return bytes as registers."""
+    return [int.from_bytes(data[i : i + 2], "little", signed=True) for i in range(0, len(data), 2)]
+
+
+def _bytes(numbers: Sequence[int]) -> bytes:
+    """Return registers as bytes.
+
+    Raises:
+        OverflowError: one does not fit 16 bits.
+    """
+    return b"".join(one.to_bytes(2, "little", signed=True) for one in numbers)
+
+
+def _whole(text: str) -> list[int]:
+    return [int(one) for one in text.split(",")]
+
+
+def _address(number: int) -> bytes:
+    return (2 * number).to_bytes(2, "little")
+
+
+def _request(text: str) -> Packet:
+    """Return the request that a line makes.
+
+    Raises:
+        ValueError: it makes none.
+        KeyError: the same.
+        OverflowError: the same.
+    """
+    word, ids, *rest = text.split(" ")
+    instruction, servos = _INSTRUCTIONS[word], _whole(ids)
+    if not all(0 <= one <= BROADCAST for one in servos) or (len(servos) > 1 and instruction not in _SEVERAL):
+        raise ValueError(text)
+    if instruction in (Instruction.PING, Instruction.REBOOT):
+        () = rest
+        return Packet(servos[0], instruction)
+    start, values = rest
+    if instruction == Instruction.READ:
+        data = _address(int(start)) + _address(int(values))
+        if len(servos) == 1:
+            return Packet(servos[0], instruction, data)
+        return Packet(BROADCAST, Instruction.SYNC_READ, data + bytes(servos))
+    numbers = _whole(values)
+    if len(servos) == 1:
+        return Packet(servos[0], instruction, _address(int(start)) + _bytes(numbers))
+    each = len(numbers) // len(servos)
+    if each * len(servos) != len(numbers):
+        raise ValueError(text)
+    data = _address(int(start)) + _address(each)
+    for i, servo in enumerate(servos):
+        data += bytes([servo]) + _bytes(numbers[i * each : (i + 1) * each])
+    return Packet(BROADCAST, Instruction.SYNC_WRITE, data)
+
+
+def _reply(text: str) -> Packet:
+    """Return the reply that a line is.
+
+    Raises:
+        ValueError: it is none.
+        OverflowError: the same.
+    """
+    servo, error, *values = (int(one) for one in text.split(" "))
+    if not (0 <= servo <= BROADCAST and 0 <= error <= 255):
+        raise ValueError(text)
+    return Packet(servo, error, _bytes(values))
+
+
+class _Lines(Decoder):
+    """Takes the lines of one direction; those of the other are an echo and passed over."""
+
+    def __init__(self, *, replies: bool) -> None:
+        super().__init__()
+        self._replies = replies
+
+    def _next(self, data: bytes) -> tuple[int, Packet | None] | None:
+        end = data.find(b"\n")
+        if end < 0:
+            return (len(data), None) if len(data) > _LONGEST else None
+        said, star, told = data[:end].removesuffix(b"\r").rpartition(b"*")
+        used = end + 1
+        if not star or not said:
+            return used, None
+        if told.upper() != f"{crc(said):04X}".encode("ascii"):
+            self.broken += 1
+            inner = said.find(b"*")  # a line feed that was lost or spoilt joined two lines: the second may be whole
+            if inner < 0:
+                return used, None
+            after = inner + _TAIL
+            return (after if data[after : after + 1].isalnum() else after + 1), None
+        try:
+            text = said.decode("ascii")
+            return used, _reply(text) if self._replies else _request(text)
+        except (ValueError, KeyError, OverflowError):
+            return used, None
+
+
+class PlainLine(Framing):
+    """Lines of text, for boards of one's own."""
+
+    name = "line"
+    word = 2
+
+    def request(self, packet: Packet) -> bytes:
+        """Return the bytes of a request."""
+        return _line(" ".join(_said(packet)))
+
+    def reply(self, packet: Packet) -> bytes:
+        """Return the bytes of a reply."""
+        return _line(" ".join(str(one) for one in (packet.id, packet.code, *_numbers(packet.data))))
+
+    def alert(self, code: int) -> bool:
+        """Return whether the error says that there is an alert."""
+        return bool(code & ALERT)
+
+    def refusal(self, code: int) -> str:
+        """Return what the error says."""
+        number = code & ~ALERT
+        return REFUSALS.get(number, f"error {number}") if number else ""
+
+    def requests(self) -> Decoder:
+        """Return a decoder of what the host says."""
+        return _Lines(replies=False)
+
+    def replies(self) -> Decoder:
+        """Return a decoder of what boards say; the host's own echo is passed over."""
+        return _Lines(replies=True)
+
+
+def _said(packet: Packet) -> Iterator[str]:
+    """Yield the parts of a request's line."""
+    data = packet.data
+    if packet.code not in (Instruction.SYNC_READ, Instruction.SYNC_WRITE):
+        yield from (_WORDS[Instruction(packet.code)], str(packet.id))
+        if packet.code == Instruction.READ:
+            yield from (str(one // 2) for one in _numbers(data))
+        elif packet.code == Instruction.WRITE:
+            yield from (str(_numbers(data)[0] // 2), ",".join(str(one) for one in _numbers(data[2:])))
+        return
+    start, length = _numbers(data[:4])
+    rows = data[4:]
+    if packet.code == Instruction.SYNC_READ:
+        yield from (_WORDS[Instruction.READ], ",".join(str(one) for one in rows), str(start // 2), str(length // 2))
+        return
+    size = length + 1
+    yield _WORDS[Instruction.WRITE]
+    yield ",".join(str(rows[i]) for i in range(0, len(rows), size))
+    yield str(start // 2)
+    yield ",".join(str(one) for i in range(0, len(rows), size) for one in _numbers(rows[i + 1 : i + size]))

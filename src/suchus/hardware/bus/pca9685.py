@@ -1,0 +1,121 @@
+"""PCA9685: a board of 16 channels of pulses for hobby servos, on an I2C bus; it answers nothing about the servos.
+
+Source: NXP, "PCA9685, 16-channel, 12-bit PWM Fm+ I2C-bus LED controller", rev. 4.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+from suchus.core.errors import BusFailure, InvalidDesign
+
+MODE, PRESCALE, FIRST, ALL_OFF = 0x00, 0xFE, 0x06, 0xFD
+"""Addresses: mode, prescaler, the first channel, and the byte that switches all channels off."""
+ADDRESS = 0x40
+"""Of the first board; the next ones follow."""
+_SLEEP, _INCREMENT, _FULL_OFF = 0x10, 0x20, 0x10
+_CLOCK, _STEPS = 25e6, 4096  # [Hz] of its oscillator; steps of a period
+_BLOCK = 8  # channels of a write of 32 bytes, the most that SMBus carries
+LEAST, MOST = 24.0, 1526.0
+"""Rates of pulses that its prescaler can give [Hz]."""
+
+
+class Wires(Protocol):
+    """An I2C bus."""
+
+    def write_i2c_block_data(self, i2c_addr: int, register: int, data: Sequence[int]) -> None:
+        """Write bytes from a register of a chip on."""
+
+    def close(self) -> None:
+        """Let go of it."""
+
+
+def open_wires(name: str) -> Wires:
+    """Open an I2C bus, such as ``/dev/i2c-1``.
+
+    Raises:
+        BusFailure: there is none, or it may not be opened.
+        InvalidDesign: the package for it is not installed.
+    """
+    try:
+        import smbus2  # noqa: PLC0415  an optional extra, needed here only
+    except ModuleNotFoundError as error:
+        raise InvalidDesign(
+            "an I2C bus needs the package smbus2, which is not installed: pip install 'suchus[hardware]' on Linux."
+        ) from error
+    if not Path(name).exists():
+        there = (
+            ", ".join(map(str, sorted(Path("/dev").glob("i2c-*")))) or "none; switch I2C on, on a Pi by raspi-config"
+        )
+        raise BusFailure(f"there is no I2C bus {name}; there is {there}.")
+    try:
+        opened: Any = smbus2.SMBus(name)
+    except OSError as error:
+        raise BusFailure(f"{name} cannot be opened as an I2C bus ({error.strerror or error}).") from error
+    return opened
+
+
+class Pulses:
+    """The boards of one robot.
+
+    Args:
+        wires: the bus.
+        boards: their numbers, from 0.
+        rate: of pulses [Hz].
+
+    Raises:
+        InvalidDesign: a rate that the boards cannot give.
+        BusFailure: a board does not answer.
+    """
+
+    def __init__(self, wires: Wires, boards: Sequence[int], rate: float) -> None:
+        if not LEAST <= rate <= MOST:
+            raise InvalidDesign(f"the rate of pulses is {rate:g} Hz; {LEAST:g} to {MOST:g} Hz is what the boards give.")
+        self._wires, self.boards, self.rate = wires, tuple(boards), rate
+        for board in self.boards:
+            self._write(board, MODE, [_SLEEP | _INCREMENT])  # its prescaler is only taken asleep
+            self._write(board, PRESCALE, [round(_CLOCK / _STEPS / rate) - 1])
+            self._write(board, MODE, [_INCREMENT])
+
+    def send(self, pulses: Mapping[tuple[int, int], float]) -> None:
+        """Let channels pulse.
+
+        Args:
+            pulses: widths by board and channel [us].
+        """
+        for board in self.boards:
+            own = {channel: width for (at, channel), width in pulses.items() if at == board}
+            for start in range(0, 16, _BLOCK):
+                self._block(board, {c: own[c] for c in range(start, start + _BLOCK) if c in own})
+
+    def _block(self, board: int, widths: Mapping[int, float]) -> None:
+        """Write neighbouring channels at once, those between that have none switched off."""
+        if not widths:
+            return
+        first, last = min(widths), max(widths)
+        data: list[int] = []
+        for channel in range(first, last + 1):
+            if channel in widths:
+                data += [0, 0, *round(widths[channel] * 1e-6 * self.rate * _STEPS).to_bytes(2, "little")]
+            else:
+                data += [0, 0, 0, _FULL_OFF]
+        self._write(board, FIRST + 4 * first, data)
+
+    def off(self) -> None:
+        """Switch all channels off: servos that get no pulses give no torque."""
+        for board in self.boards:
+            self._write(board, ALL_OFF, [_FULL_OFF])
+
+    def close(self) -> None:
+        """Let go of the bus."""
+        self._wires.close()
+
+    def _write(self, board: int, register: int, data: Sequence[int]) -> None:
+        try:
+            self._wires.write_i2c_block_data(ADDRESS + board, register, list(data))
+        except OSError as error:
+            raise BusFailure(
+                f"board {board} at address {ADDRESS + board:#x} does not answer ({error.strerror or error}): look at "
+                "its "
+                "power, its plug and the bridges of its address."
+            ) from error

@@ -1,0 +1,20 @@
+"""Servos that are not there: buses with control tables, and behind them the simulated robot, on land or in the lake."""
+
+from suchus.hardware.emulator.body import Commanded, EmulatedBody
+from suchus.hardware.emulator.devices import USUAL, Board, Device, EmulatedServo
+from suchus.hardware.emulator.emulator import Emulator, MemoryPort
+from suchus.hardware.emulator.server import Server
+from suchus.hardware.emulator.trouble import Trouble
+
+__all__ = [
+    "USUAL",
+    "Board",
+    "Commanded",
+    "Device",
+    "EmulatedBody",
+    "EmulatedServo",
+    "Emulator",
+    "MemoryPort",
+    "Server",
+    "Trouble",
+]

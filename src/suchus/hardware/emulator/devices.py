@@ -1,0 +1,218 @@
+"""What hangs on an emulated bus: servos with their control tables, and boards for sensors."""
+
+from math import pi
+
+import numpy as np
+
+from suchus.hardware.bus import STEPS, Register, ServoPlace, Table
+from suchus.hardware.bus.dynamixel import ALERT
+from suchus.robot.control import Sensed
+
+OK, RANGE, LIMIT, ACCESS = 0, 4, 6, 7  # errors of Dynamixel 2.0
+AMBIENT = 25.0
+"""Temperature of the air, at which servos begin [degrees Celsius]."""
+USUAL = {"dynamixel": "XM430-W350", "feetech": "STS3250", "line": "DS3225"}
+"""Servos of an emulated robot for which no hardware is written, by protocol."""
+SWITCHES_OFF = {"input voltage": False, "overheated": True, "encoder": False, "electrical shock": True,
+                "current": True, "overload": True}  # fmt: skip
+"""Which alerts take the torque away, as the makers set them."""
+
+
+class Device:
+    """Something with a control table.
+
+    Args:
+        table: its registers.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self.memory = bytearray(table.length)
+        for one in table.registers:
+            self.put(one.name, one.initial)
+
+    def get(self, name: str) -> int:
+        """Return the value of a register."""
+        one = self.table[name]
+        return one.decode(bytes(self.memory[one.address : one.address + one.size]))
+
+    def put(self, name: str, value: int) -> None:
+        """Set a register, whether or not others can write it."""
+        one = self.table[name]
+        self.memory[one.address : one.address + one.size] = one.encode(value)
+
+    def read(self, address: int, length: int) -> bytes:
+        """Return bytes as they are."""
+        return bytes(self.memory[address : address + length]).ljust(length, b"\0")
+
+    def write(self, address: int, data: bytes) -> int:
+        """Take bytes, and return the error: 0 if all of them were taken."""
+        del address, data
+        return ACCESS
+
+    @property
+    def alert(self) -> int:
+        """What an alert adds to the error of every reply."""
+        return 0
+
+
+class EmulatedServo(Device):
+    """One servo.
+
+    Args:
+        place: how it is wired, ``id`` and ``baud`` as they are set in it.
+        baud: bit rate that it listens at [1/s].
+        number: its place in the robot's layout.
+    """
+
+    def __init__(self, place: ServoPlace, baud: int, number: int) -> None:
+        super().__init__(place.table)
+        self.place, self.number = place, number
+        codes = {rate: code for code, rate in self.table.bauds.items()}
+        self.put("id", place.id)
+        self.put("baud_rate", codes.get(baud, 0))
+        self.put("return_delay", 0)
+        self.supply = place.table.motor.volts if place.table.motor is not None else 0.0
+        """Voltage of the battery at the beginning [V]."""
+        self.temperature, self.voltage, self.torque = AMBIENT, self.supply, 0.0
+        self.heard_at = 0.0
+        self.off = False
+        """Whether it has switched itself off; a reboot ends that."""
+
+    @property
+    def baud(self) -> int:
+        """Bit rate that it listens at [1/s]."""
+        return self.table.bauds[self.get("baud_rate")]
+
+    @property
+    def share(self) -> float:
+        """Share of its torque that it may use, 0 to 1 [-]."""
+        if self.off or not self.get("torque_enable"):
+            return 0.0
+        return min(max(self.get("torque_limit") / self.table.full, 0.0), 1.0)
+
+    @property
+    def goal(self) -> float:
+        """Angle of the joint that it aims at [rad]."""
+        return self.place.sign * (self.get("goal_position") - self.place.zero) * 2 * pi / STEPS
+
+    @property
+    def alert(self) -> int:
+        """What an alert adds to the error of every reply."""
+        error = self.get("hardware_error")
+        return error if self.table.protocol == "feetech" else (ALERT if error else 0)
+
+    def write(self, address: int, data: bytes) -> int:
+        """Take bytes by the rules of the servo."""
+        touched = [r for r in self.table.registers if address < r.address + r.size and r.address < address + len(data)]
+        if not touched or any(self._partly(r, address, data) for r in touched):
+            return ACCESS
+        for one in touched:
+            error = self._refused(one, one.decode(data[one.address - address :][: one.size]))
+            if error:
+                return OK if self.table.protocol == "feetech" else error
+        self.memory[address : address + len(data)] = data
+        if any(one.name == "bus_watchdog" for one in touched):
+            self.put("bus_watchdog", max(self.get("bus_watchdog"), 0))
+        return OK
+
+    @staticmethod
+    def _partly(one: Register, address: int, data: bytes) -> bool:
+        return one.address < address or one.address + one.size > address + len(data)
+
+    def _refused(self, one: Register, value: int) -> int:
+        if not one.writable:
+            return ACCESS
+        if one.address < self.table.persistent and (
+            self.get("torque_enable") if "lock" not in self.table else self.get("lock")
+        ):
+            return ACCESS
+        if one.name == "bus_watchdog" and self.get("firmware") < self.table.watches_from:
+            return ACCESS
+        if one.name.startswith("goal_") and "bus_watchdog" in self.table and self.get("bus_watchdog") < 0:
+            return ACCESS
+        if one.span is not None and not one.span[0] <= value <= one.span[1]:
+            return RANGE
+        if one.name == "goal_position" and not self.get("position_low") <= value <= self.get("position_high"):
+            return LIMIT
+        return OK
+
+    def feel(self, angle: float, speed: float, torque: float) -> None:
+        """Tell what the joint does.
+
+        Args:
+            angle: of the joint [rad].
+            speed: of it [rad/s].
+            torque: of the servo on it [N m].
+        """
+        sign, table = self.place.sign, self.table
+        self.put("present_position", self.place.zero + round(sign * angle / (2 * pi / STEPS)))
+        self.put("present_velocity", round(sign * speed / table["present_velocity"].unit))
+        self.torque = abs(torque)
+        self._tell("present_current", sign * torque / table.torque_per_ampere)
+        self._tell("present_load", sign * torque / table.stall_torque)
+        self._tell("present_voltage", self.voltage)
+        self._tell("present_temperature", self.temperature)
+
+    def age(self, seconds: float, heating: float, voltage: float, now: float) -> None:
+        """Let time pass: it warms up, watches its limits, and whether its host is there.
+
+        Args:
+            seconds: how much [s].
+            heating: beside what its load does [K/s].
+            voltage: at its plug [V].
+            now: by the emulator's clock [s].
+        """
+        motor = self.place.table.motor
+        if motor is not None:
+            load = min(self.torque / motor.stall_torque, 1.0)
+            lost = motor.volts * motor.stall_current * load**2  # all of it heat: a servo that holds does no work
+            heat = motor.heat
+            cooling = (self.temperature - AMBIENT) / heat.resistance
+            self.temperature += seconds * ((lost - cooling) / heat.capacity + heating)
+        self.voltage = voltage
+        if self.temperature >= self.get("temperature_limit"):
+            self.fail("overheated")
+        if voltage < self.table["voltage_low"].unit * self.get("voltage_low"):
+            self.fail("input voltage")
+        if "bus_watchdog" in self.table:
+            patience = self.get("bus_watchdog") * self.table["bus_watchdog"].unit
+            if patience > 0.0 and now - self.heard_at > patience + 1e-9:
+                self.put("bus_watchdog", -1)
+                self.put("goal_position", self.get("present_position"))
+
+    def fail(self, what: str) -> None:
+        """Raise an alert, and switch off where the maker has it so."""
+        bits = {text: bit for bit, text in self.table.alerts}
+        if what in bits:
+            self.put("hardware_error", self.get("hardware_error") | 1 << bits[what])
+        self.off = self.off or SWITCHES_OFF[what]
+
+    def reboot(self) -> None:
+        """Begin anew: no torque, no alert."""
+        self.off = False
+        self.put("hardware_error", 0)
+        self.put("torque_enable", 0)
+        for name in ("torque_limit", "bus_watchdog"):
+            if name in self.table:
+                self.put(name, self.table[name].initial)
+
+    def _tell(self, name: str, value: float) -> None:
+        if name in self.table:
+            self.put(name, round(value / self.table[name].unit))
+
+
+class Board(Device):
+    """One board for sensors."""
+
+    def feel(self, kind: str, sensed: Sensed) -> None:
+        """Tell what it feels of the one robot of a batch."""
+        values: dict[str, np.ndarray] = {
+            "feet": sensed.foot_pressure,
+            "belly": sensed.belly_pressure,
+            "tail": sensed.tail_pressure,
+            "imu": np.concatenate([sensed.orientation[0], sensed.angular_velocity[0], sensed.acceleration[0]]),
+        }
+        readings = np.atleast_1d(np.squeeze(values[kind]))
+        for one, value in zip(self.table.registers[1:], readings, strict=True):
+            self.put(one.name, round(float(value) / one.unit))

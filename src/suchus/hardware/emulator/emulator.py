@@ -1,0 +1,288 @@
+"""An emulated robot's buses: bytes in, bytes out, each when a real wire would have carried them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from random import Random
+
+import numpy as np
+
+from suchus.hardware.bus import BROADCAST, CLOCK, FRAMINGS, BusGone, Decoder, Framing, Instruction, Packet, Wiring
+from suchus.robot.control import Sensed
+from suchus.hardware.emulator.body import EmulatedBody
+from suchus.hardware.emulator.devices import OK, Board, Device, EmulatedServo
+from suchus.hardware.emulator.trouble import Trouble
+from suchus.core.errors import Diverged
+
+BITS = 10
+"""Bits that a byte takes on the wire, start and stop bit included [-]."""
+_SOAKED = 2.0  # [s]; after so long in water a servo is silent
+_GARBLED = 0.5  # share of the bytes of two replies that collide which arrive wrong [-]
+
+
+@dataclass(slots=True)
+class _Line:
+    """One bus."""
+
+    framing: Framing
+    decoder: Decoder
+    devices: dict[int, Device]
+    baud: int
+
+
+class Emulator:
+    """The buses of one robot.
+
+    Args:
+        wiring: how it is built; a host that believes something else finds out.
+        body: the robot behind it.
+        trouble: what goes wrong.
+        clocked: whether its time passes when its clock is told to, and not by itself.
+    """
+
+    def __init__(
+        self, wiring: Wiring, body: EmulatedBody, trouble: Trouble | None = None, *, clocked: bool = False
+    ) -> None:
+        self.body, self.clocked, self.trouble = body, clocked, trouble or Trouble()
+        self.wiring = wiring
+        self.diverged: Diverged | None = None
+        """Why the robot cannot go on; None as long as it can."""
+        self._random = Random(self.trouble.seed)
+        self._noise = np.random.default_rng([self.trouble.seed, 1])
+        framings = [FRAMINGS[bus.protocol] for bus in wiring.bus]
+        self.lines = [
+            _Line(framing, framing.requests(), {}, bus.baud) for framing, bus in zip(framings, wiring.bus, strict=True)
+        ]
+        self.servos = []
+        for number, place in enumerate(wiring.ordered(body.robot)):
+            servo = EmulatedServo(place, wiring.bus[place.bus].baud, number)
+            self.servos.append(servo)
+            self.lines[place.bus].devices[place.id] = servo
+        self._boards = []
+        for one in wiring.board:
+            board = Board(wiring.tables(one, body.robot))
+            self._boards.append((one.kind, board))
+            self.lines[one.bus].devices[one.id] = board
+        self._late: list[Sensed] = []
+        self._behind = int(np.ceil(self.trouble.latency / body.period - 1e-9)) if clocked else 0
+        self._sagged = 0.0
+        self._power()
+        self._feel()
+
+    def hear(self, number: int, data: bytes, baud: int | None = None) -> list[tuple[float, bytes]]:
+        """Take bytes from a bus and return the replies, each with the time after which it has come [s].
+
+        Args:
+            number: of the bus.
+            data: the bytes.
+            baud: bit rate at which they were sent, where that can be known: servos hear nothing else [1/s].
+        """
+        line, replies, after = self.lines[number], list[tuple[float, bytes]](), 0.0
+        if baud is not None and baud != line.baud:
+            return []
+        for packet in line.decoder.feed(data):
+            clock = packet.id == CLOCK or (packet.code == Instruction.SYNC_READ and CLOCK in packet.data)
+            if not clock and self._random.random() < self.trouble.lost:
+                continue
+            for servo, reply in self._answers(line, packet):
+                data = line.framing.reply(reply) if servo is None else self._spoilt(line, reply)
+                delay = servo.get("return_delay") * 2e-6 if isinstance(servo, EmulatedServo) else 0.0
+                after += delay + len(line.framing.reply(reply)) * BITS / line.baud
+                if data:
+                    replies.append((after, data))
+        return replies
+
+    def pass_until(self, tick: int) -> None:
+        """Let the robot move until a tick; nothing happens where that is past, or where it has diverged."""
+        while self.body.tick < tick and self.diverged is None:
+            self.step()
+
+    def step(self) -> None:
+        """Let one control period pass."""
+        self._power()
+        try:
+            self.body.step()
+        except Diverged as error:
+            self.diverged = error
+            return
+        self._happen()
+        self._feel()
+
+    # --- what is answered ---------------------------------------------------------------------------------------------
+
+    def _answers(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
+        """Return who answers what; None for the clock."""
+        word, data = line.framing.word, packet.data
+        if packet.code == Instruction.SYNC_READ and len(data) >= 2 * word:
+            address, length = _number(data, word), _number(data[word:], word)
+            found: list[tuple[Device | None, Packet]] = []
+            for servo in data[2 * word :]:
+                if servo == CLOCK and self.clocked:
+                    found.append((None, Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little").ljust(length, b"\0"))))
+                elif (device := self._listening(line, servo)) is not None:
+                    found.append((device, Packet(servo, device.alert, device.read(address, length))))
+            return found
+        if packet.code == Instruction.SYNC_WRITE and len(data) > 2 * word:
+            address, length = _number(data, word), _number(data[word:], word)
+            rest = data[2 * word :]
+            for start in range(0, len(rest) - length, length + 1):
+                written = self._listening(line, rest[start])
+                if written is not None:
+                    self._write(written, address, rest[start + 1 : start + 1 + length])
+            return []
+        if packet.id == CLOCK:
+            return [(None, self._of_clock(packet, word))] if self.clocked else []
+        if packet.id == BROADCAST:
+            everybody = sorted(line.devices) if packet.code == Instruction.PING else ()
+            return [one for servo in everybody for one in self._of_one(line, packet._replace(id=servo))]
+        return self._of_one(line, packet)
+
+    def _of_clock(self, packet: Packet, word: int) -> Packet:
+        if packet.code == Instruction.WRITE:
+            self.pass_until(int.from_bytes(packet.data[word : word + 4], "little"))
+            return Packet(CLOCK, int(self.diverged is not None))
+        return Packet(CLOCK, OK, self.body.tick.to_bytes(4, "little"))
+
+    def _of_one(self, line: _Line, packet: Packet) -> list[tuple[Device | None, Packet]]:
+        device, word = self._listening(line, packet.id), line.framing.word
+        if device is None:
+            return []
+        data, error = packet.data, OK
+        answer = b""
+        if packet.code == Instruction.PING:
+            answer = self._about(device)
+        elif packet.code == Instruction.READ and len(data) == 2 * word:
+            answer = device.read(_number(data, word), _number(data[word:], word))
+        elif packet.code == Instruction.WRITE and len(data) > word:
+            error = self._write(device, _number(data, word), data[word:])
+        elif packet.code == Instruction.REBOOT and isinstance(device, EmulatedServo):
+            device.reboot()
+        else:
+            error = 2 if word == 2 else OK
+        return [(device, Packet(packet.id, error | device.alert, answer))]
+
+    def _about(self, device: Device) -> bytes:
+        """Return what an answer to a ping tells: Dynamixel the model and the firmware, the others nothing."""
+        if device.table.protocol != "dynamixel":
+            return b""
+        firmware = device.get("firmware") if "firmware" in device.table else 0
+        return device.get("model_number").to_bytes(2, "little") + bytes([firmware])
+
+    def _listening(self, line: _Line, servo: int) -> Device | None:
+        """Return a device that hears and answers."""
+        device = line.devices.get(servo)
+        on = self.body.time >= self.trouble.at
+        if device is None or (on and servo in self.trouble.mute):
+            return None
+        if servo in self.trouble.wet and self.body.time >= self.trouble.at + _SOAKED:
+            return None
+        if isinstance(device, EmulatedServo):
+            if device.baud != line.baud:
+                return None
+            device.heard_at = self.body.time
+        return device
+
+    def _write(self, device: Device, address: int, data: bytes) -> int:
+        error = device.write(address, data)
+        if isinstance(device, EmulatedServo) and error == OK:
+            goal = device.table["goal_position"]
+            if address <= goal.address < address + len(data):
+                self.body.aim({device.number: self._rounded(device.goal)})
+            if device.share != self.body.powered[device.number]:
+                self._power()
+        return error
+
+    def _spoilt(self, line: _Line, reply: Packet) -> bytes:
+        """Return the bytes of a reply as they arrive, nothing of one that is lost."""
+        random, trouble = self._random, self.trouble
+        data = bytearray(line.framing.reply(reply))
+        if reply.id in trouble.twin:  # two replies at once
+            for i in range(4, len(data)):
+                if random.random() < _GARBLED:
+                    data[i] = random.randrange(256)
+        if random.random() < trouble.lost:
+            return b""
+        if random.random() < trouble.corrupt:
+            place = random.randrange(len(data))
+            data[place] ^= 1 << random.randrange(8)
+        if random.random() < trouble.dropped:
+            del data[random.randrange(len(data))]
+        return bytes(data)
+
+    # --- what happens in the servos -----------------------------------------------------------------------------------
+
+    def _power(self) -> None:
+        for servo in self.servos:
+            self.body.power(servo.number, servo.share)
+
+    def _happen(self) -> None:
+        """Let servos age by a control period, and trouble take its course."""
+        trouble, now, period = self.trouble, self.body.time, self.body.period
+        on = now >= trouble.at
+        if on:
+            self._sagged += trouble.sag * period
+        for servo in self.servos:
+            heating = trouble.heating if on and servo.place.id in trouble.hot else 0.0
+            servo.age(period, heating, max(servo.supply - self._sagged, 0.0), now)
+            if on and servo.place.id in trouble.wet:
+                servo.fail("overload" if servo.table.protocol == "feetech" else "electrical shock")
+
+    def _feel(self) -> None:
+        """Let servos and boards tell what the robot feels, or felt before where that is on its way for long."""
+        self._late.append(self.body.sensed())
+        sensed = self._late[0]
+        if len(self._late) > self._behind:
+            self._late.pop(0)
+        angles = sensed.servo_position[0]
+        if self.trouble.noise > 0.0:
+            angles = angles + self.trouble.noise * self._noise.standard_normal(len(angles))
+        for servo in self.servos:
+            i = servo.number
+            servo.feel(self._rounded(float(angles[i])), float(sensed.servo_velocity[0, i]),
+                       float(sensed.servo_torque[0, i]))  # fmt: skip
+        for kind, board in self._boards:
+            board.feel(kind, sensed)
+
+    def _rounded(self, angle: float) -> float:
+        step = self.trouble.resolution
+        return round(angle / step) * step if step > 0.0 else angle
+
+
+def _number(data: Sequence[int], word: int) -> int:
+    return int.from_bytes(bytes(data[:word]), "little")
+
+
+class MemoryPort:
+    """A port to an emulator in the same process, whose clock is told the time: nothing waits for anything.
+
+    Args:
+        emulator: with a clock of its own.
+        number: of the bus.
+    """
+
+    def __init__(self, emulator: Emulator, number: int = 0) -> None:
+        self.name = f"emulated bus {number}"
+        self._emulator, self._number, self._coming = emulator, number, bytearray()
+        self.gone = False
+        """Whether the other end is gone; set it to pull the plug."""
+        self.deaf = False
+        """Whether the other end reads no more."""
+
+    def send(self, data: bytes, wait: float) -> None:
+        """Let the emulator take bytes; it answers at once."""
+        if self.gone or self.deaf:
+            why = "is gone" if self.gone else f"took no bytes for {wait:.3g} s"
+            raise BusGone(f"the bus {self.name} {why}.")
+        for _, reply in self._emulator.hear(self._number, data):
+            self._coming += reply
+
+    def receive(self, wait: float) -> bytes:
+        """Return what has been answered; nothing comes later."""
+        del wait
+        if self.gone:
+            raise BusGone(f"the bus {self.name} is gone.")
+        data = bytes(self._coming)
+        self._coming.clear()
+        return data
+
+    def close(self) -> None:
+        """Let go of it."""

@@ -1,0 +1,20 @@
+"""Robots, gaits and servos as TOML files that people write, and every mistake in them named at once."""
+
+from suchus.robot.blueprint.corrections import read_correction
+from suchus.robot.blueprint.gaits import read_gait
+from suchus.robot.blueprint.mistakes import MistakenFile
+from suchus.robot.blueprint.motors import read_motors
+from suchus.robot.blueprint.read import described, described_robot, read
+from suchus.robot.blueprint.write import render, write
+
+__all__ = [
+    "MistakenFile",
+    "described",
+    "described_robot",
+    "read",
+    "read_correction",
+    "read_gait",
+    "read_motors",
+    "render",
+    "write",
+]

@@ -1,0 +1,18 @@
+"""Corrections of the section model, from the TOML files that a run in a flow writes."""
+
+from pathlib import Path
+
+from suchus.robot.blueprint.read import described
+from suchus.robot.design import SectionCorrection
+from suchus.core.reading import read_toml
+
+
+def read_correction(path: str | Path) -> SectionCorrection:
+    """Read a correction of the section model from a TOML file.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    path = Path(path)
+    return described({"name": path.stem, **read_toml(path)}, SectionCorrection, path.name)

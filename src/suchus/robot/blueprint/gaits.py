@@ -1,0 +1,114 @@
+"""From a TOML file to a gait, in whichever form it is written: shares of the body, metres, or places along the axis."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+from suchus.robot.blueprint.mistakes import MistakenFile, Place
+from suchus.robot.blueprint.read import merged, plain, validated
+from suchus.robot.design import Robot
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnreadableFile
+from suchus.robot.motion import AxialWave, Gait, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches, servo_parts
+from suchus.core.files import read_toml
+
+_WAVE = ("amplitude", "waves", "phase")
+
+
+def read_gait(path: str | Path, robot: Robot, shelf: Mapping[str, Gait]) -> Gait:
+    """Read a gait from a TOML file.
+
+    Its keys say in which form it is: fields of a ``Gait``; metres, as ``front_reach`` or ``trunk_bend``; or places
+    along the body, ``girdles`` and ``wave``. A curve that does not say its part gets that of its servo. With ``base =
+    "belly_crawl"`` at the top it starts from that gait of the shelf and overrides what the file says. A file without a
+    ``name`` lends its own.
+
+    Args:
+        path: the file.
+        robot: for whose limbs metres are, and in whose hinges places.
+        shelf: what ``base`` may name.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML, or its base has nothing that its keys could change.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+        OutsideLimits: metres are given and the robot has not two pairs of limbs.
+    """
+    path = Path(path)
+    data = read_toml(path)
+    named = data.pop("base", None)
+    mistakes: dict[Place, str] = {}
+    base = shelf[named] if isinstance(named, str) and named in shelf else None
+    if named is not None and base is None:
+        mistakes["base",] = f"is {named!r}; there is {', '.join(shelf)}"
+        base = _any(shelf)  # to look for further mistakes with
+    form = form_of(data)
+    # where limbs alone change their phases, the axis goes on as the article's law of a gait in metres says
+    if form is None and base is not None and in_metres(base) and "limb_phases" in data and "coupling" not in data:
+        form = GaitInMetres
+    data = {"name": path.stem, **data}
+    try:
+        if form is GaitInMetres:
+            return _in_metres(data, robot, base, shelf, path.name, mistakes)
+        if form is GaitByPlaces:
+            return _by_places(data, robot, base, shelf, path.name, mistakes)
+    except InvalidDesign as error:
+        if isinstance(error, UnreadableFile):
+            raise
+        raise MistakenFile(path.name, {(): f"on robot {robot.name!r} {str(error).rstrip('.')}"}) from error
+    except OutsideLimits as error:
+        raise UnreadableFile(f"{path.name}: {error}") from error
+    spare, data = plain(asdict(base or _any(shelf))), _with_parts(data, robot)
+    return validated(data if base is None else merged(spare, data), Gait, spare, path.name, mistakes)
+
+
+def _any(shelf: Mapping[str, Gait]) -> Gait:
+    """Return a gait that can be written in every form."""
+    return next(gait for gait in shelf.values() if in_metres(gait))
+
+
+def _with_parts(data: dict[str, Any], robot: Robot) -> dict[str, Any]:
+    """Return a table whose curves say which part of the body they move."""
+    if not isinstance(data.get("curves"), list):
+        return data
+    parts = servo_parts(robot)
+    curves = [
+        {"part": parts.get(str(curve.get("servo")), "trunk"), **curve} if isinstance(curve, Mapping) else curve
+        for curve in data["curves"]
+    ]
+    return {**data, "curves": curves}
+
+
+def _in_metres(
+    data: dict[str, Any],
+    robot: Robot,
+    base: Gait | None,
+    shelf: Mapping[str, Gait],
+    name: str,
+    mistakes: dict[Place, str],
+) -> Gait:
+    reaches, keys = limb_reaches(robot), frozenset(data)
+    spare = plain(asdict(GaitInMetres.near(base or _any(shelf), reaches)))
+    whole = data if base is None else merged(spare, data)
+    metres = validated(whole, GaitInMetres, spare, name, mistakes)
+    return metres.gait(reaches) if base is None else metres.onto(base, keys, reaches)
+
+
+def _by_places(
+    data: dict[str, Any],
+    robot: Robot,
+    base: Gait | None,
+    shelf: Mapping[str, Gait],
+    name: str,
+    mistakes: dict[Place, str],
+) -> Gait:
+    wave = data.get("wave")
+    still = AxialWave(amplitude=((0.0, 0.0),), waves=0.0, phase=0.0)
+    partly = isinstance(wave, Mapping) and not set(_WAVE) <= set(wave)
+    spare = plain(
+        asdict(
+            GaitByPlaces.of(base or _any(shelf), AxialWave.of(base, robot) if base is not None and partly else still)
+        )
+    )
+    whole = data if base is None else merged(spare, data)
+    gait = validated(whole, GaitByPlaces, spare, name, mistakes).gait(robot)
+    return gait if base is None or wave is not None else replace(gait, axis=base.axis)

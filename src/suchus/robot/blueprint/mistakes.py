@@ -1,0 +1,154 @@
+"""From what a validator complains of to sentences that a person can act on."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from difflib import get_close_matches
+from itertools import islice
+from types import UnionType
+from typing import Any, get_args
+
+from suchus.core.checks import InvalidFields
+from suchus.core.errors import InvalidDesign, UnreadableFile
+
+Place = tuple[str | int, ...]
+"""Keys from the top of a file down to a value."""
+
+_HOMES = 2  # of a field that stands in the wrong part; one that many parts have, as a mass, is not said
+_NEEDED: Mapping[str, str] = {
+    "float_type": "a number is needed",
+    "finite_number": "a finite number is needed",
+    "int_type": "a whole number is needed",
+    "int_from_float": "a whole number is needed",
+    "string_type": "a text in quotes is needed",
+    "bool_type": "true or false is needed",
+    "tuple_type": "a list in brackets is needed",
+    "dataclass_type": "a table is needed",
+    "dict_type": "a table is needed",
+    "mapping_type": "a table is needed",
+    "int_parsing_size": "a smaller number is needed",
+    "recursion_loop": "less deep nesting is needed",
+}
+
+
+class MistakenFile(UnreadableFile, InvalidDesign):
+    """A file whose values cannot be what they should be.
+
+    Attributes:
+        mistakes: where each mistake is, and what it is.
+    """
+
+    def __init__(self, name: str, mistakes: Mapping[Place, str]) -> None:
+        self.mistakes = {dotted(place): text for place, text in mistakes.items()}
+        listed = [f"{place} {text}".lstrip() for place, text in self.mistakes.items()]
+        if len(listed) == 1:
+            super().__init__(f"{name} has a mistake: {listed[0]}.")
+        else:
+            numbered = "; ".join(f"({i}) {one}" for i, one in enumerate(listed, 1))
+            super().__init__(f"{name} has {len(listed)} mistakes: {numbered}.")
+
+
+def dotted(place: Place) -> str:
+    """Return a place as people write it: ``spine.yaw_range[0]``."""
+    parts = (f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
+    return "".join(parts).lstrip(".")
+
+
+def explain(error: Mapping[str, Any], kind: type, data: Any) -> dict[Place, str]:
+    """Return what one of pydantic's errors says, by place; a part can complain of several fields at once.
+
+    Where a part may be of several kinds, pydantic complains of each; what counts is the kind whose keys the part names.
+
+    Args:
+        error: as pydantic tells it.
+        kind: of the whole.
+        data: what was validated.
+    """
+    meant = _meant(tuple(error["loc"]), kind, data)
+    if meant is None:
+        return {}
+    place, owner = meant
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, InvalidFields):
+        return {(*place, *_keys(c.field)): c.text for c in cause.complaints}
+    if error["type"] == "missing":
+        return {place: "is missing"}
+    if error["type"] == "unexpected_keyword_argument":
+        return {place: _unknown(place, owner, kind)}
+    return {place: f"is {_show(error['input'])}; {_needed(error, cause)}"}
+
+
+def _meant(loc: Place, kind: Any, data: Any) -> tuple[Place, Any] | None:
+    """Return the place of an error and the kind of the part that it stands in; None for a kind that was not meant."""
+    place: list[str | int] = []
+    owner = kind
+    for key in loc:
+        kinds = [one for one in get_args(kind) if is_dataclass(one)] if isinstance(kind, UnionType) else []
+        if len(kinds) > 1 and key in [one.__name__ for one in kinds]:  # type: ignore[union-attr]
+            kind = closest(data, kinds)
+            if kind.__name__ != key:
+                return None
+            continue
+        place.append(key)
+        kind = kinds[0] if len(kinds) == 1 else kind
+        owner, kind = kind, _kind_at(kind, key)
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            data = None
+    return tuple(place), owner
+
+
+def closest(data: Any, kinds: Sequence[Any]) -> Any:
+    """Return the kind of which a table names most fields; the first of those alike."""
+    keys = set(data) if isinstance(data, Mapping) else set()
+    return max(kinds, key=lambda kind: len(keys & {field.name for field in fields(kind) if field.init}))
+
+
+def _kind_at(kind: Any, key: str | int) -> Any:
+    """Return the kind of a field, or of an element of a list."""
+    if isinstance(key, int):
+        return next(iter(get_args(kind)), None)
+    return next((f.type for f in fields(kind) if f.name == key), None) if is_dataclass(kind) else None
+
+
+def _keys(field: str) -> Place:
+    name, _, index = field.rstrip("]").partition("[")
+    return () if not name else (name, int(index)) if index else (name,)
+
+
+def _needed(error: Mapping[str, Any], cause: Exception | None) -> str:
+    context = error.get("ctx", {})
+    if error["type"] in ("too_long", "too_short"):
+        wanted = context.get("max_length", context.get("min_length"))
+        return f"{wanted} values are needed"
+    if error["type"] == "literal_error":
+        return f"{context['expected']} is allowed"
+    if cause is not None:
+        return str(cause).rstrip(".")
+    return _NEEDED.get(error["type"], "something else is needed")
+
+
+def _unknown(place: Place, owner: Any, kind: type) -> str:
+    known = [f.name for f in fields(owner) if f.init] if is_dataclass(owner) else []
+    homes = list(islice(_homes(str(place[-1]), kind), _HOMES + 1))
+    if 0 < len(homes) <= _HOMES:
+        return f"is not known there; it stands at {' and '.join(homes)}: move it"
+    near = get_close_matches(str(place[-1]), known, n=1, cutoff=0.5)
+    if near:
+        return f"is not known (did you mean {dotted((*place[:-1], near[0]))}?)"
+    return f"is not known; there is {', '.join(known)}" if known else "is not known"
+
+
+def _homes(name: str, kind: Any, place: str = "") -> Iterator[str]:
+    """Yield where a design has a field of a name; what is listed, as segments are, has no place that could be said."""
+    if not is_dataclass(kind):
+        return
+    for field in fields(kind):
+        if field.name == name:
+            yield f"{place}{name}"
+        yield from _homes(name, field.type, f"{place}{field.name}.")
+
+
+def _show(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."

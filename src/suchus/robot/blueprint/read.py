@@ -1,0 +1,188 @@
+"""From a TOML file to a frozen value; what the file does not say can come from a shelf.
+
+A file of a robot describes it part by part, or gives the article's tables, of which ``design.crocodile`` makes one.
+"""
+
+import json
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import asdict, fields
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, overload
+
+from pydantic import TypeAdapter, ValidationError
+
+from suchus.robot.blueprint.mistakes import MistakenFile, Place, closest, explain
+from suchus.robot.design import Robot, Tables, crocodile
+from suchus.core.errors import UnreadableFile
+from suchus.core.files import read_toml
+
+T = TypeVar("T")
+
+
+@overload
+def read(path: str | Path, kind: type[T], shelf: Mapping[str, Any]) -> T: ...
+
+
+@overload
+def read(path: str | Path, kind: UnionType, shelf: Mapping[str, Any]) -> Any: ...
+
+
+def read(path: str | Path, kind: Any, shelf: Mapping[str, Any]) -> Any:
+    """Read a robot or a gait from a TOML file.
+
+    ``base = "caiman"`` at the top starts from that one of the shelf and overrides what the file says. A file
+    without a ``name`` lends its own. Where ``kind`` is a union, a file without ``base`` is of the kind that has most of
+    what stands at its top, the first of those alike.
+
+    Args:
+        path: the file.
+        kind: the frozen dataclass that it describes, or a union of several.
+        shelf: what ``base`` may name.
+
+    Raises:
+        UnreadableFile: the file is missing or no TOML.
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    path = Path(path)
+    data = read_toml(path)
+    base = data.pop("base", None)
+    known = base is None or (isinstance(base, str) and base in shelf)
+    kinds = tuple(one for one in get_args(kind) or (kind,) if one is not NoneType)
+    described: tuple[Any, ...] = (*kinds, Tables) if Robot in kinds else kinds
+    if base is not None and known:
+        model = shelf[base]
+        if isinstance(model, Robot) and model.tables is not None and closest(data, (Tables, Robot)) is Tables:
+            model = model.tables
+    else:
+        meant = closest(data, described)
+        things = (getattr(thing, "tables", None) if meant is Tables else thing for thing in shelf.values())
+        model = next(thing for thing in things if isinstance(thing, meant))
+    if not isinstance(model, described):
+        raise UnreadableFile(
+            f"{path.name} starts from {base!r}, which is a {type(model).__name__}; a "
+            f"{' or '.join(one.__name__ for one in kinds)} is needed here."
+        )
+    spare = plain({name: value for name, value in asdict(model).items() if name in _said(model)})
+    mistakes: dict[Place, str] = {}
+    if not known:
+        mistakes["base",] = f"is {base!r}; there is {', '.join(shelf)}"
+    if base is not None:
+        data = merged({**spare, "name": path.stem}, data)
+    value = validated({"name": path.stem, **data}, type(model), spare, path.name, mistakes)
+    return crocodile(value) if isinstance(value, Tables) else value
+
+
+def described_robot(values: Mapping[str, Any]) -> Robot:
+    """Return the robot that the plain values of a result's settings describe.
+
+    Args:
+        values: of a robot, or of the tables that it was made of, as ``dataclasses.asdict`` gives them.
+
+    Raises:
+        ValidationError: they describe none.
+        InvalidDesign: they describe an impossible one.
+    """
+    values = values.get("tables") or values
+    if closest(values, (Robot, Tables)) is Tables:
+        return crocodile(TypeAdapter(Tables).validate_python(values))
+    return TypeAdapter(Robot).validate_python(values)
+
+
+def described(data: Mapping[str, Any], kind: type[T], about: str) -> T:
+    """Return the frozen value that a table of a file describes.
+
+    Args:
+        data: the table.
+        kind: the frozen dataclass.
+        about: what it is, for messages.
+
+    Raises:
+        MistakenFile: values are missing, unknown, of the wrong kind or impossible; it names all of them.
+    """
+    return validated(dict(data), kind, {}, about, {})
+
+
+def _said(model: Any) -> set[str]:
+    """Return the fields that a file can say."""
+    return {field.name for field in fields(model) if field.init}
+
+
+def plain(value: Any) -> Any:
+    """Return a value without the tables and fields that are None, which TOML does not have."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items() if item is not None}
+    return tuple(plain(item) for item in value) if isinstance(value, (list, tuple)) else value
+
+
+def validated(
+    data: dict[str, Any], kind: type[T], spare: Mapping[str, Any], name: str, mistakes: dict[Place, str]
+) -> T:
+    """Return the value that a table describes; where it does not, mend it with spare values until nothing new is found.
+
+    Args:
+        data: the table; what is wrong with it is mended in place.
+        kind: of the value.
+        spare: values that are right, to look on with.
+        name: of the file.
+        mistakes: those that are known already, by place.
+
+    Raises:
+        MistakenFile: it describes none; all mistakes are named.
+    """
+    adapter = TypeAdapter(kind)
+    mended: set[Place] = set()
+    while True:
+        try:
+            value = adapter.validate_json(json.dumps(data, default=str), strict=True, extra="forbid")
+        except ValidationError as error:
+            found: dict[Place, str] = {}
+            for one in error.errors(include_url=False):
+                found |= explain(one, kind, data)
+        else:
+            break
+        fresh = {p: text for p, text in found.items() if _whole(p) not in mended and not _follows(p, mended)}
+        mistakes |= fresh
+        mendable = [_mend(data, _whole(place), spare) for place in fresh]
+        if not mendable or not all(mendable):
+            break
+        mended |= {_whole(place) for place in fresh}
+    if mistakes:
+        raise MistakenFile(name, mistakes)
+    return value
+
+
+def _whole(place: Place) -> Place:
+    """The place of the list that an element stands in, else the place itself."""
+    while place and isinstance(place[-1], int):
+        place = place[:-1]
+    return place
+
+
+def _follows(place: Place, mended: set[Place]) -> bool:
+    """Whether a complaint about a whole part may stem from a value that we put into it."""
+    return any(m[: len(place)] == place for m in mended)
+
+
+def _mend(data: Any, place: Place, spare: Any) -> bool:
+    """Put the spare value at a place, or drop what should not be there; return whether that was possible."""
+    if not place:
+        return False
+    for key in place[:-1]:
+        if not (isinstance(data, dict) and isinstance(spare, dict) and key in data and key in spare):
+            return False
+        data, spare = data[key], spare[key]
+    data.pop(place[-1], None)
+    if place[-1] in spare:
+        data[place[-1]] = deepcopy(spare[place[-1]])
+    return True
+
+
+def merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with what another one says in the place of its own."""
+    whole = dict(deepcopy(base))
+    for key, value in over.items():
+        there = whole.get(key)
+        whole[key] = merged(there, value) if isinstance(there, dict) and isinstance(value, dict) else value
+    return whole

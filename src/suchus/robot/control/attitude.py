@@ -1,0 +1,87 @@
+"""What the IMU says about roll and pitch, answered by the height of the feet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core import rotation
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.design import Robot, hips_ahead, layout
+from suchus.core.checks import Checks
+from suchus.article.paper import LIMB_REACH
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttitudeRule:
+    """Keeps the body level over uneven ground: feet on the side that sinks push down, on the side that rises give way.
+
+    With w a hip's distance from the midline and x its distance ahead of the middle between the girdles, a foot is
+    lowered by -w (roll gain + roll rate gain) to the left of the midline, by the opposite to the right, and by
+    x (pitch gain + pitch rate gain). Roll counts with the left side up, pitch with the nose down.
+    """
+
+    roll: float = 1.0
+    """Part of the roll that the feet make up for at once [-]; 1 levels the hips."""
+    roll_rate: float = 0.1
+    """The same for how fast it rolls [s]."""
+    pitch: float = 0.7
+    """Part of the pitch that the feet make up for at once [-]."""
+    pitch_rate: float = 0.06
+    """The same for how fast it pitches [s]."""
+    washout: float = 3.0
+    """Over which roll and pitch are compared with their own means [s]: a slope is no stumble."""
+    most: float = 0.03
+    """Most that a foot is raised or lowered [m], with limbs as long as those of the article's robot; a leg gives little
+    more. Other limbs as much of their reach."""
+
+    def __post_init__(self) -> None:
+        with Checks("attitude_rule", self) as checks:
+            for field in ("roll", "roll_rate", "pitch", "pitch_rate"):
+                checks.number(field, -10.0, 10.0, "")
+            checks.number("washout", 0.1, 600.0, "s")
+            checks.number("most", 0.0, 0.1, "m")
+
+
+class Attitude:
+    """The attitude of a batch, and what the feet do about it; each run has its own rule or none."""
+
+    def __init__(self, rules: Sequence[AttitudeRule | None], robots: Sequence[Robot], period: float) -> None:
+        given = [rule if rule is not None else _NONE for rule in rules]
+        self._gain = np.array([(r.roll, r.roll_rate, r.pitch, r.pitch_rate) for r in given]).T[..., None]  # (4, run, 1)
+        self._most = np.array([[rule.most * _size(robot)] for rule, robot in zip(given, robots, strict=True)])
+        self._keep = np.exp(-period / np.array([r.washout for r in given]))
+        self._aside = np.array([[limb.side * limb.girdle.aside for limb in layout(robot).limbs] for robot in robots])
+        self._ahead = np.array([_ahead(robot) for robot in robots])
+        self._mean = np.zeros((2, len(robots)))
+        self._felt = False
+
+    def lower(self, sensed: Sensed) -> Float[np.ndarray, "run limb"]:
+        """Return how much lower each foot goes [m]."""
+        tilt = np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)])
+        if not self._felt:
+            self._mean, self._felt = tilt.copy(), True
+        self._mean = tilt + self._keep * (self._mean - tilt)
+        roll, pitch = (tilt - self._mean)[..., None]
+        rates = sensed.angular_velocity
+        rolled = self._gain[0] * roll + self._gain[1] * rates[:, :1]
+        pitched = self._gain[2] * pitch + self._gain[3] * rates[:, 1:2]
+        lower = -self._aside * rolled + self._ahead * pitched
+        return np.asarray(np.clip(np.nan_to_num(lower), -self._most, self._most))
+
+
+_NONE = AttitudeRule(roll=0.0, roll_rate=0.0, pitch=0.0, pitch_rate=0.0)
+
+
+def _ahead(robot: Robot) -> list[float]:
+    """Return how far each limb's hips are ahead of the middle between the foremost and the hindmost girdle [m]."""
+    hips = [hips_ahead(robot, limb.number) for limb in layout(robot).limbs]
+    middle = (hips[0] + hips[-1]) / 2 if hips else 0.0
+    return [one - middle for one in hips]
+
+
+def _size(robot: Robot) -> float:
+    """Return how long the hind limbs are beside those of the article's robot [-]."""
+    limbs = layout(robot).limbs
+    return round(limbs[-1].girdle.limb.reach / LIMB_REACH, 9) if limbs else 1.0

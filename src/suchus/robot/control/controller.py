@@ -1,0 +1,92 @@
+"""The contract of a controller: a frozen setting that starts a machine for a batch."""
+
+from dataclasses import fields
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.design import Robot
+from suchus.robot.motion import Gait
+
+
+class Command(NamedTuple):
+    """What a controller says for one control period."""
+
+    targets: Float[np.ndarray, "run servo"]
+    """Servo angles [rad]."""
+    phase: Float[np.ndarray, "run limb"]
+    """Phase of each limb, not wrapped [cycle]."""
+    air_fraction: Float[np.ndarray, "run 2"] | None = None
+    """Share of the air that is kept in the front and in the rear chambers of each robot's hull, 0 to 1, NaN to leave it
+    to the lake [-]; None for all."""
+
+
+@runtime_checkable
+class Controller(Protocol):
+    """A running controller of a batch; it may keep state."""
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles in which the robots are put on the ground [rad]."""
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Answer for control period ``tick``; ``sensed`` is None where ``Control.feels`` is false."""
+
+
+SENSED = tuple(field.name for field in fields(Sensed) if field.name != "time")
+"""What a robot can sense: the fields of ``Sensed``, the time aside."""
+
+
+def united(*felt: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what several rules feel together, each once, in the order of ``Sensed``."""
+    return tuple(name for name in SENSED if any(name in one for one in felt))
+
+
+def needs(control: "Control") -> tuple[str, ...]:
+    """Return what a robot must sense for a control: fields of ``Sensed``; all of them where it feels and does not say.
+
+    A simulated robot senses everything, one that is built what it has sensors for.
+    """
+    return tuple(getattr(control, "needs", SENSED if control.feels else ()))
+
+
+class Runs(NamedTuple):
+    """The runs of a batch as a controller sees them, one entry for each."""
+
+    controls: tuple[Any, ...]
+    """Settings, all of one class."""
+    robots: tuple[Robot, ...]
+    """Designs, all of one layout."""
+    gaits: tuple[Gait, ...]
+    """Gaits."""
+    seeds: tuple[int, ...]
+    """Seeds of whatever is random."""
+    ticks: int
+    """Number of control periods to come."""
+
+    @classmethod
+    def alike(cls, control: Any, robot: Robot, gait: Gait, *, count: int = 1, ticks: int = 1) -> "Runs":
+        """Return runs that differ in nothing, not even in the seed, 0."""
+        return cls((control,) * count, (robot,) * count, (gait,) * count, (0,) * count, ticks)
+
+
+@runtime_checkable
+class Control(Protocol):
+    """A controller as a value on a run; the runs of a batch whose controls are of one class share a controller.
+
+    One that feels may say what, in a property ``needs``; see the function of that name.
+    """
+
+    @property
+    def feels(self) -> bool:
+        """Whether it wants to know what the robot senses."""
+
+    @staticmethod
+    def start(runs: Runs, period: float) -> Controller:
+        """Start the controller of some runs.
+
+        Args:
+            runs: whose controls are of this class, different as they may be.
+            period: of control [s].
+        """

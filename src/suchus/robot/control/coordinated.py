@@ -1,0 +1,218 @@
+"""The closed loop: limbs, spine and tail each with a rule of its own, joined by the shared variables."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.heading import Heading, HeadingRule, Steering
+from suchus.robot.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
+from suchus.robot.control.open_loop import OpenLoop
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.control.shared import silence
+from suchus.robot.control.spine import SpineController, SpineRule
+from suchus.robot.control.tail import TailController, TailRule
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks, require
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.robot.motion import START, Batch, Gait, Steer
+
+_SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
+
+
+@dataclass(frozen=True, slots=True)
+class Kick:
+    """A disturbance of the clock: limbs that jump ahead."""
+
+    at: float
+    """Time of the kick [s]."""
+    ahead: tuple[float, ...]
+    """Phase by which each limb jumps, in the order of the robot's limbs, LF, RF, LH, RH of the article's [cycle]."""
+
+    def __post_init__(self) -> None:
+        require("kick", "at", self.at, 0.0, 86400.0, "s")
+        for i, cycles in enumerate(self.ahead):
+            require("kick", f"ahead[{i}]", cycles, -1.0, 1.0, "cycle")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Coordinated:
+    """Three feedback rules over the gait's clock, and a heading loop for who wants one.
+
+    With the law ``off`` and no rule the commands are those of ``OpenLoop``, to the bit.
+
+    Paper: section III.D, Fig. 10.
+    """
+
+    limbs: LimbLaw = LAWS["cross_load"]
+    """Limb to limb; ``LAWS["off"]`` for none."""
+    spine: SpineRule | None = field(default_factory=SpineRule)
+    """Spine to spine; None for none: the trunk still follows the limbs' phases."""
+    tail: TailRule | None = field(default_factory=TailRule)
+    """Tail to tail; None for none: the tail still follows the trunk."""
+    heading: HeadingRule | None = None
+    """Rule that keeps the heading of the walk; None for none."""
+    sharing: bool = True
+    """Whether spine and tail hear of the limbs' phases; if not they follow the clock, each for itself."""
+    random_start: bool = False
+    """Whether the limbs begin with random phases, drawn with the run's seed, instead of the gait's."""
+    kicks: tuple[Kick, ...] = ()
+    """Limbs that jump ahead, and when."""
+    load_noise: float = 0.0
+    """Standard deviation of the noise on what each foot feels, as a part of the load [-]; drawn with the run's seed."""
+
+    def __post_init__(self) -> None:
+        with Checks("coordinated", self) as checks:
+            checks.number("load_noise", 0.0, 10.0, "")
+
+    @property
+    def feels(self) -> bool:
+        """Whether any rule is on."""
+        return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.heading))
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the rules that are on feel."""
+        return united(
+            self.limbs.needs,
+            ("servo_position",) if self.spine else (),
+            ("servo_torque",) if self.tail else (),
+            ("orientation", "servo_position") if self.heading else (),
+        )
+
+    def suited(self, robot: Robot, gait: Gait) -> "Coordinated":
+        """Return it with those of its rules that a robot's parts make possible in a gait.
+
+        A law that makes diagonal pairs is switched off in a gait without them.
+        """
+        place = layout(robot)
+        return replace(
+            self,
+            limbs=LAWS["off"] if not place.limbs or (self.limbs.pairs and not in_pairs(place, gait)) else self.limbs,
+            spine=self.spine if place.trunk_yaw else None,
+            tail=self.tail if place.tail_pitch and gait.has("tail pitch") else None,
+        )
+
+    @staticmethod
+    def start(runs: Runs, period: float) -> "Coordinator":
+        """Start the rules of a batch, each run with its own."""
+        return Coordinator(runs, period)
+
+
+class Coordinator:
+    """The controllers of limbs, spine and tail of a batch, and the posture that they ask for together."""
+
+    def __init__(self, runs: Runs, period: float) -> None:
+        controls, robots, gaits, seeds, _ = runs
+        for gait in gaits:
+            gait.needs_steering("the closed loop")
+        for setting in set(zip(controls, robots, gaits, strict=True)):
+            _refuse_others(*setting)
+        limbs = len(layout(robots[0]).limbs)
+        self._period = period
+        self._table = OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(robots)), period)
+        self._gaits = Batch(robots, gaits)
+        ahead = np.zeros((len(robots), limbs))
+        self._noise: list[tuple[int, float, np.random.Generator]] = []
+        self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
+        for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
+            if control.random_start:
+                ahead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
+            if control.load_noise > 0.0:
+                self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
+            for kick in control.kicks:
+                self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
+        self._hears = np.array([control.sharing for control in controls])[:, None]
+        self._limbs = Limbs([control.limbs for control in controls], robots, gaits, ahead, period)
+        self._spine = SpineController([control.spine for control in controls], robots, period)
+        self._tail = TailController([control.tail for control in controls], robots, gaits, period)
+        steers = any(control.heading is not None for control in controls)
+        self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
+        self._shared = silence(len(robots), limbs)
+        self._steering = Steering.none(len(robots), limbs)
+
+    def take_over(self, before: "Coordinator") -> None:
+        """Go on from where another coordinator of the same runs stands, with other gaits or rules."""
+        self._limbs.take_over(before._limbs)
+        self._spine.take_over(before._spine)
+        self._tail.take_over(before._tail)
+        self._shared = before._shared
+        if self._heading is not None and before._heading is not None:
+            self._heading.take_over(before._heading)
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """The posture of the first phases."""
+        self._share(0, None, walking=False)
+        return self._posture(0)
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Let every controller read the shared variables and what it feels, and say what the servos do."""
+        walking = tick * self._period >= START - _SLACK
+        for run, ahead in self._kicks.get(tick, ()):
+            self._limbs.kick(run, ahead)
+        if sensed is not None and self._noise:
+            sensed = self._noisy(sensed)
+        self._share(tick, sensed, walking=walking)
+        if sensed is not None and self._heading is not None:
+            self._steering = self._heading.step(sensed, walking=walking)
+        targets = self._posture(tick)
+        if sensed is not None and walking:
+            targets = self._spine.correct(targets, self._shared.trunk_bend + self._steering.trunk, sensed)
+            targets = self._tail.correct(targets, sensed)
+        return Command(targets, self._shared.limb_phase)
+
+    def _clock(self, tick: int) -> Float[np.ndarray, " run"]:
+        """Return the time since the walk began [cycle]."""
+        return np.asarray(max(tick * self._period - START, 0.0) / self._gaits.periods)
+
+    def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
+        phases, clock = self._table.command(tick, None).phase, self._clock(tick)
+        limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
+        heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
+        self._axis = self._gaits.axis_phase(heard.limb_phase, clock)
+        bent = self._tail.step(self._spine.step(heard, self._gaits, clock), self._gaits, clock)
+        self._shared = replace(bent, limb_phase=limbs.limb_phase)
+
+    def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles; where nothing is ahead of the clock and nobody steers, those of the table."""
+        table = self._table.command(tick, None).targets
+        moved = self._limbs.ahead.any(axis=1) | self._steering.any()
+        if not moved.any():
+            return table
+        steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
+        return np.where(moved[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
+
+    def _noisy(self, sensed: Sensed) -> Sensed:
+        pressure = sensed.foot_pressure.copy()
+        for run, loudness, rng in self._noise:
+            pressure[run] *= np.maximum(1.0 + loudness * rng.standard_normal(pressure.shape[1]), 0.0)
+        return replace(sensed, foot_pressure=pressure)
+
+
+def _refuse_others(control: Coordinated, robot: Robot, gait: Gait) -> None:
+    place = layout(robot)
+    for kick in control.kicks:
+        if len(kick.ahead) != len(place.limbs):
+            raise InvalidDesign(
+                f"kick.ahead has {len(kick.ahead)} numbers; {', '.join(place.limb_names) or 'no limbs'} of robot "
+                f"{robot.name!r} need one each."
+            )
+    if control.heading is not None and not place.limbs:
+        raise UnsuitedRobot(
+            f"the heading loop strides longer on one side and needs limbs to walk on; robot {robot.name!r} lacks that: "
+            "leave the loop out."
+        )
+    fit = control.suited(robot, gait)
+    for rule, needs in (
+        ("spine", "servos that bend the trunk sideways"),
+        ("tail", "a servo that pitches the tail and a gait that lays it down"),
+    ):
+        if getattr(fit, rule) != getattr(control, rule):
+            raise UnsuitedRobot(
+                f"the feedback rule {rule} to {rule} needs {needs}; robot {robot.name!r} with gait {gait.name!r} lacks "
+                "that: leave the rule out, as Coordinated.suited does."
+            )
+
+
+controller = Coordinated

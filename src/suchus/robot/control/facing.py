@@ -1,0 +1,47 @@
+"""The heading of robots, without the swinging of their own cycle."""
+
+from collections.abc import Sequence
+from math import pi
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core import rotation
+from suchus.robot.control.sensed import Sensed, finite
+from suchus.robot.design import Robot, layout
+
+
+class Facing:
+    """Direction of the pelvis by the IMU plus half of the trunk's sensed bend, averaged over the last cycle.
+
+    Args:
+        robots: of a batch; they share a layout.
+        cycle: length of each robot's cycle in control periods.
+    """
+
+    def __init__(self, robots: Sequence[Robot], cycle: Sequence[int]) -> None:
+        self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._cycle, self._runs = np.array(cycle), np.arange(len(cycle))
+        self._summed = np.zeros((int(self._cycle.max()) + 1, len(cycle)))  # a ring, as long as the longest cycle
+        self._count = 0
+        self._walks = False
+        self._last = np.zeros(len(cycle))
+        self._turned = np.zeros(len(cycle))
+
+    def feel(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
+        """Return how far each robot has turned to the left since the first call, a mean over its last cycle [rad]."""
+        trunk = finite(sensed.servo_position[:, self._yaw]).sum(1)
+        facing = rotation.yaw(finite(sensed.orientation)) + trunk / 2
+        if self._walks:
+            self._turned = self._turned + (facing - self._last + pi) % (2 * pi) - pi
+        self._walks, self._last = True, facing
+        self._count += 1
+        size = len(self._summed)
+        now, before = self._count % size, (self._count - 1) % size
+        self._summed[now] = self._summed[before] + self._turned
+        window = np.minimum(self._cycle, self._count)
+        return np.asarray((self._summed[now] - self._summed[(self._count - window) % size, self._runs]) / window)
+
+    def take_over(self, before: "Facing") -> None:
+        """Go on from where another one of the same runs stands; the mean over the last cycle begins anew."""
+        self._walks, self._last, self._turned = before._walks, before._last, before._turned

@@ -1,0 +1,115 @@
+"""A heading loop: what the IMU says about the direction of the walk, answered by one side's stroke."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from suchus.robot.control.facing import Facing
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks
+from suchus.robot.motion import Gait, longest_strokes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeadingRule:
+    """Keeps the body's direction by walking with longer strokes on one side.
+
+    The body's direction is that of the pelvis by the IMU plus half of the trunk's sensed bend. With psi its error,
+    averaged over the last cycle, and T the period, the legs' strokes become A (1 - u) on the left and A (1 + u) on
+    the right, and u = -(gain psi + integral_gain sum(psi dt)/T).
+    """
+
+    direction: float = 0.0
+    """Asked direction against the one at the beginning of the walk, left positive [rad]."""
+    gain: float = 3.0
+    """Answer to the error [1/rad]; a unit of u turns the crawl by 0.3 to 0.5 rad a cycle, so 3 mends in one."""
+    integral_gain: float = 1.0
+    """Answer to the error that stays, per cycle [1/rad]; a limp leg needs a constant u of almost 2."""
+    most: float = 2.0
+    """Most that u becomes [-]; beyond 1 the shorter side strides backward. A leg's reach may allow less."""
+    trunk: float = 0.4
+    """Lasting bend of the trunk per u, left positive [rad]; it helps where strokes have little effect."""
+
+    def __post_init__(self) -> None:
+        with Checks("heading_rule", self) as checks:
+            checks.number("direction", -pi, pi, "rad")
+            checks.number("gain", 0.0, 100.0, "1/rad")
+            checks.number("integral_gain", 0.0, 100.0, "1/rad")
+            checks.number("most", 0.0, 10.0, "")
+            checks.number("trunk", -1.5, 1.5, "rad")
+
+
+class Steering(NamedTuple):
+    """What the heading loop adds to the posture."""
+
+    stroke: Float[np.ndarray, "run limb"]
+    """Fraction by which each leg's stroke is longer [-]."""
+    trunk: Float[np.ndarray, " run"]
+    """Lasting bend of the trunk [rad]."""
+
+    @classmethod
+    def none(cls, runs: int, limbs: int) -> "Steering":
+        """Return what steers straight ahead."""
+        return cls(np.zeros((runs, limbs)), np.zeros(runs))
+
+    def any(self) -> Bool[np.ndarray, " run"]:
+        """Tell which runs are steered."""
+        return self.stroke.any(axis=1) | (self.trunk != 0.0)
+
+
+class Heading:
+    """The heading loops of a batch."""
+
+    def __init__(
+        self,
+        rules: Sequence[HeadingRule | None],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        period: float,
+    ) -> None:
+        off = HeadingRule(gain=0.0, integral_gain=0.0, trunk=0.0)
+        settings = [rule or off for rule in rules]
+        self._direction, self._gain, self._integral_gain, self._trunk = (
+            np.array([getattr(rule, name) for rule in settings])
+            for name in ("direction", "gain", "integral_gain", "trunk")
+        )
+        self._runs = np.arange(len(gaits))
+        self._cycle = np.array([max(1, round(gait.period / period)) for gait in gaits])
+        self._most = np.array([_most(*those) for those in zip(settings, robots, gaits, strict=True)])
+        self._facing = Facing(robots, [int(cycle) for cycle in self._cycle])
+        self._left = np.array([limb.side for limb in layout(robots[0]).limbs])
+        self._offset = np.zeros(len(gaits))
+
+    def step(self, sensed: Sensed, *, walking: bool | Bool[np.ndarray, " run"]) -> Steering:
+        """Answer to the direction that is felt now.
+
+        Args:
+            sensed: what is felt.
+            walking: which runs walk; the others are not steered, and begin anew with what stays. False: nothing is felt
+                either.
+        """
+        if walking is False:
+            return Steering.none(len(self._runs), len(self._left))
+        error = self._facing.feel(sensed) - self._direction
+        offset = np.clip(self._offset - self._integral_gain * error / self._cycle, -self._most, self._most)
+        self._offset = np.where(walking, offset, 0.0)
+        steer = np.where(walking, np.clip(self._offset - self._gain * error, -self._most, self._most), 0.0)
+        return Steering(-self._left * steer[:, None], self._trunk * steer)
+
+    def take_over(self, before: "Heading") -> None:
+        """Go on from where the loops of the same runs stand; the mean over the last cycle begins anew."""
+        self._facing.take_over(before._facing)
+        self._offset = np.clip(before._offset, -self._most, self._most)
+
+
+def _most(rule: HeadingRule, robot: Robot, gait: Gait) -> float:
+    if not gait.has("strokes"):
+        return 0.0
+    if rule.gain == rule.integral_gain == 0.0:  # nothing steers, and how far the limbs reach takes long to find
+        return rule.most
+    return min(rule.most, max(longest_strokes(robot, gait) - 1.0, 0.0))

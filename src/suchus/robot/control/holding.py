@@ -1,0 +1,143 @@
+"""Holding a heading and a depth while swimming: a mean bend steers, air let out and taken in dives and rises."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.facing import Facing
+from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.robot.design.pieces import chambers
+from suchus.robot.kinematics.trim import spare_volume
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeadingHold:
+    """Keeps the direction of a swim by the mean bend of tail and trunk.
+
+    With psi the error of the direction, averaged over the last cycle, tail and trunk bend by a share u of ``turn`` and
+    ``trunk_turn``, and u = -(gain psi + integral_gain sum(psi dt)), within -1 and 1.
+    """
+
+    direction: float = 0.0
+    """Asked direction against the one at the beginning, left positive [rad]."""
+    gain: float = 2.0
+    """Answer to the error [1/rad]; u = 1 turns the swim by some 0.2 rad/s, so 2 mends an error within 3 s."""
+    integral_gain: float = 0.05
+    """Answer to the error that stays [1/(rad s)]."""
+    turn: float = 0.6
+    """Mean bend of the tail at u = 1, tip to the left [rad]."""
+    trunk_turn: float = 0.3
+    """Mean bend of the trunk at u = 1, front end to the left [rad]."""
+
+    def __post_init__(self) -> None:
+        with Checks("heading_hold", self) as check:
+            check.number("direction", -pi, pi, "rad")
+            check.number("gain", 0.0, 100.0, "1/rad")
+            check.number("integral_gain", 0.0, 100.0, "1/(rad s)")
+            check.number("turn", 0.0, pi, "rad")
+            check.number("trunk_turn", 0.0, pi, "rad")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthHold:
+    """Keeps a depth by the air in the hull.
+
+    With e how much deeper than asked the root is and w its sinking speed, the share of the air that is kept is that of
+    neutral buoyancy plus gain e + rate_gain w + integral_gain sum(e dt), within 0 and 1, and changes by ``pump`` at
+    most. Errors beyond ``near`` do not add up.
+    """
+
+    depth: float
+    """Asked depth of the root below the level [m]."""
+    gain: float = 2.0
+    """Answer to the error [1/m]."""
+    rate_gain: float = 4.0
+    """Answer to the sinking speed [s/m]."""
+    integral_gain: float = 0.1
+    """Answer to the error that stays [1/(m s)]."""
+    near: float = 0.1
+    """Error up to which it adds up [m]; on the way down from the surface nothing is to be learnt."""
+    pump: float = 0.25
+    """Greatest rate at which the share of the air changes [1/s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("depth_hold", self) as check:
+            check.number("depth", 0.0, 1000.0, "m")
+            check.number("gain", 0.0, 100.0, "1/m")
+            check.number("rate_gain", 0.0, 100.0, "s/m")
+            check.number("integral_gain", 0.0, 100.0, "1/(m s)")
+            check.number("near", 0.0, 1000.0, "m")
+            check.number("pump", 1e-3, 100.0, "1/s")
+
+
+def neutral_air_fraction(robot: Robot) -> float:
+    """Return the share of its hull's air with which a robot under fresh water neither sinks nor rises [-].
+
+    Raises:
+        InvalidDesign: its hull has no air, or not enough of it.
+    """
+    return 1.0 - spare_volume(robot) / sum(chambers(robot))
+
+
+class Headings:
+    """The heading holds of a batch."""
+
+    def __init__(
+        self, rules: Sequence[HeadingHold | None], robots: Sequence[Robot], cycle: Sequence[int], period: float
+    ) -> None:
+        off = HeadingHold(gain=0.0, integral_gain=0.0, turn=0.0, trunk_turn=0.0)
+        given = [rule or off for rule in rules]
+        self._direction, self._gain, self._integral, self._turn, self._trunk = (
+            np.array([getattr(rule, name) for rule in given])
+            for name in ("direction", "gain", "integral_gain", "turn", "trunk_turn")
+        )
+        self._facing, self._period = Facing(robots, cycle), period
+        self._offset = np.zeros(len(given))
+
+    def bend(self, sensed: Sensed) -> tuple[Float[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+        """Return the mean bends of tail and trunk, left positive [rad]."""
+        error = self._facing.feel(sensed) - self._direction
+        self._offset = np.clip(self._offset - self._integral * error * self._period, -1.0, 1.0)
+        share = np.clip(self._offset - self._gain * error, -1.0, 1.0)
+        return self._turn * share, self._trunk * share
+
+
+class Depths:
+    """The depth holds of a batch."""
+
+    def __init__(self, rules: Sequence[DepthHold | None], robots: Sequence[Robot], period: float) -> None:
+        self._on = np.array([rule is not None for rule in rules])
+        off = DepthHold(depth=0.0)
+        given = [rule or off for rule in rules]
+        self._rule = {
+            name: np.array([getattr(rule, name) for rule in given]) for name in DepthHold.__dataclass_fields__
+        }
+        self._neutral = np.array(
+            [1.0 if rule is None else neutral_air_fraction(robot) for rule, robot in zip(rules, robots, strict=True)]
+        )
+        self._period, self._kept = period, keep(0.2, period)
+        self._last: np.ndarray | None = None
+        self._sinking, self._offset = np.zeros(len(given)), np.zeros(len(given))
+        self._air_fraction = np.ones(len(given))
+
+    def air_fraction(self, sensed: Sensed) -> Float[np.ndarray, " run"] | None:
+        """Return the share of the air that each robot keeps, NaN where none is asked for [-]."""
+        if sensed.depth is None or not self._on.any():
+            return None
+        rule, depth = self._rule, finite(sensed.depth)
+        speed = np.zeros_like(depth) if self._last is None else (depth - self._last) / self._period
+        self._last = depth
+        self._sinking = speed + self._kept * (self._sinking - speed)
+        error = depth - rule["depth"]
+        offset = self._offset + rule["integral_gain"] * error * self._period
+        asked = self._neutral + rule["gain"] * error + rule["rate_gain"] * self._sinking + offset
+        within = (asked >= 0.0) & (asked <= 1.0) & (np.abs(error) <= rule["near"])  # where the air can answer
+        self._offset = np.where(within, offset, self._offset)
+        most = rule["pump"] * self._period
+        self._air_fraction = self._air_fraction + np.clip(np.clip(asked, 0.0, 1.0) - self._air_fraction, -most, most)
+        return np.where(self._on, self._air_fraction, np.nan)

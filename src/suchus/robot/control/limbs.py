@@ -1,0 +1,229 @@
+"""Limb to limb: one phase oscillator per limb, slowed or hastened by what the feet carry."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import pi
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.shared import Shared
+from suchus.robot.design import GRAVITY, Layout, Robot, layout
+from suchus.core.checks import Checks
+from suchus.core.errors import OutsideLimits
+from suchus.robot.motion import Gait
+
+_DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimbLaw:
+    """How the phase of a limb answers to loads and to the trunk's torque.
+
+    With theta the limb's phase as an angle whose middle of stance is at 270 degrees, n the load of a foot over its
+    quarter of the weight, s = 1 for LF and RH and -1 for RF and LH, and u the sum of the trunk's yaw torques over
+    its limit:
+
+        d(theta)/dt = 2 pi/T [1 - cos(theta - shift) (own n + diagonal n_d + contralateral n_c + ipsilateral n_i)
+                                - trunk s u cos(theta)]
+
+    A foot that still carries load late in its stance waits; one that is loaded early hurries to mid-stance.
+    """
+
+    own: float = 0.0
+    """Weight of the foot's own load [-]."""
+    diagonal: float = 0.0
+    """Weight of the load of the foot diagonally opposite [-]."""
+    contralateral: float = 0.0
+    """Weight of the load of the other foot of the same girdle [-]."""
+    ipsilateral: float = 0.0
+    """Weight of the load of the other foot of the same side [-]."""
+    trunk: float = 0.0
+    """Weight of the trunk's yaw torque [-]."""
+    shift: float = 0.0
+    """Phase shift of the answer to loads [rad]; at the phase where the load peaks the mean clock is not slowed."""
+    delay: float = 0.04
+    """Time constant of the low-pass filter on loads and torque [s]; as slow as a rubber foot is anyway."""
+    clip: float = 2.5
+    """Most that a load counts, in quarters of the weight [-]; two feet carry everything in the crawl, impacts more."""
+
+    def __post_init__(self) -> None:
+        with Checks("limb_law", self) as checks:
+            for name in ("own", "diagonal", "contralateral", "ipsilateral", "trunk"):
+                checks.number(name, -10.0, 10.0, "")
+            checks.number("shift", -pi, pi, "rad")
+            checks.number("delay", 0.0, 10.0, "s")
+            checks.number("clip", 0.1, 100.0, "")
+
+    @property
+    def feels(self) -> bool:
+        """Whether any sensor counts."""
+        return any((self.own, self.diagonal, self.contralateral, self.ipsilateral, self.trunk))
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Loads under the feet and torques of the trunk."""
+        return ("foot_pressure", "servo_torque") if self.feels else ()
+
+    @property
+    def pairs(self) -> bool:
+        """Whether it makes diagonal pairs, whatever the gait."""
+        return any((self.diagonal, self.contralateral, self.ipsilateral, self.trunk))
+
+
+_CROSS = LimbLaw(own=0.1, diagonal=0.1, contralateral=-0.1, ipsilateral=-0.1, shift=0.244)
+LAWS: Mapping[str, LimbLaw] = MappingProxyType(
+    {
+        "off": LimbLaw(),
+        "own_load": LimbLaw(own=0.2, shift=0.244),
+        "cross_load": _CROSS,
+        "body_limb": LimbLaw(trunk=0.3),
+        "wrong_sign": replace(_CROSS, own=-0.1, diagonal=-0.1, contralateral=0.1, ipsilateral=0.1),
+    }
+)
+"""The laws by name.
+
+``off``: the clock alone. ``own_load``: each limb feels its own foot and receives nothing else (Owaki and Ishiguro
+2017); coordination is then mechanical. ``cross_load``: the loads of the two diagonal pairs against each other.
+``body_limb``: the limbs feel the trunk's torque, in the spirit of Suzuki et al. 2021 (our own form: theirs is for
+another body). ``wrong_sign``: the cross-load law reversed, which must fail.
+"""
+
+
+class Loads:
+    """What the limbs of a batch of equal bodies receive from feet and trunk, of any number.
+
+    Args:
+        laws: one for each run.
+        robots: one for each run.
+        gaits: one for each run.
+        period: of control [s].
+    """
+
+    def __init__(self, laws: Sequence[LimbLaw], robots: Sequence[Robot], gaits: Sequence[Gait], period: float) -> None:
+        place = layout(robots[0])
+        self.felt = any(law.feels for law in laws)
+        self._weights = np.array([_weights(law, place) for law in laws])
+        self._trunk, self._shift, self._clip = (
+            np.array([getattr(law, name) for law in laws])[:, None] for name in ("trunk", "shift", "clip")
+        )
+        self._keep = np.array([keep(law.delay, period) for law in laws])[:, None]
+        self._middle = np.array([gait.duty_factor / 2 - 0.25 for gait in gaits])[:, None]
+        self._share = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
+        self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]
+        self._sides = np.array([limb.side * (-1.0) ** limb.number for limb in place.limbs])
+        self._yaw = list(place.trunk_yaw)
+        self._load: np.ndarray | None = None
+        self._twist: np.ndarray | None = None
+
+    def take_over(self, before: "Loads") -> None:
+        """Go on with the filtered loads of the same runs."""
+        self._load, self._twist = before._load, before._twist
+
+    def feel(self, sensed: Sensed) -> None:
+        """Pass what is sensed through the filters."""
+        load = np.minimum(finite(sensed.foot_pressure) / self._share, self._clip)
+        twist = finite(sensed.servo_torque[:, self._yaw]).sum(axis=1, keepdims=True) / self._torque
+        self._load = load if self._load is None else load + self._keep * (self._load - load)
+        self._twist = twist if self._twist is None else twist + self._keep * (self._twist - twist)
+
+    def brake(self, phase: Float[np.ndarray, "run limb"]) -> Float[np.ndarray, "run limb"]:
+        """Return by which part of its clock each limb is slowed; nothing before anything was felt [-].
+
+        Args:
+            phase: of the limbs [cycle].
+        """
+        if self._load is None or self._twist is None:
+            return np.zeros_like(phase)
+        angle = 2 * pi * (phase + self._middle)
+        heard = (self._weights * self._load[:, None, :]).sum(axis=-1)
+        return np.asarray(np.cos(angle - self._shift) * heard + self._trunk * np.cos(angle) * self._sides * self._twist)
+
+
+class Limbs:
+    """The oscillators of a batch. Their state is how far each limb is ahead of the gait's clock."""
+
+    def __init__(
+        self,
+        laws: Sequence[LimbLaw],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        ahead: Float[np.ndarray, "run limb"],
+        period: float,
+    ) -> None:
+        for law, gait in set(zip(laws, gaits, strict=True)):
+            if law.pairs:
+                _refuse_others(gait, layout(robots[0]))
+        self.ahead = ahead
+        self._loads = Loads(laws, robots, gaits, period)
+        self._cycles_per_tick = period / np.array([gait.period for gait in gaits])[:, None]
+
+    def step(
+        self, shared: Shared, sensed: Sensed | None, clock: Float[np.ndarray, "run limb"], *, walking: bool
+    ) -> Shared:
+        """Let the oscillators turn for one control period.
+
+        Args:
+            shared: what the others say.
+            sensed: what the robots feel.
+            clock: phase of each limb by the gait's clock [cycle].
+            walking: whether the walk has begun; before, the phases stand still.
+        """
+        if self._loads.felt and sensed is not None:
+            self._loads.feel(sensed)
+            if walking:
+                self.ahead = self.ahead - self._cycles_per_tick * self._loads.brake(shared.limb_phase)
+        return shared.written_by("limbs", limb_phase=clock + self.ahead)
+
+    def take_over(self, before: "Limbs") -> None:
+        """Go on from where the oscillators of the same runs stand; limbs that nothing coordinates fall in step."""
+        if self._loads.felt:
+            self.ahead = before.ahead
+            self._loads.take_over(before._loads)
+
+    def kick(self, run: int, ahead: Float[np.ndarray, " limb"]) -> None:
+        """Let the limbs of one run jump ahead [cycle]."""
+        self.ahead = self.ahead.copy()
+        self.ahead[run] += ahead
+
+
+def _trunk_torque(robot: Robot) -> float:
+    """Return the sum of what the trunk's yaw servos can give, 1 of a robot without any [N m]."""
+    place = layout(robot)
+    return sum(place.robot.servo(place.servos[i]).torque for i in place.trunk_yaw) or 1.0
+
+
+def in_pairs(place: Layout, gait: Gait) -> bool:
+    """Return whether diagonal limbs of a gait step together and those of a girdle take turns."""
+    return _off_pairs(place, gait) <= _DIAGONAL
+
+
+def _off_pairs(place: Layout, gait: Gait) -> float:
+    phases = gait.limb_phases
+    pairs = [(i, j, 0.0) for i, limb in enumerate(place.limbs) for j in limb.diagonal]
+    pairs += [(i, limb.contralateral, 0.5) for i, limb in enumerate(place.limbs)]
+    return max(abs((phases[i] - phases[j] + apart + 0.5) % 1.0 - 0.5) for i, j, apart in pairs)
+
+
+def _refuse_others(gait: Gait, place: Layout) -> None:
+    worst = _off_pairs(place, gait)
+    if worst > _DIAGONAL:
+        raise OutsideLimits(
+            f"gait {gait.name!r} has limb phases {gait.limb_phases}, {worst:.2f} cycle away from diagonal pairs; this "
+            "limb law would turn it into a trot: use the law 'off' or 'own_load'."
+        )
+
+
+def _weights(law: LimbLaw, place: Layout) -> list[list[float]]:
+    """Return how much each limb (row) listens to each foot (column); limbs with two neighbours hear half of each."""
+    found = np.zeros((len(place.limbs), len(place.limbs)))
+    for i, limb in enumerate(place.limbs):
+        found[i, i] = law.own
+        found[i, limb.contralateral] = law.contralateral
+        for near, weight in ((limb.ipsilateral, law.ipsilateral), (limb.diagonal, law.diagonal)):
+            for other in near:
+                found[i, other] = weight / len(near)
+    rows: list[list[float]] = found.tolist()
+    return rows

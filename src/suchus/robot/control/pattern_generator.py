@@ -1,0 +1,430 @@
+"""A central pattern generator: phase oscillators of axis and limbs that a single drive lets walk, then swim."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import radians
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.limbs import LAWS, LimbLaw, Loads
+from suchus.robot.control.oscillators import Oscillators, Rhythm, couple, cut
+from suchus.robot.control.pattern_load import FeltDrive, LoadRule
+from suchus.robot.control.pattern_posture import PatternPosture, initial_phases, waves
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.control.spine import SpineController, SpineRule
+from suchus.robot.control.tail import TailController, TailRule
+from suchus.robot.design import Robot, layout
+from suchus.core.checks import Checks, Course, require
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.robot.motion import START, Gait, check_limits
+from suchus.core.progress import Progress, silent
+
+
+class Courses:
+    """What changes over time, for a batch; most of it is constant."""
+
+    def __init__(self, values: Sequence[Course]) -> None:
+        self._steady = np.array([0.0 if isinstance(one, tuple) else one for one in values], dtype=float)
+        tables = members([one if isinstance(one, tuple) else None for one in values])
+        self._tables = [(np.array(table).T, runs) for table, runs in tables if table is not None]
+
+    def at(self, time: float) -> Float[np.ndarray, " run"]:
+        """Return the values at a time [s]."""
+        found = self._steady.copy()
+        for (times, values), runs in self._tables:
+            found[runs] = np.interp(time, times, values)
+        return found
+
+
+def members(keys: Sequence[Any]) -> list[tuple[Any, np.ndarray]]:
+    """Return each different key with the numbers of those that have it."""
+    found: dict[Any, list[int]] = {}
+    for i, key in enumerate(keys):
+        found.setdefault(key, []).append(i)
+    return [(key, np.array(runs)) for key, runs in found.items()]
+
+
+class Rules:
+    """The rules of spine and tail, for those runs of a batch that have them."""
+
+    def __init__(
+        self,
+        spines: Sequence[SpineRule | None],
+        tails: Sequence[TailRule | None],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        period: float,
+    ) -> None:
+        self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._spined = [i for i, one in enumerate(spines) if one is not None]
+        self._tailed = [i for i, one in enumerate(tails) if one is not None]
+        self._spine: SpineController | None = None
+        self._tail: TailController | None = None
+        if self._spined:
+            if not self._yaw:
+                raise UnsuitedRobot(
+                    f"the rule spine to spine needs servos that bend the trunk sideways; robot {robots[0].name!r} "
+                    "lacks them: leave spine out."
+                )
+            self._spine = SpineController([spines[i] for i in self._spined], [robots[i] for i in self._spined], period)
+        if self._tailed:
+            self._tail = TailController(
+                [tails[i] for i in self._tailed],
+                [robots[i] for i in self._tailed],
+                [_with_tail(robots[i], gaits[i]) for i in self._tailed],
+                period,
+            )
+
+    def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
+        """Return the targets as the rules change them."""
+        if self._spine is not None:
+            mine = targets[self._spined]
+            asked = mine[:, self._yaw].sum(axis=1)
+            targets[self._spined] = self._spine.correct(mine, asked, _felt(sensed, self._spined))
+        if self._tail is not None:
+            targets[self._tailed] = self._tail.correct(targets[self._tailed], _felt(sensed, self._tailed))
+        return targets
+
+
+def _with_tail(robot: Robot, gait: Gait) -> Gait:
+    if not (gait.has("tail pitch") and layout(robot).tail_pitch):
+        raise UnsuitedRobot(
+            f"the rule tail to tail needs a servo that pitches the tail and a gait that lays it down, as "
+            f"'belly_crawl'; robot {robot.name!r} with gait {gait.name!r} lacks them: leave tail out."
+        )
+    return gait
+
+
+def _felt(sensed: Sensed, runs: list[int]) -> Sensed:
+    """Return the readings of some runs, as far as spine and tail read them."""
+    return replace(sensed, servo_position=sensed.servo_position[runs], servo_torque=sensed.servo_torque[runs])
+
+
+_SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
+_LEAST = 1e-9  # [-]; an amplitude below this is none
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PatternGenerator:
+    """Coupled phase oscillators, one for each limb and one for each side of each segment of the axis.
+
+    A low drive lets the limbs walk, and they draw the axis along into a standing wave; above ``limb_drives`` they fall
+    silent, and the axis is left to its own faster, travelling wave. Bends and foot paths are those of the run's gait,
+    whose period and bends are those at the drive in the middle of the limbs' range, 2. A limb follows its path in full
+    as long as it is active; as its amplitude dies it folds, or stands, or, a crank, stops. Angles of the axis are
+    clipped to the ranges of its servos. The oscillators rest until the walk begins; then the drive acts.
+
+    After Ijspeert, Crespi, Ryczko and Cabelguen 2007, Science 315, 1416; see ``Oscillators`` for the numbers.
+    """
+
+    drive: Course = 2.0
+    """Drive of all oscillators, 0 to 10 [-]."""
+    asymmetry: Course = 0.0
+    """Drive of the right side minus that of the left one, -4 to 4 [-]; with the published numbers it hardly turns."""
+    steering: Course = 0.0
+    """Turning command, -1 to 1, to the left where positive [-]."""
+    steering_gain: float = radians(8)
+    """Steady bend of each joint ahead of the hindmost limbs at ``steering`` 1 [rad]; of all joints without limbs."""
+    lag: float | None = None
+    """Phase lag of each segment of the axis behind the one ahead of it [cycle]; None for one wave on the whole axis."""
+    gradient: tuple[tuple[float, float], ...] = ((0.0, 1.0), (1.0, 1.0))
+    """Place along the body, 0 at the snout and 1 at the tip of the tail, and factor on the bends there [-]."""
+    lesions: tuple[tuple[str, str], ...] = ()
+    """Couplings cut, in both directions: ``("axis_3", "axis_4")`` cuts the axis through; see ``oscillators.cut``."""
+    initial: str | tuple[float, ...] = "gait"
+    """Phases in which the oscillators begin.
+
+    ``gait``: those of the gait, or of the wave along the axis where the limbs are silent. ``random``: by the run's
+    seed. Or given, one for each oscillator: left side of the axis from the head, right side, limbs [cycle].
+    """
+    silent: str = "folded"
+    """What silent limbs do: ``folded`` back along the body, or ``standing`` in the middle of their path."""
+    pace: float | None = None
+    """Factor on the published rates [-]; None: the gait's period at the drive in the middle."""
+    limbs: LimbLaw = LAWS["off"]
+    """Limb to limb: how loads and the trunk's torque slow the limbs' oscillators; ``LAWS["off"]`` for not at all."""
+    spine: SpineRule | None = None
+    """Spine to spine: what the trunk lacks of its commanded bend is shared out; None for none."""
+    tail: TailRule | None = None
+    """Tail to tail: the pitch of the tail gives way to the ground; None for none."""
+    load: LoadRule | None = None
+    """Load to drive: afloat the oscillators get more drive and swim; None for none."""
+    oscillators: Oscillators = field(default_factory=Oscillators)
+    """The numbers of the oscillators."""
+
+    def __post_init__(self) -> None:
+        with Checks("pattern_generator", self) as check:
+            check.course("drive", 0.0, 10.0, "", start=0.0)
+            check.course("asymmetry", -4.0, 4.0, "", start=0.0)
+            check.course("steering", -1.0, 1.0, "", start=0.0)
+            check.course("gradient", 0.0, 10.0, "", over="place", start=0.0)
+            check.number("steering_gain", 0.0, 1.0, "rad")
+            if self.lag is not None:
+                check.number("lag", -0.5, 0.5, "cycle")
+            if self.pace is not None:
+                check.number("pace", 1e-3, 1e3, "")
+            given = isinstance(self.initial, tuple) and all(abs(phase) <= 1e6 for phase in self.initial)
+            check.that(
+                given or self.initial in ("gait", "random"),
+                f"pattern_generator.initial is {str(self.initial)[:80]!r}; gait, random or a phase for each oscillator "
+                "is allowed",
+            )
+            check.that(
+                self.silent in ("folded", "standing"),
+                f"pattern_generator.silent is {str(self.silent)[:80]!r}; folded or standing is allowed",
+            )
+
+    @property
+    def feels(self) -> bool:
+        """Whether any feedback rule is on."""
+        return self.limbs.feels or any(rule is not None for rule in (self.spine, self.tail, self.load))
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What the rules that are on feel."""
+        return united(
+            self.limbs.needs,
+            ("servo_position", "servo_torque") if self.spine or self.tail else (),
+            ("foot_pressure", "belly_pressure", "tail_pressure") if self.load else (),
+        )
+
+    @staticmethod
+    def start(runs: Runs, period: float) -> "Generator":
+        """Start the pattern generators of a batch, each run with its own."""
+        return Generator(runs.controls, runs.robots, runs.gaits, runs.seeds, period)
+
+
+class Generator:
+    """The pattern generators of a batch."""
+
+    def __init__(
+        self,
+        controls: Sequence[PatternGenerator],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        seeds: Sequence[int],
+        period: float,
+    ) -> None:
+        self._period = period
+        self._groups = _grouped(controls, robots, gaits)
+        self._posture = [one for i in range(len(controls)) for one, runs in self._groups if i in runs]
+        limbs = layout(robots[0]).limb_names
+        self._limbs = slice(2 * len(self._posture[0].segments), None)
+        n = self._limbs.start // 2
+        self._sides = np.array([-0.5] * n + [0.5] * n + [-0.5, 0.5] * (len(limbs) // 2))
+        self._numbers = members([control.oscillators for control in controls])
+        self._drive, self._asymmetry, self._steering = (
+            Courses([getattr(control, name) for control in controls]) for name in ("drive", "asymmetry", "steering")
+        )
+        self._shift = np.array([one.shift for one in self._posture])[:, None]
+        self._gradient = np.array([_graded(*pair) for pair in zip(controls, self._posture, strict=True)])
+        gains = zip(controls, self._posture, strict=True)
+        self._gain = np.array([[c.steering_gain * one.steers for one in p.segments] for c, p in gains])
+        self._full = [max(float(c.oscillators.axis(np.array(c.oscillators.reference))[1]), _LEAST) for c in controls]
+        self._least = np.array([max(_least(c.oscillators), _LEAST) for c in controls])[:, None]
+        self.couplings = []
+        """Of each run; see ``oscillators.Couplings``."""
+        phases = []
+        self._felt = FeltDrive([one.load for one in controls], robots, period)
+        _, amplitude = self._own(START)
+        for i, (control, robot, gait, seed) in enumerate(zip(controls, robots, gaits, seeds, strict=True)):
+            parts = [one.part for one in self._posture[i].segments]
+            lag = 1.0 / n if control.lag is None else control.lag
+            whole = couple(control.oscillators, parts, limbs, gait.limb_phases, lag)
+            self.couplings.append(cut(whole, control.lesions))
+            driven = bool(amplitude[i, self._limbs].any())
+            phases.append(_initial(control, robot, gait, seed, self._posture[i], lag, driven=driven))
+        pace = np.array([_pace(*one) for one in zip(controls, robots, gaits, strict=True)])
+        self._rhythm = Rhythm(
+            self.couplings, [one.oscillators for one in controls], pace, np.array(phases), amplitude, period
+        )
+        self._loads = Loads([one.limbs for one in controls], robots, gaits, period)
+        self._rules = Rules([one.spine for one in controls], [one.tail for one in controls], robots, gaits, period)
+
+    @property
+    def phase(self) -> Float[np.ndarray, "run oscillator"]:
+        """Phases of the oscillators, not wrapped [cycle]."""
+        return self._rhythm.phase / (2 * np.pi)
+
+    @property
+    def amplitude(self) -> Float[np.ndarray, "run oscillator"]:
+        """Amplitudes of the oscillators [-]."""
+        return self._rhythm.amplitude
+
+    @property
+    def limb_phase(self) -> Float[np.ndarray, "run limb"]:
+        """Phases of the limbs in their gait, not wrapped [cycle]."""
+        return np.asarray(self.phase[:, self._limbs] + self._shift)
+
+    @property
+    def wave(self) -> Float[np.ndarray, "run segment"]:
+        """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
+        out = self.amplitude * (1.0 + np.cos(self._rhythm.phase))
+        n = self._limbs.start // 2
+        return waves(out[:, :n], out[:, n : 2 * n], self._full) * self._gradient
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """The posture of the first phases."""
+        return self._targets(0.0)
+
+    def advance(self, tick: int) -> None:
+        """Let the oscillators turn from the last control period to this one, if the walk has begun by then."""
+        before = (tick - 1) * self._period
+        if before >= START - _SLACK:
+            frequency, amplitude = self._own(before)
+            if self._loads.felt:
+                frequency[:, self._limbs] *= 1.0 - self._loads.brake(self.limb_phase)
+            self._rhythm.advance(frequency, amplitude)
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Let the oscillators turn, and say what the servos do."""
+        if sensed is not None and self._loads.felt:
+            self._loads.feel(sensed)
+        if sensed is not None and self._felt.felt:
+            self._felt.feel(sensed)
+        self.advance(tick)
+        targets = self._targets(tick * self._period)
+        if sensed is not None and tick * self._period >= START - _SLACK:
+            targets = self._rules.correct(targets, sensed)
+        return Command(targets, self.limb_phase)
+
+    def _own(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return own frequencies [Hz] and amplitudes [-] of all oscillators at a time."""
+        whole = self._drive.at(time) + self._felt.drive if self._felt.felt else self._drive.at(time)
+        drive = whole[:, None] + self._asymmetry.at(time)[:, None] * self._sides
+        frequency, amplitude = np.empty_like(drive), np.empty_like(drive)
+        axis = slice(0, self._limbs.start)
+        for numbers, runs in self._numbers:
+            for part, law in ((axis, numbers.axis), (self._limbs, numbers.limbs)):
+                frequency[runs, part], amplitude[runs, part] = law(drive[runs, part])
+        return frequency, amplitude
+
+    def _targets(self, time: float) -> Float[np.ndarray, "run servo"]:
+        share = np.clip(self.amplitude[:, self._limbs] / self._least, 0.0, 1.0)
+        wave, phase = self.wave, self.limb_phase
+        offset = self._steering.at(time)[:, None] * self._gain
+        found = [(runs, one.targets(phase[runs], share[runs], wave[runs], offset[runs])) for one, runs in self._groups]
+        targets = np.empty((len(phase), found[0][1].shape[1]))
+        for runs, angles in found:
+            targets[runs] = angles
+        return targets
+
+
+def _grouped(
+    controls: Sequence[PatternGenerator], robots: Sequence[Robot], gaits: Sequence[Gait]
+) -> list[tuple[PatternPosture, np.ndarray]]:
+    for robot, gait in set(zip(robots, gaits, strict=True)):
+        check_limits(robot, gait)
+    keys = list(zip(robots, gaits, (one.silent == "standing" for one in controls), strict=True))
+    return [(PatternPosture(robot, gait, standing=standing), runs) for (robot, gait, standing), runs in members(keys)]
+
+
+def _graded(control: PatternGenerator, posture: PatternPosture) -> list[float]:
+    places, factors = zip(*control.gradient, strict=True)
+    return [float(np.interp(one.place, places, factors)) for one in posture.segments]
+
+
+def _least(numbers: Oscillators) -> float:
+    """Return the amplitude of limbs at the lowest drive that moves them [-]."""
+    return float(numbers.limbs(np.array(numbers.limb_drives[0]))[1])
+
+
+def _pace(control: PatternGenerator, robot: Robot, gait: Gait) -> float:
+    if control.pace is not None:
+        return control.pace
+    numbers = control.oscillators
+    law = numbers.limbs if layout(robot).limbs else numbers.axis
+    frequency = float(law(np.array(numbers.reference))[0])
+    if frequency <= 0.0:
+        raise InvalidDesign(
+            f"the oscillators do not turn at drive {numbers.reference:g}, so that no pace gives the period of gait "
+            f"{gait.name!r}: set pattern_generator.pace."
+        )
+    return 1.0 / (gait.period * frequency)
+
+
+def _initial(
+    control: PatternGenerator,
+    robot: Robot,
+    gait: Gait,
+    seed: int,
+    posture: PatternPosture,
+    lag: float,
+    *,
+    driven: bool,
+) -> np.ndarray:
+    count = 2 * len(posture.segments) + len(gait.limb_phases)
+    if control.initial == "random":
+        return 2 * np.pi * np.random.default_rng([seed, 2]).random(count)
+    if isinstance(control.initial, tuple):
+        if len(control.initial) != count:
+            raise InvalidDesign(
+                f"pattern_generator.initial has {len(control.initial)} phases; robot {robot.name!r} has {count} "
+                f"oscillators, {len(posture.segments)} on each side of its axis and one for each limb: give as many."
+            )
+        return 2 * np.pi * np.array(control.initial, dtype=float)
+    limbs = [phase - posture.shift for phase in gait.limb_phases]
+    return initial_phases(posture.segments, limbs, lag, driven=driven)
+
+
+class OscillatorStates(NamedTuple):
+    """Phases and amplitudes of oscillators that are integrated without a body."""
+
+    time: Float[np.ndarray, " time"]
+    """Since the beginning of the run [s]."""
+    phase: Float[np.ndarray, "run time oscillator"]
+    """Phase of the oscillators, not wrapped [cycle]."""
+    amplitude: Float[np.ndarray, "run time oscillator"]
+    """Amplitude of the oscillators [-]."""
+    wave: Float[np.ndarray, "run time segment"]
+    """Bend of each segment of the axis to the left, in amplitudes of the gait [-]."""
+    names: tuple[str, ...]
+    """Names of the oscillators."""
+
+
+def oscillate(
+    controls: Sequence[PatternGenerator],
+    robot: Robot,
+    gait: Gait,
+    *,
+    duration: float,
+    seeds: Sequence[int] | None = None,
+    every: int = 1,
+    progress: Progress = silent,
+) -> OscillatorStates:
+    """Let pattern generators turn without a body, from the time at which a walk begins.
+
+    Args:
+        controls: of the runs.
+        robot: whose oscillators they are.
+        gait: which they drive.
+        duration: of the oscillation [s].
+        seeds: one for each run; all 0 if None.
+        every: keep one sample of so many control periods.
+        progress: told the share that is done.
+    """
+    require("oscillate", "duration", duration, 0.0, 86400.0, "s")
+    period, runs = control_period(robot), len(controls)
+    first, ticks = round(START / period), round(duration / period)
+    generator = Generator(controls, [robot] * runs, [gait] * runs, [0] * runs if seeds is None else seeds, period)
+    found = []
+    for tick in range(first, first + ticks + 1):
+        generator.advance(tick)
+        if (tick - first) % every == 0:
+            found.append((tick * period, generator.phase, generator.amplitude, generator.wave))
+            progress("oscillating", (tick - first) / max(ticks, 1))
+    time, phase, amplitude, wave = zip(*found, strict=True)
+    return OscillatorStates(
+        time=np.array(time),
+        phase=np.stack(phase, axis=1),
+        amplitude=np.stack(amplitude, axis=1),
+        wave=np.stack(wave, axis=1),
+        names=generator.couplings[0].names,
+    )
+
+
+controller = PatternGenerator

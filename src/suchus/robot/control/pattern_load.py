@@ -1,0 +1,61 @@
+"""What the ground is felt to carry, as a part of the drive of a pattern generator: one drive in water and on land."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.design import GRAVITY, Robot
+from suchus.core.checks import Checks
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadRule:
+    """Oscillators get more drive the less the ground is felt to carry.
+
+    Above the limbs' highest drive they fall silent and the axis swims: a descending drive that walks on land swims
+    afloat, and nothing but the load changes it. Felt is what feet, belly and tail carry, in shares of the weight,
+    through a low pass.
+    """
+
+    afloat: float = 2.0
+    """Drive beside the descending one where nothing is felt, 0 to 10 [-]; the published drives walk at 2 and swim at
+    4."""
+    touch: float = 0.02
+    """Share of the weight on the ground from which there is none of it, above 0 to 1; linear between [-]. A snout on
+    the sand carries 0.035 to 0.05."""
+    memory: float = 0.4
+    """Time constant of the low pass, 0 to 60 [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("load_rule", self) as check:
+            check.number("afloat", 0.0, 10.0, "")
+            check.number("touch", 1e-4, 1.0, "")
+            check.number("memory", 0.0, 60.0, "s")
+
+
+class FeltDrive:
+    """The load that each run of a batch feels, and the drive that it adds."""
+
+    def __init__(self, rules: Sequence[LoadRule | None], robots: Sequence[Robot], period: float) -> None:
+        self.felt = any(rule is not None for rule in rules)
+        """Whether any run has such a rule."""
+        given = [rule or LoadRule(afloat=0.0) for rule in rules]
+        self._afloat, self._touch = (np.array([getattr(rule, name) for rule in given]) for name in ("afloat", "touch"))
+        self._kept = np.array([keep(rule.memory, period) for rule in given])
+        self._weight = np.array([robot.mass * GRAVITY for robot in robots])
+        self.load: Float[np.ndarray, " run"] = np.ones(len(given))
+        """Share of the weight that the ground carries, through the low pass; as on land before anything is felt [-]."""
+
+    def feel(self, sensed: Sensed) -> None:
+        """Take in what the robots feel now."""
+        ground = finite(sensed.foot_pressure).sum(axis=1) + finite(sensed.belly_pressure).sum(axis=1)
+        load = (ground + finite(sensed.tail_pressure)) / self._weight
+        self.load = load + self._kept * (self.load - load)
+
+    @property
+    def drive(self) -> Float[np.ndarray, " run"]:
+        """What the oscillators get beside the descending drive [-]."""
+        return np.asarray(self._afloat * np.clip(1.0 - self.load / self._touch, 0.0, 1.0))

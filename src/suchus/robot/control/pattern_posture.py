@@ -1,0 +1,189 @@
+"""From oscillators to servo angles: which part of the axis each stands for, and how limbs follow theirs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi, radians
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.oscillators import AxisPart
+from suchus.robot.design import Crank, Layout, Robot, hips_behind_snout, layout, servo_ranges
+from suchus.core.errors import UnsuitedRobot
+from suchus.robot.kinematics import tail as tail_kinematics
+from suchus.robot.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement
+
+_FOLDED = radians(-85)  # yaw of a folded limb, backward along the body, as a swimming salamander holds them
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisSegment:
+    """A yaw hinge of the axis, driven by a servo of its own or by a cable over several."""
+
+    place: float
+    """Along the body, 0 at the snout, 1 at the tip of the tail [-]."""
+    servo: int
+    """Index of the servo that bends it [-]."""
+    left: float
+    """1 where a positive angle of the servo bends to the left, -1 where to the right [-]."""
+    amplitude: float
+    """Amplitude of its bend in the gait [rad]."""
+    offset: float
+    """Steady bend of it in the gait, left positive [rad]."""
+    part: AxisPart
+    """The limbs that drive it, and its phase lag behind them."""
+    steers: bool
+    """Whether an offset on it turns the robot: it lies ahead of the hindmost limbs, or there are none."""
+
+
+def axis_segments(robot: Robot, gait: Gait) -> tuple[AxisSegment, ...]:
+    """Return the segments of a robot's axis from head to tail.
+
+    Each girdle drives the axis from itself to the next girdle, the first one also what is ahead of it: fore limbs the
+    trunk, hind limbs the tail.
+
+    Raises:
+        UnsuitedRobot: nothing bends its axis sideways.
+    """
+    gait.needs_steering("a pattern generator")
+    place, yaw = layout(robot), movement(robot, gait).yaw
+    hips = [hips_behind_snout(robot, number) / place.robot.length for number in range(len(place.robot.girdles))]
+    if not yaw.hinges.servos:
+        raise UnsuitedRobot(
+            f"a pattern generator needs an axis that bends sideways; robot {robot.name!r} has no yaw hinge with a "
+            "servo or a cable on its axis: let it walk in open loop."
+        )
+    steady, amplitude = (yaw.offset / yaw.share)[0], yaw.amplitude()[0]
+    segments = []
+    for k, (servo, left, along) in enumerate(zip(yaw.hinges.servos, yaw.hinges.signs, yaw.hinges.places, strict=True)):
+        behind = [number for number, hip in enumerate(hips) if hip <= along]
+        girdle = -1 if not hips else behind[-1] if behind else 0
+        segments.append(
+            AxisSegment(
+                place=along,
+                servo=servo,
+                left=left,
+                amplitude=float(amplitude[k]),
+                offset=float(steady[k]),
+                part=AxisPart(girdle, _lag(gait, complex(yaw.swing[0, k]), girdle)),
+                steers=not hips or along < hips[-1],
+            )
+        )
+    return tuple(segments)
+
+
+class PatternPosture:
+    """How a robot's servos follow oscillators in a gait.
+
+    Args:
+        robot: the design.
+        gait: whose bends and foot paths are followed.
+        standing: whether silent limbs stand in the middle of their path; else they fold back along the body.
+    """
+
+    def __init__(self, robot: Robot, gait: Gait, *, standing: bool) -> None:
+        self.segments = axis_segments(robot, gait)
+        self.shift = 0.25 - gait.duty_factor / 2
+        """What a limb's phase is ahead of its oscillator: a left oscillator bends the body to the left [cycle]."""
+        self._limbs, self._place = limb_movement(robot, gait), layout(robot)
+        self._limb_servos = [i for limb in self._place.limbs for i in range(limb.servos.start, limb.servos.stop)]
+        owner = [n for n, limb in enumerate(self._place.limbs) for _ in range(limb.servos.start, limb.servos.stop)]
+        self._owner = np.array(owner, dtype=int)
+        middle = middle_stance(robot, gait)
+        self._rest = (middle if standing else _folded(self._place, gait, middle))[self._limb_servos]
+        self._turns = np.array([_cranked(self._place, gait, limb) for limb in owner], dtype=bool)
+        self._low, self._high = servo_ranges(robot).T
+        self._steady = middle
+
+    def targets(
+        self,
+        phase: Float[np.ndarray, "run limb"],
+        share: Float[np.ndarray, "run limb"],
+        wave: Float[np.ndarray, "run segment"],
+        offset: Float[np.ndarray, "run segment"],
+    ) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles, those of the axis within their ranges [rad].
+
+        Args:
+            phase: of the limbs in the gait, not wrapped [cycle].
+            share: how far each limb follows its path; 0 at rest, 1 in full [-].
+            wave: of each segment, 1 where it bends to the left by the gait's amplitude [-].
+            offset: steady bend of each segment to the left [rad].
+        """
+        targets = np.tile(self._steady, (len(phase), 1))
+        if self._limb_servos:
+            path = self._limbs.targets(phase, np.zeros(len(phase), dtype=complex))[:, self._limb_servos]
+            follows = np.where(self._turns, 1.0, share[:, self._owner])
+            targets[:, self._limb_servos] = self._rest + follows * (path - self._rest)
+        amplitude, steady = np.array([(segment.amplitude, segment.offset) for segment in self.segments]).T
+        bend = amplitude * wave + steady + offset
+        for servo in {one.servo for one in self.segments}:
+            mine = [i for i, one in enumerate(self.segments) if one.servo == servo]
+            whole = self.segments[mine[0]].left * bend[:, mine].sum(axis=1)
+            if servo in self._place.cables:
+                cable = self._place.cable(servo)
+                whole = tail_kinematics.servo_angle(cable, np.clip(whole, -cable.bend_limit, cable.bend_limit))
+            targets[:, servo] = np.clip(whole, self._low[servo], self._high[servo])
+        return targets
+
+
+def _lag(gait: Gait, swing: complex, girdle: int) -> float:
+    """Return the phase lag of a hinge behind the limbs of a girdle, -1/2 to 1/2; 0 where nothing drives it [cycle]."""
+    if girdle < 0 or not swing:
+        return 0.0
+    pulls = gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases)
+    # a hinge bends by -amplitude cos(phase - lag); limbs that pull later see it bend earlier
+    lag = -float(np.angle(-swing)) / (2 * pi) + pulls[2 * girdle]
+    return lag - round(lag)
+
+
+def _folded(place: Layout, gait: Gait, middle: np.ndarray) -> np.ndarray:
+    """Return the angles with every limb straight back along the body, as far as its joints go; held limbs as held."""
+    folded, ranges = middle.copy(), servo_ranges(place.robot)
+    for limb in place.limbs:
+        if isinstance(gait.limbs[limb.number], Held):
+            continue
+        driven = [hinge for hinge in limb.girdle.limb.hinges if hinge.servo is not None]
+        yaws = [i for i, hinge in enumerate(driven) if hinge.turn == "yaw"]
+        for i, hinge in enumerate(driven):
+            if not isinstance(hinge.drive, Crank):
+                servo = limb.servos.start + i
+                folded[servo] = np.clip(_FOLDED if yaws and i == yaws[0] else 0.0, *ranges[servo])
+    return folded
+
+
+def _cranked(place: Layout, gait: Gait, limb: int) -> bool:
+    """Return whether a limb turns all round, so that it stops where it is."""
+    return isinstance(gait.limbs[place.limbs[limb].number], Sweep)
+
+
+def waves(
+    left: Float[np.ndarray, "run segment"], right: Float[np.ndarray, "run segment"], full: Sequence[float]
+) -> Float[np.ndarray, "run segment"]:
+    """Return how far each segment bends to the left, from the outputs of its two sides [-].
+
+    Args:
+        left: outputs of the left oscillators [-].
+        right: outputs of the right oscillators [-].
+        full: of each run, the amplitude at which a gait's own bend is reached [-].
+    """
+    return np.asarray((left - right) / (2.0 * np.asarray(full)[:, None]))
+
+
+def initial_phases(
+    segments: Sequence[AxisSegment], limbs: Sequence[float], lag: float, *, driven: bool
+) -> Float[np.ndarray, " oscillator"]:
+    """Return phases in which nothing pulls on anything much: the axis with its limbs, or a wave along it [rad].
+
+    Args:
+        segments: of the axis.
+        limbs: phases of the limbs' oscillators [cycle].
+        lag: of each segment behind the one ahead of it [cycle].
+        driven: whether the limbs are active.
+    """
+    if driven and limbs:
+        sides = [[limbs[2 * one.part.girdle + side] - one.part.phase_lag for one in segments] for side in (0, 1)]
+    else:
+        first = limbs[0] if limbs else 0.0
+        sides = [[first - lag * k + 0.5 * side for k in range(len(segments))] for side in (0, 1)]
+    return 2 * pi * np.array([*sides[0], *sides[1], *limbs])

@@ -1,0 +1,66 @@
+"""What the controllers of limbs, spine and tail exchange: five quantities, each with one owner."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core.errors import OutsideLimits
+
+OWNERS: Mapping[str, str] = MappingProxyType(
+    {
+        "limb_phase": "limbs",
+        "trunk_bend": "spine",
+        "trunk_direction": "spine",
+        "tail_bend": "tail",
+        "tail_direction": "tail",
+    }
+)
+"""Which controller writes which shared variable; every controller reads all of them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shared:
+    """The shared variables of a batch, as the article lists them; nothing else passes between the controllers.
+
+    A direction says in which direction something is bending: it is the bend to be reached a quarter of a cycle from
+    now, so that its sign is the side and bend and direction together are the whole wave.
+
+    Paper: section III.D.
+    """
+
+    limb_phase: Float[np.ndarray, "run limb"]
+    """Phase of each limb, not wrapped [cycle]; owner: limbs."""
+    trunk_bend: Float[np.ndarray, " run"]
+    """Lateral bend of the trunk, left positive [rad]; owner: spine."""
+    trunk_direction: Float[np.ndarray, " run"]
+    """Bend of the trunk a quarter of a cycle from now [rad]; owner: spine."""
+    tail_bend: Float[np.ndarray, " run"]
+    """Lateral bend of the tail, tip to the right positive [rad]; owner: tail."""
+    tail_direction: Float[np.ndarray, " run"]
+    """Bend of the tail a quarter of a cycle from now [rad]; owner: tail."""
+
+    def written_by(self, owner: str, **values: np.ndarray) -> "Shared":
+        """Return the shared variables with those of one owner renewed; the arrays can no longer be written to.
+
+        Raises:
+            OutsideLimits: a variable that belongs to another controller.
+        """
+        for name, value in values.items():
+            if OWNERS.get(name) != owner:
+                raise OutsideLimits(
+                    f"{owner!r} wrote the shared variable {name!r}, which belongs to {OWNERS.get(name, 'nobody')!r}; "
+                    f"it may write {', '.join(v for v, o in OWNERS.items() if o == owner) or 'none'}."
+                )
+            value.flags.writeable = False
+        return replace(self, **values)
+
+
+def silence(runs: int, limbs: int) -> Shared:
+    """Return the shared variables before anybody has written."""
+    none = np.zeros(runs)
+    return Shared(
+        limb_phase=np.zeros((runs, limbs)), trunk_bend=none, trunk_direction=none, tail_bend=none, tail_direction=none
+    )

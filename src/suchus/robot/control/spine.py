@@ -1,0 +1,87 @@
+"""Spine to spine: the trunk's bend follows the limbs, and its joints share each other's error."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.control.shared import Shared
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.core.checks import Checks
+from suchus.robot.motion import Batch
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpineRule:
+    """Every yaw joint of the trunk takes over a part of what all of them together lack.
+
+    With B the bend that the limbs' phases ask for and q the sensed yaw angles, e is the low-passed B - sum(q), and
+    each joint is commanded its part of B, a third in the article's robot, and share e. A joint that is stuck, weak or
+    sagging is so made up for by the others.
+    """
+
+    share: float = 0.3
+    """Part of the missing bend that each joint takes over [-]; 0.6 is stable too and makes up for more."""
+    delay: float = 0.1
+    """Time constant of the low-pass filter on the missing bend [s]; longer than a servo needs, shorter than a step."""
+
+    def __post_init__(self) -> None:
+        with Checks("spine_rule", self) as checks:
+            checks.number("share", 0.0, 2.0, "")
+            checks.number("delay", 0.0, 10.0, "s")
+
+
+class SpineController:
+    """The trunks of a batch."""
+
+    def __init__(
+        self,
+        rules: Sequence[SpineRule | None],
+        robots: Sequence[Robot],
+        period: float,
+    ) -> None:
+        self._on = np.array([rule is not None for rule in rules])
+        self._part = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
+        self._keep = np.array([0.0 if rule is None else keep(rule.delay, period) for rule in rules])
+        self._yaw = list(layout(robots[0]).trunk_yaw)
+        ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
+        self._low, self._high = ranges[..., 0], ranges[..., 1]
+        self._lacking = np.zeros(len(robots))
+
+    @staticmethod
+    def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
+        """Let the bend follow the limbs: each of four pulls with a quarter of the amplitude.
+
+        Args:
+            shared: what the limbs say.
+            gaits: of the runs.
+            clock: since the walk began, for bodies without limbs [cycle].
+        """
+        axis = gaits.axis_phase(shared.limb_phase, clock)
+        bend, direction = gaits.bend_of("trunk", axis), gaits.bend_of("trunk", 1j * axis)
+        return shared.written_by("spine", trunk_bend=bend, trunk_direction=direction)
+
+    def take_over(self, before: "SpineController") -> None:
+        """Go on from where the trunks of the same runs stand."""
+        self._lacking = before._lacking
+
+    def correct(
+        self, targets: Float[np.ndarray, "run servo"], asked: Float[np.ndarray, " run"], sensed: Sensed
+    ) -> Float[np.ndarray, "run servo"]:
+        """Return the targets with the missing bend shared out.
+
+        Args:
+            targets: servo angles [rad].
+            asked: bend of the trunk [rad].
+            sensed: what the robots feel.
+        """
+        if not self._on.any():
+            return targets
+        lacking = asked - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
+        self._lacking = lacking + self._keep * (self._lacking - lacking)
+        commanded = np.clip(targets[:, self._yaw] + self._part * self._lacking[:, None], self._low, self._high)
+        corrected = targets.copy()
+        corrected[:, self._yaw] = np.where(self._on[:, None], commanded, targets[:, self._yaw])
+        return corrected

@@ -1,0 +1,124 @@
+"""Swimming: a swimming gait from the first moment on, and rules that hold heading, depth and pitch."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.controller import Command, Runs, united
+from suchus.robot.control.holding import DepthHold, Depths, HeadingHold, Headings
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.control.trim import Pitches, PitchHold
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.robot.motion import Batch, Bend, Gait, Steer, check_limits, check_speeds
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Swimming:
+    """Plays the gait of the run from time zero on, its strokes and bends growing over ``ramp``.
+
+    A steady bend of the tail, as ``gait.with_numbers(tail_offset=0.3)``, steers as a rudder does; with ``heading``,
+    ``depth`` and ``pitch`` the robot swims by what it feels.
+    """
+
+    ramp: float = 1.0
+    """Duration over which strokes and bends grow [s]."""
+    heading: HeadingHold | None = None
+    """Rule that keeps the heading; None for none."""
+    depth: DepthHold | None = None
+    """Rule that keeps the depth; None for none."""
+    pitch: PitchHold | None = None
+    """Rule that keeps the pitch at that depth; None for none."""
+
+    def __post_init__(self) -> None:
+        with Checks("swimming", self) as check:
+            check.number("ramp", 0.0, 60.0, "s")
+            check.that(
+                self.pitch is None or self.depth is not None,
+                "swimming.pitch is held by the air that a held depth lets out, and swimming.depth is None; give it a "
+                "DepthHold, or leave out swimming.pitch",
+            )
+
+    @property
+    def feels(self) -> bool:
+        """Whether heading, depth or pitch are controlled."""
+        return self.heading is not None or self.depth is not None
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What is held is felt."""
+        return united(
+            ("orientation", "servo_position") if self.heading else (),
+            ("depth",) if self.depth else (),
+            ("orientation", "angular_velocity", "depth") if self.pitch else (),
+        )
+
+    @staticmethod
+    def start(runs: Runs, period: float) -> "SwimmingController":
+        """Start the swims of a batch, one per run.
+
+        Raises:
+            OutsideLimits: a robot cannot follow its gait, or what steers it asks for more.
+            InvalidDesign: a robot whose depth is controlled has too little air, or no two chambers for its pitch.
+        """
+        for control, robot, gait in {*zip(runs.controls, runs.robots, runs.gaits, strict=True)}:
+            if control.feels or control.ramp > 0.0:
+                gait.needs_steering("a swim that grows from rest or is held")
+            check_speeds(robot, gait)
+            for side in (-1.0, 1.0) if control.heading is not None else ():
+                check_limits(robot, _steered(gait, side * control.heading.trunk_turn))
+        return SwimmingController(runs.controls, runs.robots, runs.gaits, period)
+
+
+def _steered(gait: Gait, bend: float) -> Gait:
+    """Return a gait whose trunk bends more to the left [rad]."""
+    return replace(gait, axis=(*gait.axis, Bend(part="trunk", offset=bend)))
+
+
+class SwimmingController:
+    """The running swims of a batch: the postures of their gaits, to which what is felt adds."""
+
+    def __init__(
+        self, controls: Sequence[Swimming], robots: Sequence[Robot], gaits: Sequence[Gait], period: float
+    ) -> None:
+        self._gaits, self._period = Batch(robots, gaits), period
+        self._ramp = np.array([control.ramp for control in controls])
+        self._feels = any(control.feels for control in controls)
+        cycle = [max(1, round(gait.period / period)) for gait in gaits]
+        self._headings = Headings([control.heading for control in controls], robots, cycle, period)
+        self._depths = Depths([control.depth for control in controls], robots, period)
+        asked = [np.nan if control.depth is None else control.depth.depth for control in controls]
+        self._pitches = Pitches([control.pitch for control in controls], asked, robots, period)
+        self._still = np.zeros(len(controls))
+
+    def rest(self) -> Float[np.ndarray, "run servo"]:
+        """The first posture."""
+        return self._posture(0.0, self._still, self._still)[0]
+
+    def command(self, tick: int, sensed: Sensed | None) -> Command:
+        """Go on in the gait, and add what is felt."""
+        tail, trunk, air = self._still, self._still, None
+        if sensed is not None and self._feels:
+            tail, trunk = self._headings.bend(sensed)
+            kept = self._depths.air_fraction(sensed)
+            air = None if kept is None else self._pitches.split(kept, sensed)
+        return Command(*self._posture(tick * self._period, tail, trunk), air)
+
+    def _posture(self, time: float, tail: np.ndarray, trunk: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return servo angles [rad] and phases of the limbs [cycle] at a time [s]."""
+        clock = time / self._gaits.periods
+        phase = clock[:, None] + self._gaits.phases
+        steer = Steer(size=grown(time, self._ramp), bend=trunk, tail=tail)
+        return self._gaits.targets(phase, self._gaits.axis_phase(phase, clock), steer), phase
+
+
+def grown(time: float, ramp: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+    """Return how much of a motion has grown at a time [s], over a ramp and smoothly at both ends [-]."""
+    share = np.where(ramp > 0.0, np.clip(time / np.where(ramp > 0.0, ramp, 1.0), 0.0, 1.0), 1.0)
+    return np.asarray(share**2 * (3.0 - 2.0 * share))
+
+
+controller = Swimming
+examples = (Swimming(),)

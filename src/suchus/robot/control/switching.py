@@ -1,0 +1,122 @@
+"""Which posture to walk in, by what is felt and not by a map."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core import rotation
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.design import GRAVITY, Robot
+from suchus.core.checks import Checks
+from suchus.core.errors import UnknownName
+from suchus.robot.motion import Gait
+
+_WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean
+_FOOT_LOADED = 0.02895931795  # of the weight, 1 N of the article's robot; from here on a foot feels the ground
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwitchRule:
+    """A ladder of postures: up when the belly touches, down when the feet stumble or the ground is calm.
+
+    Three quantities are felt, each averaged over the last ``memory`` seconds: the share of the weight that the belly
+    carries; how far the feet contradict the gait, loaded in swing or free in stance; and how much the body tilts
+    against its own mean. A belly that touches asks for the next rung. Feet that contradict the gait too much on a rung
+    above ``home`` ask for the one below, and so does a body that hardly tilts.
+    """
+
+    ladder: tuple[Gait, ...]
+    """Gaits from the lowest posture to the highest; the run's gait must be among them."""
+    home: int
+    """Rung to which it returns on calm ground, counted from 0 [-]."""
+    belly: float = 0.03
+    """Share of the weight on the belly that asks for the next rung [-]; a free belly carries nothing."""
+    stumbling: float = 0.30
+    """Contradiction of the feet that asks for the rung below [-]; 0.03 to 0.18 on even ground, 0.35 before a wall."""
+    calm: float = 0.016
+    """Mean tilt below which the ground counts as calm [rad]; 0.012 on even ground, 0.018 on bumps of 20 mm."""
+    memory: float = 0.8
+    """Time over which is averaged [s]; about a cycle."""
+    patience: float = 3.0
+    """Least time in a posture before it goes down again, and of calm before it goes home [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("switch_rule", self) as checks:
+            checks.that(len(self.ladder) >= 2, "switch_rule.ladder needs two gaits or more")
+            checks.whole("home", 0, max(len(self.ladder) - 1, 0))
+            for field in ("belly", "stumbling", "calm"):
+                checks.number(field, 0.0, 10.0, "")
+            checks.number("memory", 0.01, 60.0, "s")
+            checks.number("patience", 0.0, 600.0, "s")
+            checks.that(len(set(self.ladder)) == len(self.ladder), "switch_rule.ladder repeats a gait")
+
+
+class Switcher:
+    """What a batch feels of the ground, and the postures that it asks for."""
+
+    def __init__(
+        self,
+        rules: Sequence[SwitchRule | None],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        period: float,
+    ) -> None:
+        self._rules, self._period = list(rules), period
+        self._weight = np.array([robot.mass * GRAVITY for robot in robots])
+        for rule, gait in zip(rules, gaits, strict=True):
+            if rule is not None and gait not in rule.ladder:
+                raise UnknownName("gait on the ladder", gait.name, [g.name for g in rule.ladder])
+        self._keep = np.exp(-period / np.array([1.0 if rule is None else rule.memory for rule in rules]))
+        n = len(rules)
+        self._belly, self._stumbling, self._tilt = np.zeros(n), np.zeros(n), np.zeros(n)
+        self._mean: np.ndarray | None = None
+        self._since = np.zeros(n)  # in this posture [s]
+        self._calm = np.zeros(n)  # of calm without a break [s]
+
+    def decide(
+        self, sensed: Sensed, phase: Float[np.ndarray, "run limb"], gaits: Sequence[Gait], busy: set[int]
+    ) -> list[tuple[int, Gait]]:
+        """Feel, and return which runs begin which gait now; those that are busy feel nothing new."""
+        if all(rule is None for rule in self._rules):
+            return []
+        free = np.array([run not in busy for run in range(len(self._rules))])
+        self._feel(sensed, phase, gaits, free)
+        asked = []
+        for run, rule in enumerate(self._rules):
+            if rule is not None and free[run]:
+                rung = rule.ladder.index(gaits[run])
+                step = self._step(run, rule, rung)
+                if step:
+                    asked.append((run, rule.ladder[rung + step]))
+                    self._since[run] = self._calm[run] = 0.0
+                    self._belly[run] = self._stumbling[run] = self._tilt[run] = 0.0
+        return asked
+
+    def _step(self, run: int, rule: SwitchRule, rung: int) -> int:
+        """Return how many rungs a run goes up."""
+        if self._since[run] < rule.memory:
+            return 0
+        if self._belly[run] > rule.belly and rung + 1 < len(rule.ladder):
+            return 1
+        self._calm[run] = self._calm[run] + self._period if self._tilt[run] < rule.calm else 0.0
+        if rung > rule.home and self._since[run] >= rule.patience:
+            return -int(self._stumbling[run] > rule.stumbling or self._calm[run] >= rule.patience)
+        return 0
+
+    def _feel(self, sensed: Sensed, phase: np.ndarray, gaits: Sequence[Gait], free: np.ndarray) -> None:
+        feet, belly = np.nan_to_num(sensed.foot_pressure), np.nan_to_num(sensed.belly_pressure).sum(axis=1)
+        total = feet.sum(axis=1) + belly + np.nan_to_num(sensed.tail_pressure)
+        duty = np.array([[gait.duty_factor] for gait in gaits])
+        contradicts = (feet > _FOOT_LOADED * self._weight[:, None]) != (np.mod(phase, 1.0) >= 1.0 - duty)
+        tilt = np.nan_to_num(np.stack([rotation.roll(sensed.orientation), rotation.pitch(sensed.orientation)]))
+        self._mean = tilt if self._mean is None else self._mean + self._period / _WASHOUT * (tilt - self._mean)
+        off = np.hypot(*(tilt - self._mean))
+        for mean, now in (
+            (self._belly, belly / np.maximum(total, _FOOT_LOADED * self._weight)),
+            (self._stumbling, contradicts.mean(axis=1)),
+            (self._tilt, off),
+        ):
+            mean[free] = (now + self._keep * (mean - now))[free]
+        self._since[free] += self._period

@@ -1,0 +1,94 @@
+"""Tail to tail: the tail bends with the trunk, and the ground carries it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.control.sensed import Sensed, finite
+from suchus.robot.control.shared import Shared
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.core.checks import Checks
+from suchus.robot.motion import Batch, Gait
+
+_LEAST = 1e-9  # [rad]; a trunk that bends less does not bend
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TailRule:
+    """The tail's pitch gives way until its servo holds nothing, so that the ground carries the tail on any slope.
+
+    d(pitch)/dt = -rate torque, within a range. A gait that lifts its tail keeps it lifted.
+    """
+
+    rate: float = 0.3
+    """Rate at which it gives way [rad/(s N m)]; faster gains more uphill, this drifts least on slopes to the side."""
+    lowest: float = 0.55
+    """Farthest down [rad]; beyond, the tail would lift the hind feet."""
+    highest: float = -0.05
+    """Farthest up [rad]; level, the tail no longer touches."""
+
+    def __post_init__(self) -> None:
+        with Checks("tail_rule", self) as checks:
+            checks.number("rate", 0.0, 100.0, "rad/(s N m)")
+            checks.number("lowest", -1.3, 1.3, "rad")
+            checks.number("highest", -1.3, 1.3, "rad")
+            checks.that(self.highest <= self.lowest, "highest must be at most lowest: down is positive")
+
+
+class TailController:
+    """The tails of a batch."""
+
+    def __init__(
+        self,
+        rules: Sequence[TailRule | None],
+        robots: Sequence[Robot],
+        gaits: Sequence[Gait],
+        period: float,
+    ) -> None:
+        share = max(len(layout(robots[0]).tail_pitch), 1)
+        self._asked = np.array([gait.number("tail_pitch") / share for gait in gaits])
+        self._pitch = self._asked
+        self._on = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
+        if not self._on.any():
+            return
+        self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
+        self._column = layout(robots[0]).tail_pitch[0]
+        low, high = np.array([servo_ranges(robot)[self._column] for robot in robots]).T
+        for i, rule in enumerate(rules):
+            if rule is not None:
+                low[i] = max(low[i], min(rule.highest, self._pitch[i]))
+                high[i] = min(high[i], max(rule.lowest, self._pitch[i]))
+        self._low, self._high = low, high
+
+    @staticmethod
+    def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
+        """Let the bend follow the trunk, with the gait's phase lag; where no trunk bends, it follows the limbs.
+
+        Args:
+            shared: what spine and limbs say.
+            gaits: of the runs.
+            clock: since the walk began, for bodies without limbs [cycle].
+        """
+        (trunk, trunk_steady), (tail, steady) = gaits.together("trunk"), gaits.together("tail")
+        bends = np.abs(trunk) > _LEAST
+        # bend and direction together are the trunk's whole wave, swing times order parameter
+        wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
+        follows = np.zeros_like(tail) if bends.all() else tail * gaits.axis_phase(shared.limb_phase, clock)
+        follows[bends] = tail[bends] / trunk[bends] * wave[bends]
+        return shared.written_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
+
+    def take_over(self, before: "TailController") -> None:
+        """Go on from where the tails of the same runs stand, as far as the gait asks for the same pitch."""
+        self._pitch = np.where(self._on & (self._asked == before._asked), before._pitch, self._asked)
+
+    def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
+        """Return the targets with the tail's pitch given way for one control period more."""
+        if not self._on.any():
+            return targets
+        gives = self._step * finite(sensed.servo_torque[:, self._column])
+        self._pitch = np.clip(self._pitch - gives, self._low, self._high)
+        corrected = targets.copy()
+        corrected[:, self._column] = np.where(self._on, self._pitch, targets[:, self._column])
+        return corrected

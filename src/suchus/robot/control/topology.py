@@ -1,0 +1,108 @@
+"""Which controller feels, hears and writes what: watched while the code runs, not written down a second time."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from suchus.robot.control.coordinated import Coordinated
+from suchus.robot.control.heading import Heading, HeadingRule
+from suchus.robot.control.limbs import Limbs
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.control.shared import OWNERS, Shared, silence
+from suchus.robot.control.spine import SpineController
+from suchus.robot.control.tail import TailController
+from suchus.robot.design import Layout, Robot, layout
+from suchus.robot.design.scale import control_period
+from suchus.robot.motion import Batch, Gait
+
+
+class ControlPart(NamedTuple):
+    """One controller of the topology."""
+
+    name: str
+    """``limbs``, ``spine``, ``tail`` or ``heading``."""
+    feels: frozenset[str]
+    """Sensors that it read: fields of ``Sensed``, the time aside."""
+    hears: frozenset[str]
+    """Shared variables that it read, its own ones included."""
+    writes: frozenset[str]
+    """Shared variables that it wrote."""
+
+
+def topology(robot: Robot, gait: Gait, control: Coordinated | None = None) -> tuple[ControlPart, ...]:
+    """Return what each controller reads and writes when it takes a step, in the order in which they act.
+
+    Args:
+        robot: the design.
+        gait: which it walks.
+        control: the rules; by default those of ``Coordinated`` that the robot's parts make possible, and the heading
+            loop.
+
+    Raises:
+        OutsideLimits: the gait has measured curves.
+    """
+    gait.needs_steering("the closed loop")
+    if control is None:
+        control = Coordinated(heading=HeadingRule()).suited(robot, gait)
+    place, period = layout(robot), control_period(robot)
+    robots, gaits, together, begun = [robot], [gait], Batch([robot], [gait]), np.zeros(1)
+    limbs = Limbs([control.limbs], robots, gaits, np.zeros((1, len(place.limbs))), period)
+    spine = SpineController([control.spine], robots, period)
+    tail = TailController([control.tail], robots, gaits, period)
+    clock, targets = np.array([gait.limb_phases]), np.zeros((1, len(place.servos)))
+
+    def heading(_: Any, sensed: Any) -> None:
+        if control.heading is not None:
+            Heading([control.heading], robots, gaits, period).step(sensed, walking=True)
+
+    def of_spine(shared: Any, sensed: Any) -> Shared:
+        spine.correct(targets.copy(), np.zeros(1), sensed)
+        return spine.step(shared, together, begun)
+
+    def of_tail(shared: Any, sensed: Any) -> Shared:
+        tail.correct(targets.copy(), sensed)
+        return tail.step(shared, together, begun)
+
+    steps: dict[str, Callable[[Any, Any], Shared | None]] = {
+        "limbs": lambda shared, sensed: limbs.step(shared, sensed, clock, walking=True),
+        "spine": of_spine,
+        "tail": of_tail,
+        "heading": heading,
+    }
+    return tuple(_watched(name, step, place) for name, step in steps.items())
+
+
+def _watched(name: str, step: Callable[[Any, Any], Shared | None], place: Layout) -> ControlPart:
+    """Return what one step read and wrote."""
+    before, heard, felt = silence(1, len(place.limbs)), set[str](), set[str]()
+    after = step(_watching(before, heard), _watching(_quiet(place), felt))
+    written = [] if after is None else [v for v in OWNERS if getattr(after, v) is not getattr(before, v)]
+    return ControlPart(name, frozenset(felt) - {"time"}, frozenset(heard) & frozenset(OWNERS), frozenset(written))
+
+
+def _watching(value: object, read: set[str]) -> Any:
+    """Return what stands for a value, of its own type, and notes which of its attributes are read."""
+
+    def noted(_: object, name: str) -> Any:
+        read.add(name)
+        return getattr(value, name)
+
+    return object.__new__(type("Watched", (type(value),), {"__getattribute__": noted}))
+
+
+def _quiet(place: Layout) -> Sensed:
+    """Return the readings of one robot at rest."""
+    servos, none = np.zeros((1, len(place.servos))), np.zeros(1)
+    return Sensed(
+        time=1.0,
+        servo_position=servos,
+        servo_velocity=servos,
+        servo_torque=servos,
+        foot_pressure=np.ones((1, len(place.limbs))),
+        belly_pressure=np.zeros((1, len(place.trunk))),
+        tail_pressure=none,
+        orientation=np.array([[1.0, 0.0, 0.0, 0.0]]),
+        angular_velocity=np.zeros((1, 3)),
+        acceleration=np.zeros((1, 3)),
+    )

@@ -1,0 +1,128 @@
+"""Holding a pitch under water: air moves between the front and the rear chambers of the hull."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core import rotation
+from suchus.robot.control.sensed import Sensed, finite, keep
+from suchus.robot.design import Robot
+from suchus.core.checks import Checks
+from suchus.robot.design.pieces import chambers
+from suchus.core.errors import InvalidDesign
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PitchHold:
+    """Keeps the pitch of a swim under water by air that moves between the chambers of the hull.
+
+    With theta the pitch less the asked one, nose down positive, and q its rate, both through a low pass, since a swim
+    pitches to and fro, the share of the hull's air that moves ahead of where it is with all chambers filled alike is
+    gain theta + rate_gain q + integral_gain sum(theta dt), as far as the chambers have air and room, and changes by
+    ``pump`` at most.
+    """
+
+    pitch: float = 0.0
+    """Asked pitch, nose down positive [rad]."""
+    dive: float = 0.0
+    """How much more it pitches nose down for each metre that it is too high, and nose up where it is too deep [rad/m]:
+    so that the swim itself takes it there."""
+    steepest: float = 0.3
+    """Greatest change of the asked pitch by ``dive`` [rad]."""
+    gain: float = 0.2
+    """Answer to the error of the pitch [1/rad]; 0.1 of the floating caiman's air rights it as much as 25 degrees do."""
+    rate_gain: float = 0.4
+    """Answer to its rate [s/rad]."""
+    integral_gain: float = 0.02
+    """Answer to the error that stays [1/(rad s)]."""
+    memory: float = 0.5
+    """Time constant of the low pass [s]."""
+    pump: float = 0.1
+    """Greatest rate at which the share of the air that has moved changes [1/s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("pitch_hold", self) as check:
+            check.number("pitch", -pi / 3, pi / 3, "rad")
+            check.number("dive", 0.0, 100.0, "rad/m")
+            check.number("steepest", 0.0, pi / 3, "rad")
+            check.number("gain", 0.0, 100.0, "1/rad")
+            check.number("rate_gain", 0.0, 100.0, "s/rad")
+            check.number("integral_gain", 0.0, 100.0, "1/(rad s)")
+            check.number("memory", 0.0, 60.0, "s")
+            check.number("pump", 1e-3, 100.0, "1/s")
+
+
+class Pitches:
+    """The pitch holds of a batch.
+
+    Args:
+        rules: one for each run, None for none.
+        depths: that the runs hold, NaN for none [m].
+        robots: one for each run.
+        period: of control [s].
+
+    Raises:
+        InvalidDesign: a robot whose pitch is held has no front or no rear chamber.
+    """
+
+    def __init__(
+        self, rules: Sequence[PitchHold | None], depths: Sequence[float], robots: Sequence[Robot], period: float
+    ) -> None:
+        off = PitchHold(gain=0.0, rate_gain=0.0, integral_gain=0.0)
+        self._on = np.array([rule is not None for rule in rules])
+        self._rule = {
+            name: np.array([getattr(rule or off, name) for rule in rules]) for name in PitchHold.__dataclass_fields__
+        }
+        for rule, robot in zip(rules, robots, strict=True):
+            if rule is not None and min(chambers(robot)) == 0.0:
+                raise InvalidDesign(
+                    f"the pitch of robot {robot.name!r} is held, and its hull has no air that could move between a "
+                    "front and a rear chamber: give it design.Hull.chambers, or leave out swimming.pitch."
+                )
+        air = np.array([chambers(robot) for robot in robots])
+        air[air.sum(axis=1) == 0.0] = 1.0
+        self._share = air / air.sum(axis=1, keepdims=True)
+        self._asked_depth, self._period = np.array(depths), period
+        self._kept = np.array([keep(value, period) for value in self._rule["memory"]])
+        self._felt: np.ndarray | None = None
+        self._offset, self._moved = np.zeros(len(rules)), np.zeros(len(rules))
+
+    def split(self, air_fraction: Float[np.ndarray, " run"], sensed: Sensed) -> Float[np.ndarray, "run 2"]:
+        """Return the share of the air that is kept in front and rear chambers [-].
+
+        Args:
+            air_fraction: share of the whole air that is kept, NaN where it is not commanded [-].
+            sensed: what the robots feel.
+        """
+        rule, (front, rear) = self._rule, self._share.T
+        error = rotation.pitch(finite(sensed.orientation)) - self._asked(sensed)
+        now = np.stack([error, finite(sensed.angular_velocity)[:, 1]])
+        self._felt = now if self._felt is None else now + self._kept * (self._felt - now)
+        theta, rate = self._felt
+        offset = self._offset + rule["integral_gain"] * theta * self._period
+        asked = offset + rule["gain"] * theta + rule["rate_gain"] * rate
+        most = rule["pump"] * self._period
+        wanted = self._moved + np.clip(asked - self._moved, -most, most)
+        kept = finite(air_fraction)
+        back = np.maximum(-kept * front, -(1.0 - kept) * rear)  # no chamber beyond empty or full
+        ahead = np.minimum((1.0 - kept) * front, kept * rear)
+        self._moved = np.where(self._on, np.clip(wanted, back, ahead), 0.0)
+        within = (asked >= back) & (asked <= ahead)  # what stays adds up only where the chambers can answer
+        self._offset = np.where(within, offset, self._offset)
+        share = np.where(self._share > 0.0, self._share, 1.0)
+        return np.asarray(air_fraction[:, None] + self._moved[:, None] * _TO_AND_FRO / share)
+
+    def _asked(self, sensed: Sensed) -> Float[np.ndarray, " run"]:
+        """Return the asked pitches, nose down positive [rad]."""
+        rule = self._rule
+        if sensed.depth is None:
+            return np.asarray(rule["pitch"])
+        high = finite(self._asked_depth - finite(sensed.depth))
+        return np.asarray(rule["pitch"] + np.clip(rule["dive"] * high, -rule["steepest"], rule["steepest"]))
+
+
+_TO_AND_FRO = np.array([1.0, -1.0])
+"""Air that moves ahead comes to the front chambers and from the rear ones."""

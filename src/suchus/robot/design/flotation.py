@@ -1,0 +1,53 @@
+"""How much foam a robot needs to float, body by body, so that it floats level however it bends."""
+
+from suchus.robot.design.body import Robot
+from suchus.core.checks import require
+from suchus.robot.design.hull import Foam, Hull
+from suchus.robot.design.physics import WATER_DENSITY
+from suchus.robot.design.pieces import masses, volumes
+from suchus.core.errors import InvalidDesign
+
+THICKEST = 9.0
+"""Greatest volume of a body with its foam over that without [-]; three times as thick."""
+
+
+def float_hull(
+    robot: Robot, *, above: float = 0.05, raised: float = 0.0, air: float = 0.0, density: float = 40.0
+) -> Hull:
+    """Return a hull that lets every body that is too heavy for its water displace its own weight and no more.
+
+    A bent body floats level only if its parts float by themselves. Where light bodies displace more than they weigh,
+    the foam of all others is a little less, so that the whole floats with the share above that is asked for.
+
+    Args:
+        robot: a robot without a hull.
+        above: share of the volume that stays above the surface [-].
+        raised: how far the foam of every body lies above its middle [m].
+        air: so much of the foam on the axis is a bladder [m3].
+        density: of the foam [kg/m3].
+
+    Raises:
+        InvalidDesign: the share is not 0 to 0.9, the robot has a hull, or a body would swell beyond ``THICKEST``.
+    """
+    require("float_hull", "above", above, 0.0, 0.9, "")
+    require("float_hull", "density", density, 0.0, 0.9 * (1 - above) * WATER_DENSITY, "kg/m3")
+    if robot.hull is not None:
+        raise InvalidDesign(f"robot {robot.name!r} has a hull; take it off first, with replace(robot, hull=None).")
+    afloat = (1.0 - above) * WATER_DENSITY
+    own, heavy = volumes(robot), masses(robot)
+    lacking = {name: max(heavy[name] / afloat - own[name], 0.0) / (1 - density / afloat) for name in own}
+    needed = (sum(heavy.values()) / afloat - sum(own.values())) / (1 - density / afloat)
+    if needed < 0:
+        raise InvalidDesign(
+            f"robot {robot.name!r} displaces {1e3 * sum(own.values()):.3g} l and floats with more than {above:g} of it "
+            "above the surface without any foam: ask for a greater share above."
+        )
+    share = needed / sum(lacking.values()) if needed > 0 else 0.0
+    for name, volume in lacking.items():
+        if own[name] + share * volume > THICKEST * own[name]:
+            raise InvalidDesign(
+                f"{name} of robot {robot.name!r} would need {1e3 * share * volume:.3g} l of foam around "
+                f"{1e3 * own[name]:.3g} l, which makes it more than three times as thick: make it lighter or larger."
+            )
+    foam = tuple(Foam(body=name, volume=share * v, raised=raised) for name, v in lacking.items() if share * v > 0)
+    return Hull(foam=foam, density=density, air=air)

@@ -1,0 +1,379 @@
+"""The layout of a robot: bodies, hinges, servos and limbs in order, derived from the design and spelled nowhere else.
+
+Hinges: those of the limbs, girdle by girdle from the front, left before right, from hip to foot; then of the axis from
+the root forward; then from the root backward. Servos: those of the same hinges, where they have one; then the cables.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from suchus.robot.design.body import Robot, bends_trunk
+from suchus.robot.design.hinge import Cable, Hinge
+from suchus.robot.design.limb import Girdle, Limb
+from suchus.robot.design.segment import Inertia
+from suchus.core.errors import UnknownName
+
+Axis = tuple[float, float, float]
+_AHEAD: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, 1.0, 0.0), "roll": (1.0, 0.0, 0.0)}
+_BEHIND: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, -1.0, 0.0), "roll": (-1.0, 0.0, 0.0)}
+LIMB_AXES: Mapping[str, Axis] = {"yaw": (0.0, 0.0, -1.0), "pitch": (-1.0, 0.0, 0.0), "roll": (0.0, -1.0, 0.0)}
+"""Axes of the turns of a left limb at zero posture."""
+
+
+@dataclass(frozen=True, slots=True)
+class LayoutBody:
+    """A moving body: a segment of the axis or a link of a limb."""
+
+    name: str
+    """Name of the body in the model."""
+    parent: int
+    """Its place among the bodies; -1 for the root."""
+    offset: Axis
+    """Its origin in the frame of its parent, all hinges at zero [m]."""
+    shift: float
+    """Distance by which the origin of its segment lies ahead of its frame, which stands at its hinges [m]."""
+    hinges: tuple[tuple[Hinge, str, Axis], ...]
+    """Its hinges in the order in which they turn it: the design, the full name, the axis in its own frame."""
+    inertia: Inertia | None
+    """Where its mass lies in its own frame, if its design says so."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimbPlace:
+    """A limb and its neighbours."""
+
+    name: str
+    """As ``LF``."""
+    girdle: Girdle
+    """Index of the girdle on which it sits [-]."""
+    number: int
+    """Number of the girdle, from the front [-]."""
+    side: float
+    """1 left, -1 right [-]."""
+    hinges: slice
+    """Its hinges among all."""
+    servos: slice
+    """Its servos among all."""
+    driven: slice | tuple[int, ...]
+    """Those of its hinges that a servo turns, of its own ones."""
+    contralateral: int
+    """The limb on the other side of its girdle."""
+    ipsilateral: tuple[int, ...]
+    """The limbs on its side of the next girdles ahead and behind."""
+    diagonal: tuple[int, ...]
+    """The limbs on the other side of the next girdles ahead and behind."""
+    tip: int
+    """Place of its last link among the bodies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Names, order and places of what a robot has. Places among servos and hinges are columns of arrays."""
+
+    robot: Robot
+    """The robot that it is the layout of."""
+    bodies: tuple[LayoutBody, ...]
+    """Every moving body; a parent stands before its children."""
+    hinges: tuple[str, ...]
+    """Every hinge."""
+    servos: tuple[str, ...]
+    """Every servo."""
+    limbs: tuple[LimbPlace, ...]
+    """Every limb."""
+    servo_hinges: tuple[int, ...]
+    """The hinge that each servo turns directly; -1 for a cable."""
+    ahead: slice
+    """Hinges of the axis from the root forward."""
+    behind: slice
+    """Hinges of the axis from the root backward."""
+    axial_yaw: tuple[int, ...]
+    """Servos that bend the axis sideways directly, from head to tail."""
+    axial_pitch: tuple[int, ...]
+    """Servos that bend the axis up and down, from head to tail."""
+    axial_left: tuple[float, ...]
+    """For each of ``axial_yaw`` 1 where a positive angle bends the body to the left (concave there), else -1 [-]."""
+    axial_place: tuple[float, ...]
+    """For each of ``axial_yaw`` its place along the body, 0 at the snout, 1 at the tip of the tail [-]."""
+    trunk_yaw: tuple[int, ...]
+    """Servos that bend the trunk sideways, from the root to the foremost girdle; positive is left."""
+    trunk_pitch: tuple[int, ...]
+    """Servos that bend the trunk up and down, from the root to the foremost girdle; positive is down."""
+    tail_yaw: tuple[int, ...]
+    """Servos that bend the tail sideways directly, from the root; positive is right."""
+    tail_pitch: tuple[int, ...]
+    """Servos that pitch the tail, from the root; positive is down."""
+    cables: tuple[int, ...]
+    """Servos that pull cables."""
+    passive: tuple[int, ...]
+    """Hinges that no servo turns directly."""
+    trunk: tuple[str, ...]
+    """Bodies of the axis from the root forward."""
+    tail: tuple[str, ...]
+    """Bodies of the axis behind the root."""
+
+    @property
+    def limb_names(self) -> tuple[str, ...]:
+        """Names of the limbs."""
+        return tuple(limb.name for limb in self.limbs)
+
+    def limb(self, name: str) -> LimbPlace:
+        """Return a limb by name.
+
+        Raises:
+            UnknownName: there is no such limb.
+        """
+        for limb in self.limbs:
+            if limb.name == name:
+                return limb
+        raise UnknownName("limb", name, self.limb_names)
+
+    def cable_places(self, servo: int) -> tuple[float, ...]:
+        """Return where along the body the hinges are that a servo bends by its cable; see ``axial_place``."""
+        return tuple(_place(self.robot, name) for name in self.cable(servo).hinges)
+
+    def cable(self, servo: int) -> Cable:
+        """Return the cable that a servo pulls."""
+        return self.robot.cables[servo - len(self.servos) + len(self.robot.cables)]
+
+
+@lru_cache(maxsize=256)
+def layout(robot: Robot) -> Layout:
+    """Return the layout of a robot."""
+    root = robot.root_place
+    ahead = [_ahead_body(robot, i) for i in range(root - 1, -1, -1)]
+    behind = [_behind_body(robot, i) for i in range(root + 1, len(robot.axis))]
+    bodies = [LayoutBody(robot.root, -1, (0.0, 0.0, 0.0), 0.0, (), robot.axis[root].inertia)]
+    bodies += [_placed(one, i) for i, one in enumerate(ahead)]
+    tips = []
+    for girdle, name, side in _pairs(robot):
+        parent = [one.name for one in bodies].index(girdle.segment)
+        bodies += _limb_bodies(girdle, name, side, parent, len(bodies), bodies[parent].shift)
+        tips.append(len(bodies) - 1)
+    bodies += [_placed(one, -1 if i == 0 else len(bodies) - 1 + i) for i, one in enumerate(behind)]
+    limb_hinges = [(f"{name}_{hinge.name}", hinge) for girdle, name, _ in _pairs(robot) for hinge in girdle.limb.hinges]
+    axis_ahead = [(h.name, h) for one in ahead for h, _, _ in one.hinges]
+    axis_behind = [(h.name, h) for one in behind for h, _, _ in one.hinges]
+    all_hinges = [*limb_hinges, *axis_ahead, *axis_behind]
+    hinges = tuple(name for name, _ in all_hinges)
+    servos = (*(name for name, hinge in all_hinges if hinge.servo is not None), *(cable.name for cable in robot.cables))
+    turn = {name: hinge.turn for name, hinge in all_hinges}
+    by_head = [name for name, _ in [*reversed(axis_ahead), *axis_behind]]
+
+    def among(names: list[str], what: str) -> tuple[int, ...]:
+        return tuple(servos.index(name) for name in names if name in servos and turn[name] == what)
+
+    front, back = [name for name, _ in axis_ahead], [name for name, _ in axis_behind]
+    yaws = among(by_head, "yaw")
+    first = len(limb_hinges)
+    return Layout(
+        robot=robot,
+        bodies=tuple(bodies),
+        hinges=hinges,
+        servos=servos,
+        limbs=_limbs(robot, hinges, servos, tips),
+        servo_hinges=tuple(hinges.index(name) if name in hinges else -1 for name in servos),
+        ahead=slice(first, first + len(front)),
+        behind=slice(first + len(front), len(hinges)),
+        axial_yaw=yaws,
+        axial_pitch=among(by_head, "pitch"),
+        axial_left=tuple(1.0 if servos[i] in front else -1.0 for i in yaws),
+        axial_place=tuple(_place(robot, servos[i]) for i in yaws),
+        trunk_yaw=tuple(i for i in among(front, "yaw") if bends_trunk(servos[i])),
+        trunk_pitch=among(_within(robot, front), "pitch"),
+        tail_yaw=among(back, "yaw"),
+        tail_pitch=among(back, "pitch"),
+        cables=tuple(range(len(servos) - len(robot.cables), len(servos))),
+        passive=tuple(i for i, (_, hinge) in enumerate(all_hinges) if hinge.servo is None),
+        trunk=tuple(segment.name for segment in reversed(robot.axis[: root + 1])),
+        tail=tuple(segment.name for segment in robot.axis[root + 1 :]),
+    )
+
+
+def servo_ranges(robot: Robot) -> np.ndarray:
+    """Return the range of what each servo turns, shape (servo, 2) [rad]; a crank has none, for a cable see the pulley.
+
+    A pulley that bends N hinges by b together turns by N d sin(b / (2 N)) / r.
+    """
+    found, place = [], layout(robot)
+    by_name = {name: hinge for body in place.bodies for hinge, name, _ in body.hinges}
+    for i, name in enumerate(place.servos):
+        if i in place.cables:
+            cable = place.cable(i)
+            half = np.float64(cable.bend_limit) / (2 * cable.joints)
+            most = float(cable.joints * cable.cord_spacing * np.sin(half) / cable.pulley)
+            found.append((-most, most))
+        else:
+            found.append(by_name[name].range or (-np.inf, np.inf))
+    return np.array(found)
+
+
+def front_segment(robot: Robot) -> str:
+    """Return the name of the segment of the front girdle, or of the root of a robot without limbs."""
+    return robot.girdles[0].segment if robot.girdles else robot.root
+
+
+def hips_behind_snout(robot: Robot, girdle: int) -> float:
+    """Return how far a girdle's hips are behind the tip of the snout with a straight axis [m]."""
+    ahead = 0.0
+    for segment in robot.axis:
+        if segment.name == robot.girdles[girdle].segment:
+            return ahead + segment.front - robot.girdles[girdle].at
+        ahead += segment.front + segment.rear
+    raise UnknownName("segment", robot.girdles[girdle].segment, [one.name for one in robot.axis])
+
+
+def behind_hips(robot: Robot) -> float:
+    """Return how much of the straight body lies behind its hindmost hips [m]; 0 without limbs."""
+    return robot.length - hips_behind_snout(robot, len(robot.girdles) - 1) if robot.girdles else 0.0
+
+
+def hips_ahead(robot: Robot, girdle: int) -> float:
+    """Return how far a girdle's hips are ahead of those of the hindmost girdle with a straight axis [m]."""
+    if girdle == len(robot.girdles) - 1:
+        return 0.0
+    names, distance = [segment.name for segment in robot.axis], -robot.girdles[-1].at
+    for place in range(robot.root_place, names.index(robot.girdles[girdle].segment), -1):
+        distance += robot.axis[place].front + robot.axis[place - 1].rear
+    return distance + robot.girdles[girdle].at
+
+
+def _pairs(robot: Robot) -> list[tuple[Girdle, str, float]]:
+    return [(girdle, word + girdle.name, side) for girdle in robot.girdles for word, side in (("L", 1.0), ("R", -1.0))]
+
+
+def _placed(body: LayoutBody, parent: int) -> LayoutBody:
+    return replace(body, parent=0 if parent == -1 else parent)
+
+
+def _ahead_body(robot: Robot, i: int) -> LayoutBody:
+    segment, before = robot.axis[i], robot.axis[i + 1]
+    shift = 0.0 if before.name == robot.root else before.rear
+    offset = shift + before.front
+    hinges = tuple((hinge, hinge.name, _AHEAD[hinge.turn]) for hinge in segment.hinges)
+    inertia = _framed(segment.inertia, segment.rear, 1.0)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), segment.rear, hinges, inertia)
+
+
+def _behind_body(robot: Robot, i: int) -> LayoutBody:
+    segment, before = robot.axis[i], robot.axis[i - 1]
+    shift = 0.0 if before.name == robot.root else 0.0 - before.front
+    offset = shift - before.rear
+    hinges = tuple((hinge, hinge.name, _BEHIND[hinge.turn]) for hinge in before.hinges)
+    inertia = _framed(segment.inertia, -segment.front, 1.0)
+    return LayoutBody(segment.name, -1, (offset, 0.0, 0.0), 0.0 - segment.front, hinges, inertia)
+
+
+def _framed(inertia: Inertia | None, shift: float, side: float) -> Inertia | None:
+    """Return where a body's mass lies in the frame at its hinges; on the right side, its mirror image."""
+    if inertia is None:
+        return None
+    (x, y, z), (xy, xz, yz) = inertia.centre, inertia.products
+    return replace(inertia, centre=(x + shift, side * y, z), products=(side * xy, xz, side * yz))
+
+
+def mirrored(axis: Axis, side: float) -> Axis:
+    """Return the axis of a turn of a left limb for the limb of a side."""
+    return side * axis[0] + 0.0, axis[1], side * axis[2] + 0.0
+
+
+def _limb_bodies(girdle: Girdle, name: str, side: float, parent: int, first: int, shift: float) -> list[LayoutBody]:
+    found, offset = [], (shift + girdle.at, side * girdle.aside, girdle.above)
+    for i, link in enumerate(girdle.limb.links):
+        hinges = tuple((h, f"{name}_{h.name}", mirrored(LIMB_AXES[h.turn], side)) for h in link.hinges)
+        before, inertia = parent if i == 0 else first + i - 1, _framed(link.inertia, 0.0, side)
+        found.append(LayoutBody(f"{name}_{link.name}", before, offset, 0.0, hinges, inertia))
+        offset = (link.end[0], side * link.end[1], link.end[2])
+    return found
+
+
+def _driven(limb: Limb) -> slice | tuple[int, ...]:
+    """Return which of a limb's hinges servos turn; of all of them a slice, which copies nothing."""
+    with_servo = tuple(i for i, hinge in enumerate(limb.hinges) if hinge.servo is not None)
+    return slice(None) if len(with_servo) == len(limb.hinges) else with_servo
+
+
+def _limbs(robot: Robot, hinges: tuple[str, ...], servos: tuple[str, ...], tips: list[int]) -> tuple[LimbPlace, ...]:
+    pairs, found = _pairs(robot), []
+    for i, (girdle, name, side) in enumerate(pairs):
+        number, right = divmod(i, 2)
+        near = [n for n in (number - 1, number + 1) if 0 <= n < len(robot.girdles)]
+        mine = [hinges.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges]
+        driven = [servos.index(f"{name}_{hinge.name}") for hinge in girdle.limb.hinges if hinge.servo is not None]
+        start = driven[0] if driven else 0
+        found.append(
+            LimbPlace(
+                name=name,
+                girdle=girdle,
+                number=number,
+                side=side,
+                hinges=slice(mine[0], mine[-1] + 1),
+                servos=slice(start, start + len(driven)),
+                driven=_driven(girdle.limb),
+                contralateral=2 * number + 1 - right,
+                ipsilateral=tuple(2 * n + right for n in near),
+                diagonal=tuple(2 * n + 1 - right for n in near),
+                tip=tips[i],
+            )
+        )
+    return tuple(found)
+
+
+def _within(robot: Robot, ahead: list[str]) -> list[str]:
+    """Return those of the hinges ahead of the root that lie behind the foremost girdle, or all without one."""
+    if not robot.girdles:
+        return ahead
+    names = [segment.name for segment in robot.axis]
+    beyond = robot.axis[: names.index(robot.girdles[0].segment)]
+    neck = {hinge.name for segment in beyond for hinge in segment.hinges}
+    return [name for name in ahead if name not in neck]
+
+
+def _place(robot: Robot, hinge: str) -> float:
+    """Return where a hinge of the axis is, as a share of the length from the snout."""
+    distance = 0.0
+    for segment in robot.axis:
+        distance += segment.front + segment.rear
+        if any(one.name == hinge for one in segment.hinges):
+            return distance / robot.length
+    raise UnknownName("hinge", hinge, [h.name for h in robot.axis_hinges])
+
+
+LegName = Literal["LF", "RF", "LH", "RH"]
+LEGS: tuple[LegName, ...] = ("LF", "RF", "LH", "RH")
+_SPINE = ("spine_yaw_1", "spine_pitch_1", "spine_yaw_2", "spine_pitch_2", "spine_yaw_3")
+
+
+def leg_joints() -> tuple[str, ...]:
+    """Return the twelve leg joints, ``LF_yaw`` to ``RH_knee``."""
+    return tuple(f"{leg}_{joint}" for leg in LEGS for joint in ("yaw", "pitch", "knee"))
+
+
+def spine_joints() -> tuple[str, ...]:
+    """Return the five spine joints of the article from the pelvis forward."""
+    return _SPINE
+
+
+def cable_joints(robot: Robot) -> tuple[str, ...]:
+    """Return the driven yaw joints of the tail from root to tip."""
+    return robot.tail.driven
+
+
+def fin_joints(robot: Robot) -> tuple[str, ...]:
+    """Return the passive joints of the tail from root to tip, yaw before pitch in each."""
+    return robot.tail.passive
+
+
+def servo_names(robot: Robot | None = None) -> tuple[str, ...]:
+    """Return the servos of a robot; without one, those of the article's."""
+    if robot is not None:
+        return layout(robot).servos
+    return (*leg_joints(), *_SPINE, "tail_pitch", "tail_cable")
+
+
+def joint_names(robot: Robot) -> tuple[str, ...]:
+    """Return every hinge of a robot."""
+    return layout(robot).hinges

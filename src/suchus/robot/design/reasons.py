@@ -1,0 +1,61 @@
+"""Reasons for the many numbers of a design at once, by patterns of their paths."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any, NamedTuple
+
+from suchus.robot.design.chosen import Chosen
+from suchus.core.errors import InvalidDesign
+
+
+class Reason(NamedTuple):
+    """Why the numbers whose paths match a pattern are what they are."""
+
+    pattern: str
+    """Regular expression, searched for in the path."""
+    low: float
+    """Least plausible share of the value [-]."""
+    high: float
+    """Greatest plausible share of the value [-]."""
+    why: str
+    """The reason."""
+
+
+def numbers(design: Any, path: str = "") -> Iterator[tuple[str, float]]:
+    """Yield the path and the value of every number of a design that is not zero."""
+    if is_dataclass(design):
+        for field in fields(design):
+            if not field.init:
+                continue
+            yield from numbers(getattr(design, field.name), f"{path}.{field.name}".lstrip("."))
+    elif isinstance(design, tuple):
+        for i, part in enumerate(design):
+            yield from numbers(part, f"{path}[{i}]")
+    elif isinstance(design, (int, float)) and not isinstance(design, bool) and design != 0:
+        yield path, design
+
+
+def chosen_numbers(design: Any, reasons: Sequence[Reason], published: Sequence[str] = ()) -> tuple[Chosen, ...]:
+    """Return the reason for every number of a design that is neither zero nor published.
+
+    Args:
+        design: a robot or a gait.
+        reasons: the first whose pattern matches counts.
+        published: patterns of the paths of numbers that stand in a publication.
+
+    Raises:
+        InvalidDesign: a number has no reason.
+    """
+    found = []
+    for path, value in numbers(design):
+        if any(re.search(pattern, path) for pattern in published):
+            continue
+        reason = next((one for one in reasons if re.search(one.pattern, path)), None)
+        if reason is None:
+            raise InvalidDesign(
+                f"{path} of {design.name!r} is {value:g} without a reason; give one, or say its source."
+            )
+        low, high = sorted((reason.low * value, reason.high * value))
+        found.append(Chosen(field=path, low=low, high=high, why=reason.why))
+    return tuple(found)

@@ -1,0 +1,261 @@
+"""One set of numbers for every size: what follows from a body's mass and length alone.
+
+With the mass M, the length L and the time T = sqrt(L / g), everything that is neither an angle nor a share scales; the
+coefficients are those of the article's robot, for servos before they were bought (``examples/former_caiman.toml``). A
+salamander of 3 g and a body of 60 kg then walk alike.
+"""
+
+import re
+from collections.abc import Iterable
+from dataclasses import fields, is_dataclass, replace
+from math import floor, log10, sqrt, tau
+from typing import Any, TypeVar
+
+from suchus.robot.design.body import Robot
+from suchus.core.checks import require
+from suchus.robot.design.ground import Contact
+from suchus.robot.design.hinge import Servo, Spring
+from suchus.robot.design.meaning import meanings, unit
+from suchus.robot.design.motor import Winding
+from suchus.robot.design.physics import GRAVITY
+from suchus.core.errors import InvalidDesign
+
+T = TypeVar("T")
+PERIODS = 20.0
+"""The control period is at most this part of the gravity time; a tenth already jerks the feet loose [-]."""
+PHYSICS_STEPS = 5
+"""Physics steps in a control period [-]; the physics step is then a hundredth to a 250th of the gravity time."""
+COARSEST = 20.0
+"""A physics step above this part of the gravity time is refused: a tenth loses a fifth of the stride [-]."""
+_POWERS = {
+    "kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
+    "N": (1, 1, -2), "J": (1, 2, -2), "W": (1, 2, -3),
+    "V": (0, 0, 0), "A": (1, 2, -3), "K": (0, 0, 0),  # motors of one supply, as warm
+}  # fmt: skip
+_UNIT = re.compile(r"^(kg|rad|Hz|N|J|W|V|A|K|m|s)(\d*)$")
+
+
+def gravity_time(length: float) -> float:
+    """Return the time that gravity needs for a body of a length, sqrt(L / g) [s]."""
+    return sqrt(length / GRAVITY)
+
+
+def control_period(robot: Robot) -> float:
+    """Return the control period of a robot: the greatest of 1, 2, 5 times a power of ten below T / 20 [s].
+
+    It is 10 ms for bodies of 0.4 to 1.6 m.
+    """
+    most = gravity_time(robot.length) / PERIODS
+    power = floor(log10(most))
+    digit = max(one for one in (1, 2, 5) if one * 10.0**power <= most)
+    return round(digit * 10.0**power, 12)
+
+
+def physics_step(robot: Robot) -> float:
+    """Return the time step of the physics of a robot, a fifth of its control period [s]."""
+    return control_period(robot) / PHYSICS_STEPS
+
+
+def coarse_step(robot: Robot) -> float:
+    """Return the time step for many runs of a robot, half of its control period [s].
+
+    The article's robot gets as far with it within 0.1 %; see ``COARSEST`` for others.
+    """
+    return control_period(robot) / 2
+
+
+def check_step(robot: Robot, timestep: float) -> None:
+    """Refuse a time step of the physics that is too long for a robot of its size.
+
+    Raises:
+        InvalidDesign: it is above a twentieth of the gravity time.
+    """
+    most = gravity_time(robot.length) / COARSEST
+    if timestep > most:
+        raise InvalidDesign(
+            f"simulate.timestep is {timestep:g} s; robot {robot.name!r} is {robot.length:.3g} m long and needs at most "
+            f"{most:.2g} s, a twentieth of sqrt(length / g): take {physics_step(robot):g} s, its own."
+        )
+
+
+def servo_for(mass: float, length: float) -> Servo:
+    """Return the servo that suits a body of a size, like those of the article's robot.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+    """
+    require("servo_for", "mass", mass, 1e-6, 1e5, "kg")
+    require("servo_for", "length", length, 1e-3, 100.0, "m")
+    torque, time = mass * GRAVITY * length, gravity_time(length)
+    return Servo(
+        kp=1.17 * torque,
+        ki=0.0,
+        kd=0.055 * torque * time,
+        integral_limit=0.0,
+        torque=0.0875 * torque,
+        speed=2.24 / time,
+        armature=1.4e-3 * mass * length**2,
+        friction=8e-4 * torque,
+        damping=0.0046 * torque * time,
+    )
+
+
+SWIM = 8.0
+"""Natural frequency of a joint with half of the body and its water behind it, over that of the swim, at which a servo
+does not swing with the water [-]."""
+BEHIND = 0.04
+"""How far a joint of a swimmer is behind its command at the beat [rad]: 1.4 degrees of an amplitude of 33, where motors
+of swimming robots follow within 2."""
+_WATER = 2.0
+"""Inertia of a swimming body together with the water beside it, over its own [-]; a round section has 2."""
+
+
+def swim_servo_for(mass: float, length: float, beat: float | None = None) -> Servo:
+    """Return the servo that holds a limbless body of a size in the water, at whatever phase.
+
+    A servo in proportion to weight, as that of ``servo_for``, is a spring on which body and water swing: at the
+    frequency of a swim near their natural one the joint overshoots. Here stiffness follows from the
+    inertia that it moves: half of the body and its water, ``_WATER m / 2 (L / 2)^2 / 3``, is to swing at ``SWIM`` times
+    the beat. Damping is what makes a joint late, by ``kd / kp`` times its rate, and follows from ``BEHIND``; it is far
+    below the critical one of half of the body, whose swing the water damps. More of it would hold no better, but on a
+    segment alone, little more than the servo's own inertia, it decays in less than a step of explicit physics
+    (``model.longest_step``) and makes a servo rattle that meets its limit. Torque and speed are never short: what the
+    water asks of them stands in the record.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+        beat: frequency of the swim [Hz]; that of a wave as long as the body that runs at 1.5 m/s to the root of its
+            length over 1 m (dynamic similarity) if None.
+    """
+    require("swim_servo_for", "mass", mass, 1e-6, 1e5, "kg")
+    require("swim_servo_for", "length", length, 1e-3, 100.0, "m")
+    often = 1.5 / sqrt(length) if beat is None else beat
+    require("swim_servo_for", "beat", often, 0.01, 100.0, "Hz")
+    inertia, omega = _WATER * mass * length**2 / 24.0, tau * often
+    stiffness = inertia * (SWIM * omega) ** 2
+    return Servo(
+        kp=stiffness,
+        ki=0.0,
+        kd=BEHIND * stiffness / omega,
+        integral_limit=0.0,
+        torque=0.5 * stiffness,
+        speed=4.0 * omega,
+        armature=1.4e-3 * mass * length**2,
+        friction=0.0,
+        damping=0.02 * inertia * omega,
+    )
+
+
+def spring_for(mass: float, length: float, share: float) -> Spring:
+    """Return a passive joint that suits a body of a size.
+
+    Args:
+        mass: of the whole body [kg].
+        length: of the whole body [m].
+        share: the mass of the segment over that of the heaviest one [-].
+    """
+    torque = mass * GRAVITY * length
+    return Spring(
+        stiffness=0.2 * torque * share,
+        damping=0.02 * torque * gravity_time(length) * share,
+        armature=2.8e-5 * mass * length**2,
+    )
+
+
+def contact_for(length: float, *, foot_friction: float, skin_friction: float) -> Contact:
+    """Return how a body of a size meets the ground.
+
+    Args:
+        length: of the body [m].
+        foot_friction: of the feet [-].
+        skin_friction: of the skin [-].
+    """
+    return Contact(
+        foot_friction=foot_friction,
+        skin_friction=skin_friction,
+        time_constant=gravity_time(length) / 16,
+        torsion=5e-3 * length,
+        rolling=1e-4 * length,
+        depth=1e-3 * length,
+    )
+
+
+def scaled(design: T, *, length_factor: float, mass_factor: float | None = None) -> T:
+    """Return a robot, a gait or a part in another size: every number by the power of its unit, gravity as it is.
+
+    Times go with the square root of the length. A robot of the article's kind is then one
+    that no tables make: what they leave as it is, as a few millimetres of its shells, scales too.
+
+    Args:
+        design: a frozen value whose docstrings name the units.
+        length_factor: on lengths [-].
+        mass_factor: on masses [-]; the cube of ``length_factor`` if None.
+
+    Raises:
+        InvalidDesign: a factor is not positive, or the scaled value cannot be.
+    """
+    require("scaled", "length_factor", length_factor, 1e-4, 1e4, "")
+    heavier = length_factor**3 if mass_factor is None else mass_factor
+    require("scaled", "mass_factor", heavier, 1e-12, 1e12, "")
+    return _scaled(design, (heavier, length_factor, sqrt(length_factor)))
+
+
+def scaled_fields(design: Any, names: Iterable[str], *, length_factor: float, mass_factor: float) -> dict[str, Any]:
+    """Return some fields of a frozen value in another size, each by the power of its unit.
+
+    Args:
+        design: whose docstrings name the units.
+        names: of the fields.
+        length_factor: on lengths [-].
+        mass_factor: on masses [-].
+    """
+    about = meanings(type(design))
+    found = {}
+    for name in names:
+        value, factor = (
+            getattr(design, name),
+            _factor(unit(about.get(name, "")), (mass_factor, length_factor, sqrt(length_factor))),
+        )
+        numbers = isinstance(value, float) or (_numbers(value) and any(isinstance(one, float) for one in value))
+        if numbers and factor != 1.0:
+            found[name] = tuple(factor * one for one in value) if isinstance(value, tuple) else factor * value
+    return found
+
+
+def _scaled(design: Any, factors: tuple[float, float, float]) -> Any:
+    if isinstance(design, tuple):
+        return tuple(_scaled(item, factors) for item in design)
+    if not is_dataclass(design):
+        return design
+    about = meanings(type(design))
+    changed = {}
+    for field in (field for field in fields(design) if field.init):
+        value = getattr(design, field.name)
+        if is_dataclass(value) or (isinstance(value, tuple) and value and is_dataclass(value[0])):
+            changed[field.name] = _scaled(value, factors)
+        elif isinstance(value, float) or _numbers(value):
+            factor = _factor(unit(about.get(field.name, "")), factors)
+            if factor != 1.0:
+                changed[field.name] = tuple(factor * one for one in value) if _numbers(value) else factor * value
+    if isinstance(design, Winding) and changed:
+        changed["motor"] = ""  # in another size it is none that is sold
+    return replace(design, **changed)
+
+
+def _numbers(value: Any) -> bool:
+    return isinstance(value, tuple) and bool(value) and all(isinstance(one, (int, float)) for one in value)
+
+
+def _factor(name: str, factors: tuple[float, float, float]) -> float:
+    """Return the factor on numbers of a unit as docstrings write it, ``N m s/rad`` or ``kg m2``; 1 for one unknown."""
+    factor = 1.0
+    above, _, below = name.partition("/")
+    for part, sign in ((above, 1), (below.strip("()"), -1)):
+        for word in part.split():
+            found = _UNIT.match(word)
+            if found:
+                for one, power in zip(factors, _POWERS[found[1]], strict=True):
+                    factor *= one ** (sign * power * int(found[2] or 1))
+    return factor

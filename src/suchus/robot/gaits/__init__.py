@@ -1,0 +1,190 @@
+"""The shelf of gaits: one file, one gait, declared as ``gait`` with its ``chosen`` numbers."""
+
+from dataclasses import replace
+from functools import lru_cache
+from operator import attrgetter
+from pathlib import Path
+
+from suchus.core.catalog import Catalog
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.scale import control_period, gravity_time
+from suchus.core.errors import OutsideLimits, SuchusError, UnreadableFile, UnsuitedRobot
+from suchus.robot.gaits._animal_swim import ANIMAL_SWIM
+from suchus.robot.gaits.limbs_tail_lifted import LIFTED
+from suchus.robot.motion import Gait, divided, draft_gait, form_of, suits
+from suchus.core.files import read_toml
+from suchus.robot.robots import ROBOTS
+
+
+def _read(path: Path) -> Gait:
+    from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    data = read_toml(path)
+    base = data.get("base")
+    made_for = GAITS.beside(base, "made_for", ()) if isinstance(base, str) and base in GAITS else ()
+    if form_of(data) is not None and not made_for:
+        raise UnreadableFile(
+            f"{path.name} gives metres or places along the body, which are those of a robot: start it from a gait that "
+            "is made for one (base), give the file's path with its robot, or write the gait in limbs and axis, whose "
+            "lengths are shares of the limbs' reach."
+        )
+    return blueprint.read_gait(path, ROBOTS[made_for[0] if made_for else "caiman"], GAITS)
+
+
+GAITS: Catalog[Gait] = Catalog("gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read)
+"""The gaits of the shelf."""
+
+CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")
+"""With spine and tail; with limbs only, the tail lying still; with limbs only, the tail in the air; with the trunk and
+a tail dragged still; with the trunk and the tail in the air; with a straight trunk and a tail that swings."""
+
+
+DRAFTED = "drafted_gait"
+"""Name of the gait of a robot that none of the shelf suits."""
+ALIKE = 1.5
+"""Lengths of two robots whose ratio is below this are about the same: the shorter one takes no quicker gait [-]."""
+
+
+def own_gait(robot: Robot) -> Gait:
+    """Return the gait in which a robot moves unless another one is asked for.
+
+    A gait made for a robot of its name comes first, then one made for another robot whose limbs turn about the same
+    axes, in the size of this robot (``in_size``): of a robot that pitches its tail those first that lay it down, of any
+    other robot those that leave it alone. For which robots a gait was made its module says by ``made_for``, and nothing
+    else does. For a robot that none of them suits one is drafted, ``DRAFTED``: a walk in which every other limb steps,
+    or a wave along a body without limbs.
+
+    Args:
+        robot: on the shelf or not.
+
+    Raises:
+        UnsuitedRobot: no gait of the shelf suits it, and none can be drafted.
+    """
+    made = {name: tuple(GAITS.beside(name, "made_for", ())) for name in GAITS}
+    named = [name for name, robots in made.items() if robot.name in robots]
+    pitches = bool(layout(robot).tail_pitch)
+    others = [name for name, robots in made.items() if robots and name not in named]
+    others.sort(key=lambda name: GAITS[name].has("tail pitch") != pitches)
+    for name in named + others:
+        maker: Robot = ROBOTS[robot.name if robot.name in ROBOTS and name in named else made[name][0]]
+        gait = in_size(GAITS[name], robot, maker)
+        if _turns(robot) == _turns(maker) and suits(robot, gait):
+            return gait
+    try:
+        return _drafted(robot)
+    except SuchusError as error:
+        limbs = ", ".join(layout(robot).limb_names) or "no limbs"
+        raise UnsuitedRobot(
+            f"no gait on the shelf suits robot {robot.name!r}, which has {limbs}, and none can be drafted: {error} "
+            "Give one of its own, as a TOML file."
+        ) from error
+
+
+def in_size(gait: Gait, robot: Robot, maker: Robot) -> Gait:
+    """Return a gait as a robot of another size moves in it: in the time that gravity takes for that size.
+
+    Everything else of a gait is an angle or a share of a limb, and fits any size. For robots of about the same length
+    it is the gait itself, so that a design and its variants move alike.
+
+    Args:
+        gait: for the robot ``maker``.
+        robot: who is to move in it.
+        maker: for whom it was made.
+    """
+    if 1 / ALIKE < robot.length / maker.length < ALIKE:
+        return gait
+    period, step = gait.period * gravity_time(robot.length) / gravity_time(maker.length), control_period(robot)
+    return replace(gait, period=round(max(1, round(period / step)) * step, 12))
+
+
+def _turns(robot: Robot) -> list[list[str]]:
+    """Return about which axes the hinges of each pair of limbs turn."""
+    return [[hinge.turn for hinge in girdle.limb.hinges] for girdle in robot.girdles]
+
+
+def gait_of(robot: Robot, gait: Gait | str | Path | None, place: str | Path = Path()) -> Gait:
+    """Return the gait that is meant for a robot: itself, by its name, by the path of its file, or the robot's own.
+
+    Args:
+        robot: for whose limbs a file's metres are, and in whose hinges its places.
+        gait: the gait, its name, or the path of a TOML file; None for the robot's own.
+        place: the folder from which paths are read.
+
+    Raises:
+        UnknownName: a name that is not on the shelf.
+        UnreadableFile: there is no such file, or it is no TOML.
+        MistakenFile: the file describes no gait that can be.
+        UnsuitedRobot: none is given, no gait of the shelf suits the robot, and none can be drafted.
+    """
+    if gait is None:
+        return own_gait(robot)
+    path = GAITS.file(gait, place)
+    if path is None:
+        return GAITS.resolve(gait)
+    from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
+
+    return blueprint.read_gait(path, robot, GAITS)
+
+
+@lru_cache(maxsize=64)
+def _drafted(robot: Robot) -> Gait:
+    return draft_gait(robot, DRAFTED)
+
+
+def control_group(gait: Gait, given: Gait | None = None) -> Gait:
+    """Return the control group of a gait: the same legs, its axis still.
+
+    Args:
+        gait: with all of the axis.
+        given: what stands for it instead; None for the gait without the motion of its axis.
+
+    Raises:
+        OutsideLimits: the one given has other legs, so that more than the axis would differ.
+    """
+    if given is None:
+        return gait.without("axis", name="limbs_only")
+    legs = ("period", "duty_factor", "limb_phases", "limbs", "height")
+    other = [name for name in legs if getattr(gait, name) != getattr(given, name)]
+    if [c for c in gait.curves if c.part == "limb"] != [c for c in given.curves if c.part == "limb"]:
+        other.append("measured curves of the limbs")
+    if other:
+        raise OutsideLimits(
+            f"the control group {given.name!r} has other legs than gait {gait.name!r}: they differ in "
+            f"{', '.join(other)}, and only the axis may differ; leave control out for the gait with its axis still."
+        )
+    return given
+
+
+def conditions_of(robot: Robot, gait: Gait, control: Gait) -> dict[str, Gait]:
+    """Return the gaits of those of ``CONDITIONS`` that a robot's parts make possible, in their order.
+
+    Without a servo that pitches the tail nothing lifts it; without one that bends the tail, or the trunk, that part
+    has no swing to be taken away.
+
+    Args:
+        robot: the design.
+        gait: with all of the axis.
+        control: with limbs only.
+    """
+    place, gait = layout(robot), divided(robot, gait)
+    behind = {*place.tail_yaw, *place.tail_pitch, *place.cables}
+    ahead = set(place.axial_yaw) - behind
+    lifts = place.tail_pitch and gait.has("steering")
+    found = {"coordinated": gait}
+    if behind or ahead:
+        found["limbs_only"] = control
+        if lifts:
+            found["limbs_tail_lifted"] = control.lifted(LIFTED, name="limbs_tail_lifted")
+    if behind and ahead:
+        still = gait.without("tail", name="tail_still")
+        found["tail_still"] = still
+        if lifts:
+            found["spine_only"] = still.lifted(LIFTED, name="spine_only")
+        found["tail_drag"] = gait.straightened("neck", "trunk", name="tail_drag")
+    return found
+
+
+__all__ = [
+    "ALIKE", "ANIMAL_SWIM", "CONDITIONS", "DRAFTED", "GAITS", "conditions_of", "control_group", "gait_of", "in_size",
+    "own_gait", "suits",
+]  # fmt: skip

@@ -1,0 +1,220 @@
+"""Any limb: where its foot is, and the angles that bring it to a point.
+
+Points are those of a left limb in the frame of its girdle, from the hip: forward, outward, up; right limbs are mirror
+images with the same angles. Closed forms are chosen where they apply: yaw and pitch at the hip and a knee (the
+article's leg), or yaw, pitch and roll at the hip and an elbow, whose redundant turn is said by the plane of the limb.
+Any other chain takes damped Gauss-Newton steps with an analytic Jacobian.
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.design import Girdle, Limb
+from suchus.robot.design.layout import LIMB_AXES
+from suchus.core.errors import NotConverged, Unreachable
+from suchus.robot.kinematics import leg as closed
+from suchus.robot.kinematics.given import rows, spread_over
+from suchus.robot.kinematics.tree import rotation
+
+STEPS = 60
+"""Gauss-Newton steps at most [-]; along a gait 2 to 5 are needed."""
+_STEP, _DAMPING, _NEAR = 0.6, 0.01, 1e-10  # rad; most that damps; error in limb lengths that ends
+SEEDS = 40
+"""Starts for those that get stuck, most of them on a joint limit near the hip [-]."""
+
+
+class PlainLeg(NamedTuple):
+    """A limb of yaw, pitch and knee, its links straight out, as ``suchus.robot.kinematics.leg`` takes it."""
+
+    hip_offset: float
+    """Distance from the midline to the yaw axis [m]."""
+    femur: float
+    """Length from hip to knee [m]."""
+    tibia: float
+    """Length from knee to the foot's centre [m]."""
+    foot_radius: float
+    """Of the ball [m]."""
+    above: float
+    """Of the hip over the axis of the body [m]."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Nearest and farthest distance of the foot from the hip [m]."""
+        return abs(self.femur - self.tibia), self.femur + self.tibia
+
+
+Kind = Literal["leg", "arm", "other"]
+"""``leg``: yaw, pitch, knee. ``arm``: yaw, pitch, roll, elbow. ``other``: any other chain."""
+
+
+def kind(limb: Limb) -> Kind:
+    """Return the method by which a limb is solved."""
+    turns = [[hinge.turn for hinge in link.hinges] for link in limb.links]
+    straight = all(link.end[0] == link.end[2] == 0.0 and link.end[1] > 0.0 for link in limb.links)
+    if straight and turns == [["yaw", "pitch"], ["pitch"]]:
+        return "leg"
+    return "arm" if straight and turns == [["yaw", "pitch", "roll"], ["pitch"]] else "other"
+
+
+def plain(girdle: Girdle) -> PlainLeg:
+    """Return the lengths of a limb of the kind ``leg``."""
+    femur, tibia = girdle.limb.links
+    return PlainLeg(girdle.aside, femur.length, tibia.length, girdle.limb.foot.radius, girdle.above)
+
+
+def forward(limb: Limb, angles: Float[np.ndarray, "*batch hinge"]) -> Float[np.ndarray, "*batch 3"]:
+    """Return the centre of the foot, from the hip [m]."""
+    return _chain(limb, rows(angles, len(limb.hinges), "the limb's angles"))[0]
+
+
+def reach(limb: Limb) -> tuple[float, float]:
+    """Return the nearest and the farthest distance of the foot from the hip, joint limits aside [m].
+
+    For a limb of more than two links the nearest is taken as zero, unless one link is longer than all others together.
+    """
+    lengths = sorted(link.length for link in limb.links)
+    return max(lengths[-1] - sum(lengths[:-1]), 0.0) if len(lengths) > 1 else lengths[0], sum(lengths)
+
+
+def inverse(
+    limb: Limb,
+    foot: Float[np.ndarray, "*batch 3"],
+    *,
+    plane: float | Float[np.ndarray, "*batch"] = 0.0,
+    start: Float[np.ndarray, "*batch hinge"] | None = None,
+    tries: int = SEEDS,
+) -> Float[np.ndarray, "*batch hinge"]:
+    """Return the angles that bring a foot to points.
+
+    Args:
+        limb: the limb.
+        foot: from the hip: forward, outward, up [m].
+        plane: of a limb of the kind ``arm``: how far the elbow is turned forward about the line from hip to foot,
+            0 where it stands up [rad].
+        start: angles near the answer, for chains without a closed form [rad]; the middle of the ranges if None.
+        tries: how often such a chain begins again elsewhere before it gives up [-].
+
+    Raises:
+        Unreachable: a point is nearer or farther than the limb can reach, or is not a number.
+        NotConverged: no answer was found within the joints' limits, for chains without a closed form.
+    """
+    points = rows(foot, 3, "the foot's place")
+    _refuse_far(limb, points)
+    which = kind(limb)
+    if which == "leg":
+        links = limb.links
+        base = np.stack([points[..., 1], points[..., 0], -points[..., 2]], axis=-1)
+        return closed.inverse(PlainLeg(0.0, links[0].length, links[1].length, 0.0, 0.0), base)
+    if which == "arm":
+        return _arm(limb, points, spread_over(plane, points.shape[:-1], "the plane of the limb"))
+    return _numeric(limb, points, start, tries)
+
+
+def _refuse_far(limb: Limb, points: np.ndarray) -> None:
+    near, far = reach(limb)
+    away = np.linalg.norm(points, axis=-1)
+    bad = ~((away >= near * (1 - 1e-9) - 1e-12 * far) & (away <= far * (1 + 1e-9)))
+    if bad.any():
+        lost = points[bad]
+        first = ", ".join(f"{c:.4g}" for c in lost[0])
+        raise Unreachable(
+            f"{len(lost)} of {away.size} foot points are out of reach; the first, ({first}) m from the hip, is "
+            f"{np.linalg.norm(lost[0]):.4g} m away, and {near:.4g} to {far:.4g} m can be reached: move it there.",
+            points=lost,
+            reach=(near, far),
+        )
+
+
+def _arm(limb: Limb, foot: np.ndarray, plane: np.ndarray) -> np.ndarray:
+    """Solve yaw, pitch, roll and elbow: the elbow by the cosine law, its place on a circle by the plane."""
+    upper, lower = limb.links[0].length, limb.links[1].length
+    x, y, z = np.moveaxis(foot, -1, 0)
+    squared = x * x + y * y + z * z
+    far = np.sqrt(squared)
+    bend = np.arccos(np.clip((squared - upper**2 - lower**2) / (2.0 * upper * lower), -1.0, 1.0))
+    flat = np.hypot(x, y)
+    level = np.maximum(flat, 1e-300)
+    along = (upper**2 - lower**2 + squared) / (2.0 * far)  # of the elbow, on the line from hip to foot
+    across = np.sqrt(np.maximum(upper**2 - along**2, 0.0))
+    ux, uy, uz = x / far, y / far, z / far
+    rise, side = across * np.cos(plane), across * np.sin(plane)
+    # up, across the line, and forward, across both; for a foot straight below the hip they are outward and forward
+    out = np.where(flat > 0, y / level, 1.0)
+    ex = along * ux - rise * uz * x / level + side * out
+    ey = along * uy - rise * uz * out - side * x / level
+    ez = along * uz + rise * flat / far
+    yaw, pitch = np.arctan2(ex, ey), np.arctan2(-ez, np.hypot(ex, ey))
+    s, c, sp, cp = np.sin(yaw), np.cos(yaw), np.sin(pitch), np.cos(pitch)
+    lx, ly, lz = x - ex, y - ey, z - ez
+    ahead = c * lx - s * ly
+    down = -(s * sp * lx + c * sp * ly + cp * lz)
+    return np.stack([yaw, pitch, np.arctan2(ahead, down), bend], axis=-1)
+
+
+def _numeric(limb: Limb, points: np.ndarray, start: np.ndarray | None, tries: int = SEEDS) -> np.ndarray:
+    """Take damped Gauss-Newton steps within the joints' ranges; who gets stuck begins again elsewhere."""
+    count = len(limb.hinges)
+    low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
+    flat = points.reshape(-1, 3)
+    middle = np.where(np.isfinite(low), (low + high) / 2.0, 0.0)
+    given = spread_over(middle if start is None else start, (*points.shape[:-1], count), "the start").reshape(-1, count)
+    found, error = _descend(limb, flat, np.clip(given, low, high), low, high)
+    rng = np.random.default_rng(0)
+    for _ in range(tries):
+        stuck = np.flatnonzero(error > 1e-7)
+        if not stuck.size:
+            break
+        ends = np.where(np.isfinite(low), low, -np.pi), np.where(np.isfinite(high), high, np.pi)
+        again, left = _descend(limb, flat[stuck], rng.uniform(*ends, (stuck.size, count)), low, high)
+        better = left < error[stuck]
+        found[stuck[better]], error[stuck[better]] = again[better], left[better]
+    if (error > 1e-7).any():
+        worst = int(np.argmax(error))
+        at = ", ".join(f"{c:.4g}" for c in flat[worst])
+        raise NotConverged(
+            f"{int((error > 1e-7).sum())} of {len(flat)} foot points were not reached within the joints' ranges; the "
+            f"worst, ({at}) m from the hip, is missed by {error[worst] * limb.reach:.3g} m: move it, or widen a range."
+        )
+    return found.reshape(*points.shape[:-1], count)
+
+
+def _descend(
+    limb: Limb, points: np.ndarray, angles: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the angles reached from a start and the errors left, in lengths of the limb."""
+    size, angles = limb.reach, angles.copy()
+    error = np.full(len(points), np.inf)
+    going = np.arange(len(points))
+    for _ in range(STEPS):
+        foot, jacobian = _chain(limb, angles[going])
+        miss = (points[going] - foot) / size
+        error[going] = np.linalg.norm(miss, axis=-1)
+        left = error[going] > _NEAR
+        going, miss, jacobian = going[left], miss[left], jacobian[left] / size
+        if not going.size:
+            break
+        damping = np.minimum(_DAMPING, error[going] ** 2)  # it dies with the error; a fixed one slows the end
+        normal = jacobian.transpose(0, 2, 1) @ jacobian + damping[:, None, None] * np.eye(angles.shape[1])
+        normal += 1e-12 * np.eye(angles.shape[1])
+        step = np.linalg.solve(normal, np.einsum("bij,bi->bj", jacobian, miss)[..., None])[..., 0]
+        angles[going] = np.clip(angles[going] + np.clip(step, -_STEP, _STEP), low, high)
+    return angles, error
+
+
+def _chain(limb: Limb, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the foot [m] and how it moves with the hinges [m/rad], by cross products."""
+    batch = angles.shape[:-1]
+    turn = np.broadcast_to(np.eye(3), (*batch, 3, 3))
+    place, pivots, axes, i = np.zeros((*batch, 3)), [], [], 0
+    for link in limb.links:
+        for hinge in link.hinges:
+            axis = LIMB_AXES[hinge.turn]
+            pivots.append(place)
+            axes.append(turn @ np.array(axis))
+            turn = turn @ rotation(axis, angles[..., i])
+            i += 1
+        place = place + turn @ np.array(link.end)
+    columns = [np.cross(axis, place - pivot) for axis, pivot in zip(axes, pivots, strict=True)]
+    return place, np.stack(columns, axis=-1)

@@ -1,0 +1,68 @@
+"""What the kinematics needs to know of a robot: a few lengths, whoever holds them."""
+
+from typing import Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+
+Numbers: TypeAlias = int | float | np.ndarray
+"""One number or an array of them."""
+
+
+@runtime_checkable
+class LegLinks(Protocol):
+    """The lengths of a leg; ``suchus.robot.design.Leg`` has them."""
+
+    @property
+    def hip_offset(self) -> float:
+        """From the midline to the yaw axis, a0 [m]."""
+
+    @property
+    def femur(self) -> float:
+        """From hip to knee, a2 [m]."""
+
+    @property
+    def tibia(self) -> float:
+        """From knee to foot, a3 [m]."""
+
+
+@runtime_checkable
+class SpineLinks(Protocol):
+    """The lengths of a spine; ``suchus.robot.design.Spine`` has them."""
+
+    @property
+    def base(self) -> float:
+        """From frame 0 to the first joint, a0 [m]."""
+
+    @property
+    def link(self) -> float:
+        """From each joint to the next, a1 to a4 [m]."""
+
+
+@runtime_checkable
+class Cords(Protocol):
+    """The measures of a cable over several joints; ``suchus.robot.design.Tail`` and ``suchus.robot.design.Cable`` have them."""
+
+    @property
+    def joints(self) -> int:
+        """Number of joints, N [-]."""
+
+    @property
+    def cord_spacing(self) -> float:
+        """Between the two cords, d [m]."""
+
+    @property
+    def pulley(self) -> float:
+        """Radius of the servo's pulley, r [m]."""
+
+
+@runtime_checkable
+class TailPlates(Cords, Protocol):
+    """The measures of a tail's cable section; ``suchus.robot.design.Tail`` has them."""
+
+    @property
+    def plate(self) -> float:
+        """Thickness of a plate, H [m]."""
+
+    @property
+    def gap(self) -> float:
+        """Gap between plates, h [m]."""

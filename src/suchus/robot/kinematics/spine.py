@@ -1,0 +1,266 @@
+"""The spine: yaw, pitch, yaw, pitch, yaw, from the pelvis forward.
+
+Points are in frame 0, the pelvis: x forward, y left, z up. Positive yaw bends the front end left, positive
+pitch bends it down. Frame 5 stands at the fifth joint, its x along the head, its z up when the spine is
+straight.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.core.errors import Unreachable
+from suchus.robot.kinematics import dh
+from suchus.robot.kinematics.given import check_sign, number, numbers, rows, spread_over, together
+from suchus.robot.kinematics.links import Numbers, SpineLinks
+from suchus.article.paper.tables import SPINE_CHAIN, Chain
+
+ROUNDING = 1e-12
+"""How far a cosine may exceed one by rounding alone [-]."""
+CHUNK = 1000
+"""Points that ``least_bending`` solves at a time, to spare memory [-]."""
+TRIALS = 48
+"""First yaw angles that ``least_bending`` tries on each branch before it refines the best [-]."""
+STEEP, STEEP_COST = 0.05, 1e3
+"""A head less level than this [-] has no azimuth to speak of; ``least_bending`` makes it cost much [rad2]."""
+REFINEMENTS = 60
+"""Golden-section steps of ``least_bending`` [-]: enough to exhaust double precision."""
+
+
+def chain(spine: SpineLinks) -> Chain:
+    """Return the D-H chain of a spine. Paper: Table II."""
+    return Chain(a=(spine.base, *4 * (spine.link,)), alpha=SPINE_CHAIN.alpha, d=SPINE_CHAIN.d)
+
+
+def forward(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[np.ndarray, "*batch 4 4"]:
+    """Return frame 5 in frame 0; its last column is joint 5 [m], its first the direction of the head.
+
+    It is the product of Table II written out: each joint turns two of the axes before it.
+
+    Args:
+        spine: the lengths.
+        angles: yaw, pitch, yaw, pitch, yaw [rad].
+
+    Paper: Eq. (15).
+    """
+    angles = rows(angles, 5, "the spine's angles")
+    c, s = np.cos(angles), np.sin(angles)
+    c1, c2, c3, c4, c5 = (c[..., i, None] for i in range(5))
+    s1, s2, s3, s4, s5 = (s[..., i, None] for i in range(5))
+    up = np.array([0.0, 0.0, 1.0])
+    x1 = np.concatenate([c1, s1, 0.0 * c1], axis=-1)
+    left = np.concatenate(
+        [-s1, c1, 0.0 * c1], axis=-1
+    )  # the first pitch joint's axis; the others follow the body: x along, y left, z up
+    x2, z2 = c2 * x1 - s2 * up, s2 * x1 + c2 * up
+    x3, y3 = c3 * x2 + s3 * left, c3 * left - s3 * x2
+    x4, z4 = c4 * x3 - s4 * z2, s4 * x3 + c4 * z2
+    T = np.zeros((*angles.shape[:-1], 4, 4))
+    T[..., :3, 0], T[..., :3, 1], T[..., :3, 2] = c5 * x4 + s5 * y3, c5 * y3 - s5 * x4, z4
+    T[..., :3, 3] = spine.link * (x1 + x2 + x3 + x4)
+    T[..., 0, 3] += spine.base
+    T[..., 3, 3] = 1.0
+    return T
+
+
+def joints(spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"]) -> Float[np.ndarray, "*batch 5 3"]:
+    """Return where the five joints are [m]; ``angles`` as for ``forward``."""
+    return dh.frames(chain(spine), angles)[..., :3, 3]
+
+
+def jacobian(
+    spine: SpineLinks, angles: Float[np.ndarray, "*batch 5"], *, ahead: float = 0.0
+) -> Float[np.ndarray, "*batch 6 5"]:
+    """Return how a point on the head moves with the joints: three rows [m/rad], then three of rotation [-].
+
+    A straight spine is singular: no joint moves its end forward or backward.
+
+    Args:
+        spine: the lengths.
+        angles: yaw, pitch, yaw, pitch, yaw [rad].
+        ahead: how far the point lies ahead of joint 5 along the head [m].
+    """
+    T = dh.frames(chain(spine), angles)
+    tip = T[..., -1, :3, 3] + number(ahead, "ahead") * T[..., -1, :3, 0]
+    axes = T[..., :3, 2]  # (*batch, joint, 3)
+    moves = np.cross(axes, tip[..., None, :] - T[..., :3, 3])
+    return np.swapaxes(np.concatenate([moves, axes], axis=-1), -1, -2)
+
+
+def inverse(
+    spine: SpineLinks,
+    point: Float[np.ndarray, "*point 3"],
+    azimuth: Numbers,
+    *,
+    first_yaw: Numbers,
+    branch: int = 1,
+) -> Float[np.ndarray, "*batch 5"]:
+    """Return the angles that bring joint 5 to a point and turn the head to an azimuth, for a given first yaw.
+
+    Position and azimuth are four equations for five joints: the first yaw angle is free, and ``least_bending``
+    chooses it. Point, azimuth and first yaw broadcast.
+
+    Args:
+        spine: the lengths.
+        point: where joint 5 shall be, in frame 0 [m].
+        azimuth: direction of the head seen from above, from x towards y [rad].
+        first_yaw: the first angle [rad].
+        branch: sign of the second pitch angle, 1 or -1.
+
+    Returns:
+        Yaw, pitch, yaw, pitch, yaw in -pi to pi [rad].
+
+    Raises:
+        Unreachable: a point cannot be reached with this first yaw angle, or is not a number.
+        InvalidDesign: ``branch`` is neither 1 nor -1, an angle is no finite number, or shapes do not go together.
+    """
+    check_sign(branch, "branch")
+    angles = candidates(spine, point, azimuth, first_yaw=first_yaw, branch=branch)
+    lost = np.isnan(angles).any(axis=-1)
+    if lost.any():
+        raise _unreachable(spine, np.broadcast_to(point, (*lost.shape, 3))[lost], "with this first yaw angle")
+    return angles
+
+
+def candidates(
+    spine: SpineLinks,
+    point: Float[np.ndarray, "*point 3"],
+    azimuth: Numbers,
+    *,
+    first_yaw: Numbers,
+    branch: Numbers,
+) -> Float[np.ndarray, "*batch 5"]:
+    """Return what ``inverse`` returns, but NaN where nothing can be reached; the branch may be an array, too."""
+    point = rows(point, 3, "the point")
+    azimuth, first_yaw = numbers(azimuth, "the azimuth"), numbers(first_yaw, "the first yaw angle")
+    branch = numbers(branch, "the branch")
+    together(point[..., 0], azimuth, first_yaw, branch, what="point, azimuth, first yaw angle and branch")
+    return _closed_form(spine, point, azimuth, first_yaw, branch)[0]
+
+
+def least_bending(
+    spine: SpineLinks, point: Float[np.ndarray, "*batch 3"], azimuth: Numbers
+) -> Float[np.ndarray, "*batch 5"]:
+    """Return the angles of ``inverse`` whose squares have the least sum.
+
+    The first yaw angle and the branch are free. The feasible first yaw angles are known in closed form; they
+    are sampled, and the best sample is refined.
+
+    Args:
+        spine: the lengths.
+        point: where joint 5 shall be, in frame 0 [m].
+        azimuth: direction of the head seen from above, from x towards y [rad].
+
+    Raises:
+        Unreachable: a point cannot be reached with any first yaw angle, or is not a number.
+    """
+    point = rows(point, 3, "the point")
+    points = point.reshape(-1, 3)
+    heading = spread_over(azimuth, point.shape[:-1], "the azimuth").reshape(-1, 1)
+    parts = range(0, max(len(points), 1), CHUNK)
+    solved = [_least_bent(spine, points[i : i + CHUNK], heading[i : i + CHUNK]) for i in parts]
+    return np.concatenate(solved).reshape(*point.shape[:-1], 5)
+
+
+def _least_bent(spine: SpineLinks, points: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Return the least bent angles, shape (point, 5); headings have the shape (point, 1)."""
+    aim, low, high, lost = _feasible_yaw(spine, points)
+    if lost.any():
+        raise _unreachable(spine, points[lost], "by any posture")
+
+    def posture(t: np.ndarray, case: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the closed form, (point, trial, 5), with the first yaw at ``sin(t)`` along an arc."""
+        away = (low + high) / 2 + (high - low) / 2 * np.sin(t)
+        yaw = aim + np.where(case % 2, away, -away)
+        return _closed_form(spine, points[:, None], heading, yaw, np.where(case < 2, 1, -1))
+
+    def bending(t: np.ndarray, case: np.ndarray) -> np.ndarray:
+        angles, level = posture(t, case)
+        total = np.sum(angles**2, axis=-1) + STEEP_COST * (level < STEEP)
+        return np.where(np.isnan(total), np.inf, total)
+
+    trials = np.tile(np.linspace(-np.pi / 2, np.pi / 2, TRIALS), 4)  # two arcs of the yaw times two branches
+    cases = np.repeat(np.arange(4), TRIALS)
+    best = np.argmin(bending(trials[None], cases[None]), axis=-1)
+    case, middle = cases[best][:, None], trials[best][:, None]
+    step = np.pi / (TRIALS - 1)
+    t = _golden_section(lambda at: bending(at, case), middle - step, middle + step)
+    t = np.where(bending(t, case) <= bending(middle, case), t, middle)
+    return posture(t, case)[0][:, 0]
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def _closed_form(
+    spine: SpineLinks, point: np.ndarray, azimuth: np.ndarray, first_yaw: np.ndarray, branch: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the angles for a given first yaw, NaN where there are none; and how level the head is, to 1."""
+    s1, c1 = np.sin(first_yaw), np.cos(first_yaw)
+    x, y = point[..., 0] - spine.base, point[..., 1]
+    wx = (c1 * x + s1 * y) / spine.link - 1.0  # from joint 2 to joint 5, in links, seen from link 1
+    wy = (c1 * y - s1 * x) / spine.link
+    wz = point[..., 2] / spine.link
+    K = (wx * wx + wy * wy + wz * wz - 1.0) / 2.0
+    u = (K * K + wy * wy) / (2.0 * K)  # 1 + cos(second pitch)
+    u = np.where((K > 0) & (u <= 2.0 + ROUNDING), np.minimum(u, 2.0), np.nan)
+    s4, c4 = branch * np.sqrt(u * (2.0 - u)), u - 1.0
+    third = np.arctan2(wy, K - u)
+    second = _wrapped(np.arctan2(-s4, 1.0 + K - u) - np.arctan2(wz, wx))
+    s2, c2, s3, c3 = np.sin(second), np.cos(second), np.sin(third), np.cos(third)
+    forward4 = c2 * c3 * c4 - s2 * s4
+    x4 = c1 * forward4 - s1 * s3 * c4, s1 * forward4 + c1 * s3 * c4  # seen from above
+    z4 = -c1 * c2 * s3 - s1 * c3, c1 * c3 - s1 * c2 * s3
+    sa, ca = np.sin(azimuth), np.cos(azimuth)
+    fifth = np.arctan2(ca * x4[1] - sa * x4[0], sa * z4[0] - ca * z4[1])
+    level = np.cos(fifth) * (ca * x4[0] + sa * x4[1]) + np.sin(fifth) * (ca * z4[0] + sa * z4[1])
+    fifth = np.where(level < 0, _wrapped(fifth + np.pi), fifth)
+    first = np.where(np.isnan(u), np.nan, _wrapped(first_yaw))
+    angles = np.broadcast_arrays(first, second, third, np.arctan2(s4, c4), fifth)
+    return np.stack(angles, axis=-1), np.asarray(np.abs(level))
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def _feasible_yaw(spine: SpineLinks, points: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return each point's azimuth, how far the first yaw must and may lie off it, and which have none."""
+    x, y, z = ((points - [spine.base, 0.0, 0.0]) / spine.link).T[..., None]
+    rho, M = np.hypot(x, y), (x * x + y * y + z * z) / 2.0
+    bound = ((M - 2.0) ** 2 + rho * rho - 4.0) / (2.0 * (M - 2.0) * rho)
+    nearest = np.where(M < 2.0, np.minimum(bound, M / rho), M / rho)
+    farthest = np.where(M > 2.0, bound, -1.0)
+    lost = ~(farthest <= 1.0 + ROUNDING) | ~(nearest >= -1.0 - ROUNDING) | ((M == 2.0) & (rho > 2.0))
+    low, high = np.arccos(np.clip(nearest, -1.0, 1.0)), np.arccos(np.clip(farthest, -1.0, 1.0))
+    return np.arctan2(y, x), low, high, (lost | (low > high + ROUNDING))[:, 0]
+
+
+def _golden_section(cost: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return where each cost is least between ``low`` and ``high``, all at once."""
+    golden = (np.sqrt(5.0) - 1.0) / 2.0
+    left, right = high - golden * (high - low), low + golden * (high - low)
+    at_left, at_right = cost(left), cost(right)
+    for _ in range(REFINEMENTS):
+        falls = at_left > at_right
+        low, high = np.where(falls, left, low), np.where(falls, high, right)
+        probe = np.where(falls, low + golden * (high - low), high - golden * (high - low))
+        at_probe = cost(probe)
+        left, right = np.where(falls, right, probe), np.where(falls, probe, left)
+        at_left, at_right = np.where(falls, at_right, at_probe), np.where(falls, at_probe, at_left)
+    return np.asarray((low + high) / 2.0)
+
+
+def _wrapped(angle: Numbers) -> np.ndarray:
+    """Return the angle within -pi to pi."""
+    return np.asarray(np.arctan2(np.sin(angle), np.cos(angle)))
+
+
+def _unreachable(spine: SpineLinks, points: np.ndarray, how: str) -> Unreachable:
+    far = 4.0 * spine.link
+    with np.errstate(invalid="ignore", over="ignore"):
+        distance = float(np.linalg.norm(points[0] - [spine.base, 0.0, 0.0]))
+    first = ", ".join(f"{c:.4g}" for c in points[0])
+    return Unreachable(
+        f"{len(points)} points cannot be reached {how}; the first, ({first}) m, is {distance:.4g} m from "
+        f"joint 1, and {far:.4g} m can be reached straight ahead, less up and down: move the point nearer "
+        "or turn the first joint towards it.",
+        points=points,
+        reach=(0.0, far),
+    )

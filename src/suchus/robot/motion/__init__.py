@@ -1,0 +1,91 @@
+"""From phase to posture: one gait for every body, what it asks of servos, and courses of postures."""
+
+from suchus.robot.motion.draft import draft_gait
+from suchus.robot.motion.forms import AxialWave, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches, roll
+from suchus.robot.motion.gait import NUMBERS, Gait
+from suchus.robot.motion.limbs import Steer, hip_height
+from suchus.robot.motion.limits import (
+    as_table,
+    check_limits,
+    check_speeds,
+    divided,
+    excess,
+    longest_strokes,
+    servo_parts,
+    servo_range,
+    shortest_period,
+    suits,
+)
+from suchus.robot.motion.movement import (
+    START,
+    Batch,
+    Intended,
+    Movement,
+    cycle_targets,
+    intended,
+    limb_movement,
+    limb_targets,
+    middle_stance,
+    movement,
+    trunk_amplitude,
+)
+from suchus.robot.motion.parts import Bend, Curve, FootPath, Held, Sweep
+from suchus.robot.motion.posture import Keyed, Planned, Posture, plan
+from suchus.robot.motion.rising import stand_up, stretched, tallest
+from suchus.robot.motion.swim import LIMBS_BACK, LIMBS_UP, held, lateral_servos, limbs_back, still, swimming_gait, with_limbs
+
+__all__ = [
+    "LIMBS_BACK",
+    "LIMBS_UP",
+    "NUMBERS",
+    "START",
+    "AxialWave",
+    "Batch",
+    "Bend",
+    "Curve",
+    "FootPath",
+    "Gait",
+    "GaitByPlaces",
+    "GaitInMetres",
+    "Held",
+    "Intended",
+    "Keyed",
+    "Movement",
+    "Planned",
+    "Posture",
+    "Steer",
+    "Sweep",
+    "as_table",
+    "check_limits",
+    "check_speeds",
+    "cycle_targets",
+    "divided",
+    "draft_gait",
+    "excess",
+    "form_of",
+    "held",
+    "hip_height",
+    "in_metres",
+    "intended",
+    "lateral_servos",
+    "limb_movement",
+    "limb_reaches",
+    "limb_targets",
+    "limbs_back",
+    "longest_strokes",
+    "middle_stance",
+    "movement",
+    "plan",
+    "roll",
+    "servo_parts",
+    "servo_range",
+    "shortest_period",
+    "stand_up",
+    "still",
+    "stretched",
+    "suits",
+    "swimming_gait",
+    "tallest",
+    "trunk_amplitude",
+    "with_limbs",
+]

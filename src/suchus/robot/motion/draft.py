@@ -1,0 +1,200 @@
+"""A first walk for a body that has none: foot paths that its limbs reach, at a height at which its belly is clear."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+from math import cos, pi, radians
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from suchus.robot.design import Crank, Girdle, Limb, Robot, layout, servo_ranges
+from suchus.robot.design.scale import gravity_time
+from suchus.core.errors import NotConverged, OutsideLimits, Unreachable
+from suchus.robot.kinematics import limb as limb_kinematics
+from suchus.robot.motion.axis import yaw_hinges
+from suchus.robot.motion.draft_table import is_upright, table_walk
+from suchus.robot.motion.gait import Gait
+from suchus.robot.motion.limbs import foot_path
+from suchus.robot.motion.limits import check_limits, shortest_period
+from suchus.robot.motion.parts import Bend, FootPath, Sweep
+
+_STROKES = (0.2, 0.15, 0.1, 0.06)  # of the limb's reach, the longest that all girdles can take is taken
+_HEIGHTS = (0.5, 0.55, 0.6, 0.45, 0.65, 0.7, 0.4, 0.75, 0.8, 0.85, 0.35, 0.3, 0.9)  # of the reach, the first that fits
+_LIFT = 0.7  # of the stroke
+_WIDE = 0.3  # of the reach; limbs that hang down stand so far outside their hips at least, or the body rolls
+_OUTWARD = (0.55, 0.45, 0.35, 0.25, 0.15, 0.05, 0.65, 0.75, 0.0)
+_AHEAD = (0.0, 0.1, -0.1, 0.2, -0.2)
+_DUTY = 0.6
+_PERIOD = 6.0  # in gravity times; the shelf's walks take 4 to 10
+_STANCE = radians(80)  # that a crank turns through
+_BEND, _SHARE = radians(10), 0.3  # of a trunk joint; and at most this part of its range
+_CLOUD, _NEAR = 16000, 0.05  # postures that show what a limb reaches; how near a path comes to them, in reaches
+_SAMPLES, _JUMP, _MARGIN = 24, 0.7, 0.02  # of a path; rad between two of them; rad from a joint's stop
+_TRIES, _PATHS = 2, 80  # starts of a limb without a closed form; paths that are solved before the search ends
+_SPEED = 0.6  # of its servo's speed that a joint is asked for at most
+_PLANAR = 2  # hinges of a limb whose foot moves on a surface only
+
+
+def draft_gait(robot: Robot, name: str) -> Gait:
+    """Return a walk that a robot's limbs can follow, in lengths of its own; of a body without limbs, an undulation.
+
+    Diagonal limbs go together; trunk joints bend a little with them. It is a beginning, not the best. Limbs of
+    two hinges and upright ones, whose feet move on a surface only, get a curve for each servo.
+
+    Args:
+        robot: any.
+        name: of the gait.
+
+    Raises:
+        OutsideLimits: no path was found that all limbs reach within their ranges.
+    """
+    girdles = robot.girdles
+    phases = tuple(0.5 * ((i + right) % 2) for i in range(len(girdles)) for right in (0, 1))
+    period = _PERIOD * gravity_time(robot.length)
+    if not girdles:
+        gait = _undulation(robot, name, period)
+    elif all(_is_crank(girdle.limb) or _walks_by_paths(girdle.limb) for girdle in girdles):
+        gait = _walk(robot, name, phases, period)
+    else:
+        gait = table_walk(
+            robot, name=name, period=period, duty_factor=_DUTY, phases=phases, axis=_axis(robot), path=_cycle()
+        )
+    try:
+        gait = _slow_enough(robot, gait)
+        check_limits(robot, gait)
+    except NotConverged as error:
+        raise OutsideLimits(f"no walk was found for robot {robot.name!r}: {error}") from error
+    return gait
+
+
+def _walk(robot: Robot, name: str, phases: tuple[float, ...], period: float) -> Gait:
+    """Return the first walk of those that are tried, the longest strokes first."""
+    girdles = robot.girdles
+    clouds, budget = [_cloud(girdle.limb) for girdle in girdles], iter(range(_PATHS))
+    axis = _axis(robot)
+    for stroke in _STROKES:
+        for height in _heights(robot):
+            found = []
+            for girdle, cloud in zip(girdles, clouds, strict=True):
+                one = _does(robot, girdle, cloud, height, stroke, budget)
+                if one is None:
+                    break
+                found.append(one)
+            if len(found) == len(girdles):
+                return Gait(
+                    name=name,
+                    period=period,
+                    duty_factor=_DUTY,
+                    limb_phases=phases,
+                    limbs=tuple(found),
+                    height=height,
+                    axis=axis,
+                )
+    raise OutsideLimits(
+        f"no walk was found for robot {robot.name!r}: its limbs reach no path of {_STROKES[-1]:g} of their reach "
+        "within their ranges; widen the ranges, or write a gait of its own."
+    )
+
+
+def _undulation(robot: Robot, name: str, period: float) -> Gait:
+    """Return a wave along the whole axis that grows toward the tail."""
+    least, count = float(np.abs(servo_ranges(robot)).min()), len(yaw_hinges(robot).servos)
+    amplitude = (count * min(radians(15), _SHARE * least), count * min(radians(35), 0.5 * least))
+    wave = Bend(part="axis", amplitude=amplitude, lag=(0.0, 1.0))
+    return Gait(name=name, period=period, duty_factor=_DUTY, axis=(wave,))
+
+
+def _heights(robot: Robot) -> list[float]:
+    """Return heights of the hindmost hips [limb reach]: those first at which the belly is clear, cranks' own alone."""
+    hind = robot.girdles[-1]
+    if _is_crank(hind.limb):
+        _, depth = _down(hind.limb)
+        return [(depth * cos(_STANCE / 4) + hind.limb.foot.radius) / hind.limb.reach]
+    belly = max(shape.bottom for segment in robot.axis for shape in segment.shapes) + hind.above
+    clear = [h for h in _HEIGHTS if h * hind.limb.reach > belly + 0.05 * hind.limb.reach]
+    return [*clear, *(h for h in sorted(_HEIGHTS, reverse=True) if h not in clear)]
+
+
+def _does(
+    robot: Robot, girdle: Girdle, cloud: cKDTree, height: float, stroke: float, budget: Iterator[int]
+) -> FootPath | Sweep | None:
+    """Return what a girdle's limbs do at a height of the hindmost hips, if they can."""
+    limb = girdle.limb
+    if _is_crank(limb):
+        return Sweep(stance=_STANCE, down=_down(limb)[0])
+    hind = robot.girdles[-1]
+    down = height * hind.limb.reach - hind.above + girdle.above - limb.foot.radius
+    lift = round(_LIFT * stroke, 4)
+    closed = limb_kinematics.kind(limb) != "other"
+    forward, up = np.array([[stroke], [lift]]) * _cycle() * limb.reach
+    for outward, ahead in _beside(limb):
+        feet = np.stack([forward + ahead * limb.reach, np.full(_SAMPLES, outward * limb.reach), up - down], axis=-1)
+        near = closed or float(np.max(cloud.query(feet[:: _SAMPLES // 4])[0])) < _NEAR * limb.reach
+        if near and (closed or next(budget, None) is not None) and _follows(limb, feet):
+            return FootPath(stroke=stroke, lift=lift, outward=outward, ahead=ahead)
+    return None
+
+
+def _beside(limb: Limb) -> Iterator[tuple[float, float]]:
+    """Yield how far outside and ahead of the hip a foot may stand [limb reach]: as it is drawn first, if it stands."""
+    rest = limb_kinematics.forward(limb, np.zeros(len(limb.hinges))) / limb.reach
+    if rest[2] < -0.4:
+        for ahead in (0.0, 0.1, -0.1):
+            for outward in (max(rest[1], _WIDE), rest[1]):
+                yield float(np.clip(outward, -1, 1)), float(np.clip(rest[0] + ahead, -1, 1))
+    for ahead in _AHEAD:
+        for outward in _OUTWARD:
+            yield outward, ahead
+
+
+@lru_cache(maxsize=1)
+def _cycle() -> np.ndarray:
+    """Return a path of stroke 1 and lift 1 about its middle: ahead and up, shape (2, sample) [-]."""
+    return np.stack(foot_path(np.arange(_SAMPLES) / _SAMPLES, _DUTY))
+
+
+def _follows(limb: Limb, feet: np.ndarray) -> bool:
+    """Return whether a limb brings its foot along a path within its ranges and without a jump."""
+    try:
+        angles = limb_kinematics.inverse(limb, feet, tries=_TRIES)
+    except (Unreachable, NotConverged):
+        return False
+    low, high = np.array([hinge.range or (-np.inf, np.inf) for hinge in limb.hinges]).T
+    inside = (angles > low + _MARGIN).all() and (angles < high - _MARGIN).all()
+    return bool(inside and np.abs(np.diff(angles, axis=0, append=angles[:1])).max() < _JUMP)
+
+
+def _cloud(limb: Limb) -> cKDTree:
+    """Return where a limb's foot can be, from the hip."""
+    low, high = np.array([hinge.range or (-pi, pi) for hinge in limb.hinges]).T
+    angles = np.random.default_rng(0).uniform(low, high, (_CLOUD, len(low)))
+    return cKDTree(limb_kinematics.forward(limb, angles))
+
+
+def _is_crank(limb: Limb) -> bool:
+    return len(limb.hinges) == 1 and isinstance(limb.hinges[0].drive, Crank)
+
+
+def _walks_by_paths(limb: Limb) -> bool:
+    return len(limb.hinges) > _PLANAR and not is_upright(limb)
+
+
+def _down(limb: Limb) -> tuple[float, float]:
+    """Return the angle at which the foot of a crank is lowest [rad], and how deep that is below the hip [m]."""
+    angles = np.linspace(-pi, pi, 721)
+    depth = -limb_kinematics.forward(limb, angles[:, None])[:, 2]
+    return float(angles[np.argmax(depth)]), float(depth.max())
+
+
+def _axis(robot: Robot) -> tuple[Bend, ...]:
+    """Return a bend of the trunk with the limbs."""
+    trunk = layout(robot).trunk_yaw
+    limits = np.abs(servo_ranges(robot)).min(axis=1)
+    amplitude = tuple(len(trunk) * min(_BEND, _SHARE * float(limits[i])) for i in reversed(trunk))
+    return (Bend(part="trunk", amplitude=amplitude),) if amplitude else ()
+
+
+def _slow_enough(robot: Robot, gait: Gait) -> Gait:
+    """Return a gait with a period at which no servo is asked for more speed than it has to spare."""
+    return replace(gait, period=float(np.round(max(gait.period, shortest_period(robot, gait)[0] / _SPEED), 4)))

@@ -1,0 +1,310 @@
+"""What limbs do at a phase: from foot paths, sweeps and held angles to servo angles, for many runs at once.
+
+``LimbMotion`` works out the limbs of a girdle that move alike, so that the numbers of their gaits are arrays over runs.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.design import Crank, Girdle, Layout, Robot, layout
+from suchus.core.errors import OutsideLimits, UnknownName, Unreachable
+from suchus.robot.kinematics import leg as leg_kinematics
+from suchus.robot.kinematics import limb as limb_kinematics
+from suchus.robot.kinematics.limb import PlainLeg
+from suchus.robot.motion.gait import Gait
+from suchus.robot.motion.parts import FootPath, Held, Limbs, Sweep
+
+_PICOMETRE = 12  # digits of a metre to which lengths of a gait are rounded: a share of a reach of 0.175 m gives 0.027 m
+_INSIDE = 1e-6  # how far inside its reach a foot that is drawn into it stays: [m] for a leg, [reach] for other limbs
+_LEAST, _MOST = 0.02, 2 * np.pi - 0.02  # [rad]; of the angle that a crank turns through in stance
+_SIDEWAYS = 2 / np.pi  # quarter turns of swivel a radian
+
+
+class Steer(NamedTuple):
+    """What is asked of a gait besides; every field broadcasts over runs, and limbs where it has them."""
+
+    size: Float[np.ndarray, "*batch"] | float = 1.0
+    """Factor on strokes and bends, 0 where a robot stands [-]."""
+    stroke: Float[np.ndarray, "*batch limb"] | float = 1.0
+    """Factor on the stroke of each limb [-]."""
+    lower: Float[np.ndarray, "*batch limb"] | float = 0.0
+    """How much lower than the gait says each foot is [m]."""
+    bend: Float[np.ndarray, "*batch"] | float = 0.0
+    """Steady bend of the trunk besides that of the gait, left positive [rad]."""
+    tail: Float[np.ndarray, "*batch"] | float = 0.0
+    """Steady lateral bend of the tail besides that of the gait, left positive [rad]."""
+
+
+class LimbMotion:
+    """Limbs of one girdle in gaits of one structure: every number is an array over runs.
+
+    Args:
+        robot: the design.
+        gaits: of each run; ``structure`` of ``suchus.robot.motion.movement`` must be the same for all.
+        among: the limbs, in the order of the robot's.
+    """
+
+    def __init__(self, robot: Robot, gaits: Sequence[Gait], among: Sequence[int]) -> None:
+        self.robot, self.gaits, self.among = robot, tuple(gaits), tuple(among)
+        self.limb = layout(robot).limbs[among[0]]
+        self._duty = np.array([gait.duty_factor for gait in gaits])
+        self._numbers = _numbers(robot, gaits, self.limb.number)
+
+    @property
+    def has_paths(self) -> bool:
+        """Whether the feet follow paths."""
+        return isinstance(self._numbers, _Path)
+
+    def angles(
+        self, limbs: Float[np.ndarray, "*batch limb"], steer: Steer | None, *, draw: bool
+    ) -> list[Float[np.ndarray, "*batch servo"]]:
+        """Return the servo angles of each of the limbs, nothing where the gaits say nothing of limbs [rad].
+
+        Args:
+            limbs: phases of all limbs of the robot [cycle].
+            steer: what is asked besides.
+            draw: draw feet into what limbs reach.
+
+        Raises:
+            OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
+        """
+        phase, numbers = _limbs_first(limbs, self.among), self._numbers
+        if numbers is None:
+            return []
+        if isinstance(numbers, np.ndarray):  # held
+            return [numbers] * len(self.among)
+        if isinstance(numbers, _Crank):
+            stance = numbers.stance
+            if steer is not None:
+                stance = np.clip(np.asarray(steer.size) * _of_limbs(steer.stroke, self.among) * stance, _LEAST, _MOST)
+            return list(self._turned(phase, stance, numbers.down)[..., None])
+        try:
+            return list(self._reached(numbers, *self._feet(numbers, phase, steer), draw=draw))
+        except Unreachable as error:
+            if len(self.among) > 1:  # say it of the first limb that it is true of
+                for i in self.among:
+                    LimbMotion(self.robot, self.gaits, [i]).angles(limbs, steer, draw=draw)
+            names = ", ".join(dict.fromkeys(repr(gait.name) for gait in self.gaits))
+            raise OutsideLimits(
+                f"gait {names} asks {self.limb.name} of robot {self.robot.name!r} for a foot path outside its reach: "
+                f"{error} Lower stroke, outward or height."
+            ) from error
+
+    def feet(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "3 limb *batch"]:
+        """Return how far feet are ahead of their hips, outside them and below them [m].
+
+        Args:
+            limbs: phases of all limbs of the robot [cycle].
+
+        Raises:
+            OutsideLimits: a gait has limbs without a foot path.
+        """
+        if not isinstance(self._numbers, _Path):
+            raise OutsideLimits(
+                f"gait {self.gaits[0].name!r} has no path for the foot of {self.limb.name}: choose a gait of foot "
+                "paths."
+            )
+        return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.among), None))
+
+    def _feet(
+        self, numbers: "_Path", phase: np.ndarray, steer: Steer | None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        forward, lifted = foot_path(phase, self._duty)
+        stroke, lower = numbers.stroke, np.zeros(())
+        if steer is not None:
+            stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.among)
+            lower = _of_limbs(steer.lower, self.among)
+        ahead = numbers.ahead + stroke * forward
+        return ahead, np.broadcast_to(numbers.outward, ahead.shape), numbers.down + lower - numbers.lift * lifted
+
+    def _reached(
+        self, numbers: "_Path", ahead: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
+    ) -> np.ndarray:
+        """Return the servo angles that bring feet to their places, shape (limb, *batch, servo) [rad]."""
+        if numbers.leg is not None:
+            foot = np.stack([numbers.leg.hip_offset + outward, ahead, down], axis=-1)
+            return _leg_angles(numbers.leg, numbers.side, foot, draw=draw)
+        foot = np.stack([ahead, outward, -down], axis=-1)
+        limb = self.limb.girdle.limb
+        if draw:
+            near, far = limb_kinematics.reach(limb)
+            foot = _drawn(foot, np.zeros(3), (near + _INSIDE * far, far - _INSIDE * far))
+        return limb_kinematics.inverse(limb, foot, plane=np.broadcast_to(numbers.swivel, ahead.shape))
+
+    def _turned(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
+        """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above."""
+        swing = 1.0 - self._duty
+        turns, cycle = np.floor(phase), np.mod(phase, 1.0)
+        half = stance / 2
+        standing = -half + stance * (cycle - swing) / self._duty
+        returning = half - 2 * np.pi + (2 * np.pi - stance) * cycle / swing
+        return np.asarray(down - (2 * np.pi * turns + np.where(cycle < swing, returning, standing)))
+
+
+def hip_height(robot: Robot, gait: Gait) -> float:
+    """Return how high the root's axis is above the ground in a gait [m]; 0 where the gait does not say."""
+    girdles = robot.girdles
+    return _metres(gait.height, girdles[-1].limb.reach) - girdles[-1].above if girdles and gait.limbs else 0.0
+
+
+def _metres(share: float, reach: float) -> float:
+    return round(share * reach, _PICOMETRE)
+
+
+def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far a foot is along its path, -1 to 1 forward, and how far it is lifted, 0 to 1 [-].
+
+    Args:
+        phase: of the limb [cycle].
+        duty: share of the cycle in which it stands [-].
+    """
+    cycle, swing = np.mod(phase, 1.0), 1.0 - duty
+    s = np.clip(cycle / swing, 0.0, 1.0)
+    forward = np.where(cycle < swing, -np.cos(np.pi * s), 1.0 - 2.0 * ((cycle - swing) / duty))
+    return forward, np.where(cycle < swing, np.sin(np.pi * s) ** 2, 0.0)
+
+
+def girdles(place: Layout) -> list[list[int]]:
+    """Return the limbs that are worked out together: those of a girdle, where its chain has a closed form."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for i, limb in enumerate(place.limbs):
+        alone = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
+        groups.setdefault((limb.number, alone), []).append(i)
+    return list(groups.values())
+
+
+def quarter(swivel: float) -> int:
+    """Return the nearest of a quarter turn back, none, and a quarter turn forward: -1, 0, 1."""
+    return round(min(max(swivel * _SIDEWAYS, -1.0), 1.0))
+
+
+def check_limbs(robot: Robot, gait: Gait) -> None:
+    """Refuse a gait for other limbs or servos than a robot has.
+
+    Raises:
+        OutsideLimits: it has phases or movements for another number of limbs, or moves them as they cannot move.
+        UnknownName: a curve is for a servo that the robot lacks.
+    """
+    place = layout(robot)
+    if len(gait.limb_phases) != len(place.limbs):
+        told = f" ({', '.join(place.limb_names)})" if place.limbs else ""
+        raise OutsideLimits(
+            f"gait {gait.name!r} has phases for {len(gait.limb_phases)} limbs; robot {robot.name!r} has "
+            f"{len(place.limbs)}{told}: choose a gait made for it, or leave the gait out for the robot's own."
+        )
+    for curve in gait.curves:
+        if curve.servo not in place.servos:
+            raise UnknownName(f"servo of robot {robot.name!r}", curve.servo, place.servos)
+    for girdle, limb in zip(place.robot.girdles, gait.limbs, strict=False):
+        _check_girdle(place, gait, girdle, limb)
+
+
+_MOVES: dict[type, str] = {FootPath: "leads feet along a path", Sweep: "turns limbs as cranks"}
+
+
+def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> None:
+    robot = place.robot
+    drives = [hinge.drive for hinge in girdle.limb.hinges]
+    cranks = len(drives) == 1 and isinstance(drives[0], Crank)
+    if cranks != isinstance(limb, Sweep) and not isinstance(limb, Held):
+        raise OutsideLimits(
+            f"gait {gait.name!r} {_MOVES[type(limb)]}; limbs L{girdle.name} and R{girdle.name} of robot {robot.name!r} "
+            f"{'are' if cranks else 'are not'} cranks: choose a gait made for it, or leave the gait out for the "
+            "robot's own."
+        )
+    driven = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+    if isinstance(limb, Held) and len(limb.angles) > driven:
+        raise OutsideLimits(
+            f"gait {gait.name!r} holds {len(limb.angles)} angles of girdle {girdle.name}; its limbs have {driven} "
+            "servos: give one for each."
+        )
+    outside = isinstance(limb, FootPath) and quarter(limb.swivel) != 0 and limb.outward
+    if outside and limb_kinematics.kind(girdle.limb) == "leg":
+        raise OutsideLimits(
+            f"gait {gait.name!r} stands the limbs of girdle {girdle.name} of robot {robot.name!r} erect and "
+            f"{outside:g} of their reach outside their hips; legs of yaw, pitch and knee that stand erect stand "
+            "below their hips: set outward to 0, or swivel."
+        )
+
+
+class _Path(NamedTuple):
+    """The numbers of the foot paths of one limb, over runs [m]; those of a limb of yaw, pitch and knee have a leg."""
+
+    stroke: np.ndarray
+    lift: np.ndarray
+    outward: np.ndarray
+    ahead: np.ndarray
+    down: np.ndarray
+    swivel: np.ndarray
+    leg: PlainLeg | None
+    side: int  # quarter turns of the swivel of a leg: 0 sprawled, 1 knee ahead, -1 elbow behind
+
+
+class _Crank(NamedTuple):
+    """The numbers of the cranks of one limb, over runs [rad]."""
+
+    stance: np.ndarray
+    down: np.ndarray
+
+
+def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
+    """Return what the gaits say of the limbs of a girdle."""
+    if not gaits[0].limbs:
+        return None
+    limbs: list[Any] = [gait.limbs[number] for gait in gaits]
+    girdle = robot.girdles[number]
+    if isinstance(limbs[0], Held):
+        servos = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
+        return np.array([(*limb.angles, *(0.0,) * (servos - len(limb.angles))) for limb in limbs])
+    if isinstance(limbs[0], Sweep):
+        return _Crank(*(np.array([getattr(limb, name) for limb in limbs]) for name in ("stance", "down")))
+    design, leg = girdle.limb, limb_kinematics.kind(girdle.limb) == "leg"
+    metres = {
+        name: np.array([_metres(getattr(limb, name), design.reach) for limb in limbs])
+        for name in ("stroke", "lift", "outward", "ahead")
+    }
+    return _Path(
+        **metres,
+        down=np.array([hip_height(robot, gait) for gait in gaits]) + girdle.above - design.foot.radius,
+        swivel=np.array([limb.swivel for limb in limbs]),
+        leg=limb_kinematics.plain(girdle) if leg else None,
+        side=quarter(limbs[0].swivel),
+    )
+
+
+def _limbs_first(values: Float[np.ndarray, "*batch limb"], among: Sequence[int]) -> np.ndarray:
+    """Return what is said of some limbs, shape (limb, *batch)."""
+    return np.stack([values[..., i] for i in among])
+
+
+def _of_limbs(field: np.ndarray | float, among: Sequence[int]) -> np.ndarray:
+    """Return what a field of a ``Steer`` says of some limbs, shape (limb, *batch), or () where it is one number."""
+    return _limbs_first(np.asarray(field), among) if np.ndim(field) else np.asarray(field)
+
+
+def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
+    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad]."""
+    if draw:
+        near, far = leg.reach
+        foot = _drawn(foot, np.array([leg.hip_offset, 0.0, 0.0]), (near + _INSIDE, far - _INSIDE))
+    if side == 0:
+        return leg_kinematics.inverse(leg, foot)
+    # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
+    along = float(side) * foot[..., 1]
+    flat = np.stack([leg.hip_offset + along, np.zeros_like(along), foot[..., 2]], axis=-1)
+    angles = np.where(
+        along[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
+    )
+    angles[..., 0] = float(side) * np.pi / 2
+    return angles
+
+
+def _drawn(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+    """Return foot points drawn along the line to the hip into what a limb reaches; others stay as they are [m]."""
+    away, (near, far) = foot - hip, reach
+    length = np.linalg.norm(away, axis=-1, keepdims=True)
+    moved = hip + away * np.clip(length, near, far) / np.maximum(length, _INSIDE)
+    return np.asarray(np.where((length < near) | (length > far), moved, foot))

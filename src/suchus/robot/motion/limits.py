@@ -1,0 +1,229 @@
+"""What a gait asks of joints and servos, and whether a robot can give it."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
+from suchus.robot.motion.axis import at_knot, yaw_hinges
+from suchus.robot.motion.gait import Gait
+from suchus.robot.motion.movement import Movement, cycle_targets, movement
+from suchus.robot.motion.parts import MOST_ANGLES, Bend, Curve, Part, ServoPart
+
+SAMPLES = 128
+"""Looks over a cycle [-]."""
+_SPEED_SAMPLES = 200  # of a cycle, to see how fast servos turn in it
+_MOST, _NEAR = 8.0, 1e-3  # greatest factor on strokes that is tried, and how near to the greatest possible one it ends
+_LENGTH, _ANGLE, _SPEED = 0.01, 0.1, 1.0  # [m], [rad], [rad/s]; what counts as one of the excess
+_ROUNDING = 1e-9  # [rad]; by which a bend may leave its limit
+
+
+def check_limits(robot: Robot, gait: Gait) -> None:
+    """Refuse a gait that a robot's joints cannot follow.
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, asks a foot for a place out of reach, or a joint would have to leave
+            its range; the message names it, the angle and the range.
+        UnknownName: a curve is for a servo that the robot lacks.
+    """
+    here, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
+    _check_cables(here)
+    targets, direct = cycle_targets(robot, gait, clock), len(here.place.servos) - len(here.place.cables)
+    targets = np.vstack([targets, _lateral_ends(here, targets[0])])
+    for name, column, (low, high) in zip(
+        here.place.servos[:direct], targets.T[:direct], servo_ranges(robot)[:direct], strict=True
+    ):
+        worst = column[np.argmax(np.maximum(low - column, column - high))]
+        if not low <= worst <= high:
+            raise OutsideLimits(
+                f"gait {gait.name!r} asks {name} of robot {robot.name!r} for {worst:.3f} rad; "
+                f"{low:.3f} to {high:.3f} rad is allowed."
+            )
+
+
+def _lateral_ends(here: Movement, posture: np.ndarray) -> np.ndarray:
+    """Return a posture twice, with the least and the greatest angles of what waves bend sideways, (2, servo) [rad]."""
+    ends, follows = np.array([posture, posture]), float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
+    measured = {here.place.servos.index(curve.servo) for curve in here.gaits[0].curves}
+    hinges, share = here.yaw.hinges, here.yaw.share[0]
+    for k, (servo, sign) in enumerate(zip(hinges.servos, hinges.signs, strict=True)):
+        if servo not in here.place.cables and servo not in measured:
+            swing = max(follows * float(np.abs(here.yaw.swing[0, k])) / share[k] - _ROUNDING, 0.0)
+            ends[:, servo] = sign * here.yaw.offset[0, k] / share[k] + np.array([-swing, swing])
+    return ends
+
+
+def _check_cables(here: Movement) -> None:
+    """Refuse bends beyond what cables allow; the pulleys' angles are clipped, and would not show it."""
+    follows = float(np.abs(here.axis_of_clock(np.zeros(1)))[0])
+    for servo in here.place.cables:
+        among = [k for k, mine in enumerate(here.yaw.hinges.servos) if mine == servo]
+        swing, steady = here.yaw.together(among)
+        most, limit = float(follows * np.abs(swing[0]) + np.abs(steady[0])), here.place.cable(servo).bend_limit
+        if most > limit + _ROUNDING:
+            raise OutsideLimits(
+                f"gait {here.gaits[0].name!r} asks the hinges of cable {here.place.servos[servo]} of robot "
+                f"{here.robot.name!r} for a bend of {most:.3f} rad together; up to {limit:.3f} rad is allowed: let "
+                "its axis bend less."
+            )
+
+
+def suits(robot: Robot, gait: Gait) -> bool:
+    """Return whether a robot's joints can follow a gait."""
+    try:
+        check_limits(robot, gait)
+    except (InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable):
+        return False
+    return True
+
+
+def shortest_period(robot: Robot, gait: Gait) -> tuple[float, str]:
+    """Return the period below which a servo would have to turn faster than it can [s], and which servo that is.
+
+    Args:
+        robot: the design, whose limbs the gait is for.
+        gait: the gait; its own period is not looked at.
+    """
+    targets = cycle_targets(robot, gait, np.arange(_SPEED_SAMPLES + 1) / _SPEED_SAMPLES)
+    turns = np.abs(np.diff(targets, axis=0)).max(axis=0) * _SPEED_SAMPLES  # [rad/cycle]
+    servos = layout(robot).servos
+    needed = turns / np.array([robot.servo(servo).speed for servo in servos])
+    slowest = int(np.argmax(needed))
+    return float(needed[slowest]), servos[slowest]
+
+
+def check_speeds(robot: Robot, gait: Gait) -> None:
+    """Refuse a gait in which a servo would have to turn faster than it can.
+
+    Raises:
+        OutsideLimits: a servo is too slow; the message names it and the shortest period.
+    """
+    shortest, servo = shortest_period(robot, gait)
+    if shortest > gait.period:
+        limit = robot.servo(servo).speed
+        raise OutsideLimits(
+            f"gait {gait.name!r} asks {servo} of robot {robot.name!r} for {limit * shortest / gait.period:.2f} rad/s; "
+            f"the servo turns at {limit:.2f} rad/s at most: make the period {shortest:.3g} s, or bend less."
+        )
+
+
+@lru_cache(maxsize=256)
+def longest_strokes(robot: Robot, gait: Gait) -> float:
+    """Return the greatest share of its strokes that a robot's limbs can follow, up to eight times [-]."""
+    if not gait.has("strokes"):
+        return 1.0
+    low, high = 1.0, _MOST
+    while high - low > _NEAR:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _strides(robot, gait, middle) else (low, middle)
+    return low
+
+
+def _strides(robot: Robot, gait: Gait, share: float) -> bool:
+    try:
+        return suits(robot, gait.strode(share))
+    except InvalidDesign:
+        return False
+
+
+def excess(robot: Robot, gait: Gait) -> float:
+    """Return how far a gait is from what a robot can follow; zero where it can [-].
+
+    Counted are the distance by which feet lie outside their limbs' reach, in centimetres, the angles by which joints
+    leave their range, in tenths of a radian, and the speeds by which servos turn too fast, in radians a second.
+
+    Raises:
+        SuchusError: the gait is for other limbs.
+    """
+    here, clock = movement(robot, gait), np.arange(SAMPLES) / SAMPLES
+    limbs = clock[:, None] + np.array(gait.limb_phases)
+    targets, away = here.targets(limbs, here.axis_of_clock(clock), draw=True), here.out_of_reach(limbs)
+    ranges = servo_ranges(robot)
+    beyond = np.maximum(np.maximum(ranges[:, 0] - targets, targets - ranges[:, 1]), 0.0).max(axis=0)
+    turns = np.diff(targets, axis=0, append=targets[:1])
+    endless = np.isinf(ranges).any(axis=1)
+    turns[:, endless] = (turns[:, endless] + np.pi) % (2 * np.pi) - np.pi  # a crank's angle jumps once a turn
+    turned = np.abs(turns).max(axis=0) * SAMPLES / gait.period
+    fast = np.array([robot.servo(name).speed for name in here.place.servos])
+    far = float(away.max(axis=0).sum()) if limbs.shape[1] else 0.0
+    return float(far / _LENGTH + beyond.sum() / _ANGLE + np.maximum(turned - fast, 0.0).sum() / _SPEED)
+
+
+def as_table(robot: Robot, gait: Gait, samples: int = 64) -> Gait:
+    """Return a gait as measured curves: what every servo does over one cycle, to be changed by hand or in a file.
+
+    Between the samples a curve is smooth where a gait may have a corner, at lift-off and touch-down of a foot; with
+    64 samples the crawl's angles differ by less than 0.002 rad.
+
+    Args:
+        robot: the design.
+        gait: the gait, which the robot can follow.
+        samples: of one cycle, at most ``MOST_ANGLES`` are taken [-].
+
+    Raises:
+        OutsideLimits: the robot cannot follow it.
+    """
+    samples = min(samples, MOST_ANGLES)
+    clock = np.arange(samples) / samples
+    named = zip(layout(robot).servos, cycle_targets(robot, gait, clock).T, strict=True)
+    moved = {name: curve[:1] if np.ptp(curve) < 1e-9 else curve for name, curve in named}
+    parts = servo_parts(robot)
+    return replace(
+        gait,
+        name=f"{gait.name}_table",
+        limbs=(),
+        axis=(),
+        height=0.0,
+        curves=tuple(
+            Curve(servo=name, part=parts[name], angles=tuple(float(round(angle, 6)) for angle in curve))
+            for name, curve in moved.items()
+            if np.any(np.abs(curve) > 1e-12)
+        ),
+    )
+
+
+def servo_parts(robot: Robot) -> dict[str, ServoPart]:
+    """Return the part of the body that each servo moves: ``limb``, ``neck``, ``trunk`` or ``tail``."""
+    here = layout(robot)
+    trunk = {*here.trunk_yaw, *here.trunk_pitch}
+    parts: dict[str, ServoPart] = {}
+    for i, name in enumerate(here.servos):
+        if any(i in range(limb.servos.start, limb.servos.stop) for limb in here.limbs):
+            parts[name] = "limb"
+        elif i in here.cables or here.servo_hinges[i] >= here.behind.start:
+            parts[name] = "tail"
+        else:
+            parts[name] = "trunk" if i in trunk else "neck"
+    return parts
+
+
+def divided(robot: Robot, gait: Gait) -> Gait:
+    """Return a gait whose bends of the whole axis are given part by part, a knot for each hinge, so that one may go."""
+    hinges, axis = yaw_hinges(robot), []
+    parts: tuple[Part, ...] = ("neck", "trunk", "tail")
+    for bend in gait.axis:
+        if bend.part != "axis" or bend.turn != "yaw":
+            axis.append(bend)
+            continue
+        count = len(hinges.servos)
+        for part in parts:
+            among = hinges.within(part)
+            share = len(among) / count
+            if among:
+                axis.append(
+                    Bend(
+                        part=part,
+                        amplitude=tuple(share * at_knot(bend.amplitude, k, count) for k in among),
+                        lag=tuple(at_knot(bend.lag, k, count) for k in among),
+                        offset=share * bend.offset,
+                    )
+                )
+    return replace(gait, axis=tuple(axis))
+
+
+def servo_range(robot: Robot, name: str) -> tuple[float, float]:
+    """Return the range of the joint that a servo turns [rad]; for a cable, of the pulley."""
+    low, high = servo_ranges(robot)[layout(robot).servos.index(name)]
+    return float(low), float(high)

@@ -1,0 +1,368 @@
+"""From phase to posture: what every servo of a robot does in a gait, for many runs at once.
+
+``Movement`` works gaits of one structure out for one robot, so that their numbers are arrays over runs: that is done
+once, and then asked at every control period. Open loop, feedback, limits and swims all read it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from suchus.robot.design import Layout, Robot, layout, servo_ranges
+from suchus.robot.design.skeleton import skeleton
+from suchus.robot.kinematics import limb as limb_kinematics
+from suchus.robot.kinematics import tail as tail_kinematics
+from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
+from suchus.robot.motion.gait import Gait
+from suchus.robot.motion.limbs import LimbMotion, Steer, check_limbs, girdles, quarter
+from suchus.robot.motion.parts import FootPath, Part
+from suchus.article.paper import CRAWL_START
+
+START = CRAWL_START
+"""A robot stands still until then, so that it has settled on the ground [s]."""
+
+
+class Intended(NamedTuple):
+    """Intended motion over time."""
+
+    phase: Float[np.ndarray, "*batch limb"]
+    """Phase of each limb, without wrapping [cycle]."""
+    targets: Float[np.ndarray, "*batch servo"]
+    """Servo angles [rad]."""
+
+
+class Movement:
+    """Gaits of one structure worked out for one robot: every number is an array over runs.
+
+    Args:
+        robot: the design.
+        gaits: of each run; ``structure`` must be the same for all.
+
+    Raises:
+        OutsideLimits: a gait is for other limbs.
+        UnknownName: a curve is for a servo that the robot lacks.
+    """
+
+    def __init__(self, robot: Robot, gaits: Sequence[Gait]) -> None:
+        for gait in gaits:
+            check_limbs(robot, gait)
+        self.robot, self.gaits, self.place = robot, tuple(gaits), layout(robot)
+        self.yaw, self.pitch = Waves(yaw_hinges(robot), "yaw", gaits), Waves(pitch_hinges(robot), "pitch", gaits)
+        self._duty = np.array([gait.duty_factor for gait in gaits])
+        self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
+        self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
+        self._signs, self._behind = _references(gaits)
+        servos, cables = self.yaw.hinges.servos, self.place.cables
+        self._direct = [k for k, servo in enumerate(servos) if servo not in cables]
+        self._limbs = [LimbMotion(robot, gaits, among) for among in girdles(self.place)]
+        self._curves = [_Measured(self.place, gaits, i) for i in range(len(gaits[0].curves))]
+        self._low, self._high = servo_ranges(robot).T
+
+    def axis_phase(self, limbs: Float[np.ndarray, "*batch limb"]) -> Complex[np.ndarray, "*batch"]:
+        """Return the order parameter of the limbs, which the axis follows: their mean on the unit circle [-].
+
+        Its angle is the phase of the axis; it is 1 in size where all limbs agree and 0 where their pulls cancel.
+
+        Args:
+            limbs: phases of the limbs [cycle].
+        """
+        angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._behind)
+        return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
+
+    def _mean(self, pulls: np.ndarray) -> np.ndarray:
+        """Return the mean over the limbs with their signs, summed in one order so that no batch changes a bit."""
+        terms = [pulls[..., i] * sign for i, sign in enumerate(self._signs)]
+        while len(terms) > 1:
+            half = (len(terms) + 1) // 2
+            terms = [sum(terms[i + half : i + half + 1], terms[i]) for i in range(half)]
+        return np.asarray(terms[0] / len(self._signs))
+
+    def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
+        """Return what the axis follows at times since the beginning [cycle], without asking the limbs."""
+        if len(self._signs):
+            return self.axis_phase(np.asarray(clock)[..., None] + self._phases)
+        return np.asarray(np.exp(2j * np.pi * (np.asarray(clock) - self._touch_down)))
+
+    def targets(
+        self,
+        limbs: Float[np.ndarray, "*batch limb"],
+        axis: Complex[np.ndarray, "*batch"],
+        steer: Steer | None = None,
+        *,
+        draw: bool = False,
+    ) -> Float[np.ndarray, "*batch servo"]:
+        """Return the servo angles [rad].
+
+        Args:
+            limbs: phases of the limbs, not wrapped; the last axis of the batch is that of the runs, or stands for the
+                only one [cycle].
+            axis: what the axis follows, as ``axis_phase`` returns it [-].
+            steer: what is asked besides; then feet are drawn into what limbs reach, and angles into their ranges.
+            draw: draw feet into what limbs reach, whether anything is steered or not.
+
+        Raises:
+            OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
+        """
+        targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.place.servos)))
+        for alike in self._limbs:
+            for i, of_limb in zip(
+                alike.among, alike.angles(limbs, steer, draw=draw or steer is not None), strict=False
+            ):
+                limb = self.place.limbs[i]
+                targets[..., limb.servos] = of_limb[..., limb.driven]
+        self._bend(targets, axis, steer)
+        self._curve(targets, limbs, axis)
+        return np.clip(targets, self._low, self._high) if steer is not None else targets
+
+    def harmonics(self) -> Complex[np.ndarray, "run hinge"]:
+        """Return h of the hinges that bend sideways, whose angles are a mean plus ``Re(h exp(2 pi i clock))`` [rad].
+
+        Positive is concave to the left; measured curves are left aside.
+        """
+        start = self.axis_of_clock(np.zeros(len(self.gaits)))
+        return np.asarray(self.yaw.swing * start[:, None] / self.yaw.share)
+
+    def bend_of(self, part: Part, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
+        """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
+        return self.yaw.whole(self.yaw.hinges.within(part), self.yaw.bends(axis))
+
+    def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
+        """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
+        away = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.place.limbs))))
+        for alike in self._limbs:
+            if alike.has_paths:
+                near, most = limb_kinematics.reach(alike.limb.girdle.limb)
+                for i, far in zip(alike.among, np.linalg.norm(alike.feet(limbs), axis=0), strict=True):
+                    away[..., i] = np.maximum(np.maximum(near - far, far - most), 0.0)
+        return away
+
+    def foot_places(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb 3"]:
+        """Return the intended foot centres, each in the D-H base frame of its limb (outward, forward, down) [m].
+
+        Args:
+            limbs: phases of the limbs [cycle].
+
+        Raises:
+            OutsideLimits: a gait has limbs without a foot path.
+        """
+        places: dict[int, np.ndarray] = {}
+        for alike in self._limbs:
+            ahead, outward, down = alike.feet(limbs)
+            places |= zip(alike.among, np.stack([alike.limb.girdle.aside + outward, ahead, down], axis=-1), strict=True)
+        return np.stack([places[i] for i in range(len(places))], axis=-2)
+
+    def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
+        size = None if steer is None else steer.size
+        tail = 0.0 if steer is None else steer.tail
+        if self.yaw.moves or np.any(tail):
+            hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
+            if np.any(tail):
+                bends = bends + self._of_tail(tail)
+            turned = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.share[:, direct]
+            targets[..., np.array(hinges.servos, dtype=int)[direct]] = turned
+            for servo in self.place.cables:
+                among = [k for k, mine in enumerate(hinges.servos) if mine == servo]
+                most = self.place.cable(servo).bend_limit
+                whole = hinges.signs[among[0]] * self.yaw.whole(among, bends)
+                if steer is not None:
+                    whole = np.clip(whole, -most, most)
+                targets[..., servo] = tail_kinematics.servo_angle(self.place.cable(servo), whole)
+        if self.pitch.moves:
+            targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.share
+        if steer is not None and self.place.trunk_yaw:
+            targets[..., list(self.place.trunk_yaw)] += (np.asarray(steer.bend) / len(self.place.trunk_yaw))[..., None]
+
+    def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
+        """Return what a steady bend of the tail adds to the bends of all hinges, as ``Waves.bends`` has them [rad]."""
+        within = self.yaw.hinges.within("tail")
+        each = np.zeros(len(self.yaw.hinges.servos))
+        each[within] = 1.0 / max(len(within), 1)
+        return np.asarray(np.asarray(bend)[..., None] * each * self.yaw.share)
+
+    def _curve(self, targets: np.ndarray, limbs: np.ndarray, axis: np.ndarray) -> None:
+        if not self._curves:
+            return
+        first = self._phases[:, 0] if self._phases.shape[1] else 0.0
+        along = np.angle(axis) / (2 * np.pi) + self._touch_down - first
+        for curve in self._curves:
+            clock = along if curve.limb is None else limbs[..., curve.limb] - self._phases[:, curve.limb]
+            turns = np.exp(2j * np.pi * np.asarray(clock)[..., None] * np.arange(curve.harmonics.shape[1]))
+            targets[..., curve.servo] = (turns * curve.harmonics).sum(axis=-1).real
+
+
+def trunk_amplitude(robot: Robot, gait: Gait) -> float:
+    """Return the most that a gait bends the trunk sideways [rad]."""
+    yaw = movement(robot, gait).yaw
+    among = yaw.hinges.within("trunk")
+    steady = np.abs(yaw.offset / yaw.share)
+    return float((yaw.amplitude() + steady)[0, among].sum())
+
+
+class Batch:
+    """The gaits of the runs of a batch, gathered by skeleton and structure: each kind is worked out in one call.
+
+    Robots that are built of one design have one skeleton, so that a batch of them is one kind.
+
+    Args:
+        robots: the design of each run; all have the same layout.
+        gaits: the gait of each run.
+    """
+
+    def __init__(self, robots: Sequence[Robot], gaits: Sequence[Gait]) -> None:
+        members: dict[Any, list[int]] = {}
+        for run, (robot, gait) in enumerate(zip(robots, gaits, strict=True)):
+            members.setdefault((skeleton(robot), structure(gait)), []).append(run)
+        self.groups = [
+            (Movement(robots[runs[0]], [gaits[run] for run in runs]), np.array(runs)) for runs in members.values()
+        ]
+        self.phases = np.array([gait.limb_phases for gait in gaits], dtype=float).reshape(len(gaits), -1)
+        self.periods = np.array([gait.period for gait in gaits])
+        self._servos = len(layout(robots[0]).servos)
+
+    def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
+        """Return what the axis of each run follows: its limbs, or its clock where it has none [-]."""
+        z = np.zeros(len(limbs), dtype=complex)
+        for movement, runs in self.groups:
+            z[runs] = movement.axis_phase(limbs[runs]) if limbs.shape[1] else movement.axis_of_clock(clock[runs])
+        return z
+
+    def targets(
+        self, limbs: Float[np.ndarray, "run limb"], axis: Complex[np.ndarray, " run"], steer: Steer | None = None
+    ) -> Float[np.ndarray, "run servo"]:
+        """Return the servo angles of every run; see ``Movement.targets`` [rad]."""
+        targets = np.zeros((len(limbs), self._servos))
+        for movement, runs in self.groups:
+            mine = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
+            targets[runs] = movement.targets(limbs[runs], axis[runs], mine)
+        return targets
+
+    def bend_of(self, part: Part, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+        """Return how far a part of each run bends sideways, left positive [rad]."""
+        bend = np.zeros(len(axis))
+        for movement, runs in self.groups:
+            bend[runs] = movement.bend_of(part, axis[runs])
+        return bend
+
+    def together(self, part: Part) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
+        """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
+        swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
+        for movement, runs in self.groups:
+            yaw = movement.yaw
+            swing[runs], steady[runs] = yaw.together(yaw.hinges.within(part))
+        return swing, steady
+
+
+def structure(gait: Gait) -> Any:
+    """Return what gaits must have in common to be worked out together: all that is no plain number."""
+    limbs = tuple((type(limb), quarter(limb.swivel) if isinstance(limb, FootPath) else 0) for limb in gait.limbs)
+    signs = tuple(_references([gait])[0])
+    return limbs, signs, tuple((curve.servo, len(curve.angles)) for curve in gait.curves)
+
+
+@lru_cache(maxsize=256)
+def movement(robot: Robot, gait: Gait) -> Movement:
+    """Return one gait worked out for a robot."""
+    return Movement(robot, [gait])
+
+
+def intended(
+    robot: Robot, gait: Gait, time: Float[np.ndarray, "*batch"], *, begin: float = START, ramp: float = 0.0
+) -> Intended:
+    """Return phases and servo angles of a gait at some times; before it begins the phases stand still.
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        time: since the beginning of the run [s].
+        begin: time at which the gait begins [s].
+        ramp: duration from then on over which strokes and bends grow from zero, as 3 x^2 - 2 x^3 [s].
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    since = np.asarray(np.maximum(np.asarray(time, dtype=float) - begin, 0.0))
+    grown = np.minimum(since / ramp, 1.0) if ramp > 0.0 else None
+    size = None if grown is None else np.asarray(grown**2 * (3.0 - 2.0 * grown))
+    clock = np.asarray(since / gait.period)
+    return Intended(clock[..., None] + np.array(gait.limb_phases), cycle_targets(robot, gait, clock, size))
+
+
+def cycle_targets(
+    robot: Robot, gait: Gait, clock: Float[np.ndarray, "*batch"], size: Float[np.ndarray, "*batch"] | None = None
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of a gait that has begun [rad].
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        clock: since it began [cycle].
+        size: factor on strokes and bends [-]; None for 1.
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    here, clock = movement(robot, gait), np.asarray(clock, dtype=float)
+    many = np.atleast_1d(clock)
+    steer = None if size is None else Steer(size=np.atleast_1d(size))
+    found = here.targets(many[..., None] + np.array(gait.limb_phases), here.axis_of_clock(many), steer)
+    return found.reshape(*clock.shape, -1)
+
+
+def limb_targets(
+    robot: Robot, gait: Gait, phase: Float[np.ndarray, "*batch limb"]
+) -> Float[np.ndarray, "*batch servo"]:
+    """Return the servo angles of limbs at phases of their own; the axis is not bent sideways [rad].
+
+    Args:
+        robot: the design.
+        gait: the gait.
+        phase: of the limbs, not wrapped [cycle].
+
+    Raises:
+        OutsideLimits: the gait is for other limbs, or asks for what they cannot reach.
+    """
+    many = np.atleast_2d(phase)
+    targets = limb_movement(robot, gait).targets(many, np.zeros(many.shape[:-1], dtype=complex))
+    return targets.reshape(*np.shape(phase)[:-1], -1)
+
+
+@lru_cache(maxsize=256)
+def limb_movement(robot: Robot, gait: Gait) -> Movement:
+    """Return a gait's limbs alone, worked out for a robot: its axis is not bent sideways, and not waved up and down."""
+    still = gait.straightened()
+    return Movement(robot, [replace(still, axis=tuple(bend for bend in still.axis if bend.turn == "pitch"))])
+
+
+def middle_stance(robot: Robot, gait: Gait) -> Float[np.ndarray, " servo"]:
+    """Return the servo angles in which all feet stand in the middle of their path and the axis is straight [rad].
+
+    Of a robot without limbs, or with limbs that are held, it is those with a straight axis.
+    """
+    return limb_targets(robot, gait, np.full(len(gait.limb_phases), 1.0 - gait.duty_factor / 2))
+
+
+def _references(gaits: Sequence[Gait]) -> tuple[np.ndarray, np.ndarray]:
+    """Return by which sign each limb pulls on the axis [-], and the rest of the phase at which it does [cycle]."""
+    pulls = [gait.coupling or tuple(phase - gait.limb_phases[0] for phase in gait.limb_phases) for gait in gaits]
+    reference = np.array(pulls, dtype=float)
+    half = np.round(2.0 * reference)
+    return (1.0 - 2.0 * np.mod(half, 2.0))[0], reference - half / 2.0
+
+
+class _Measured:
+    """The curves of one servo, over runs."""
+
+    def __init__(self, place: Layout, gaits: Sequence[Gait], number: int) -> None:
+        self.servo = place.servos.index(gaits[0].curves[number].servo)
+        moved = [i for i, limb in enumerate(place.limbs) if limb.servos.start <= self.servo < limb.servos.stop]
+        self.limb = moved[0] if moved else None  # whose phase it follows; None: that of the axis
+        self.harmonics = np.array([gait.curves[number].harmonics for gait in gaits])
+
+
+def _of_runs(field: np.ndarray | float, runs: np.ndarray) -> np.ndarray:
+    """Return what a field of a ``Steer`` says of some runs."""
+    return np.asarray(field)[runs] if np.ndim(field) else np.asarray(field)

@@ -1,0 +1,89 @@
+"""From one gait's posture to another's, a diagonal pair of legs after the other."""
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.robot.design.scale import gravity_time
+from suchus.robot.motion.gait import Gait
+from suchus.robot.motion.limbs import Steer
+from suchus.robot.motion.movement import movement
+from suchus.article.paper import LIMB_REACH
+
+MEETING = 0.090 / LIMB_REACH
+"""Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""
+RAISED = 0.2
+"""How high limbs are lifted while they turn [reach of the hindmost limb]."""
+_TIMES = (0.6, 0.3, 0.5, 0.3, 0.3, 0.5, 0.3, 0.7)  # [s]; between one key and the next
+_LENGTH = 1.01  # [m]; of the body for which the times are
+_STANDING = 0.999  # [cycle]; a phase at which every foot is meant to stand
+
+
+class Transition(NamedTuple):
+    """A sequence of postures, each reached from the one before without a jolt; it starts wherever the robot is."""
+
+    times: Float[np.ndarray, " key"]
+    """Time at which each posture is reached, since the beginning [s]."""
+    targets: Float[np.ndarray, "key servo"]
+    """Servo angles [rad]."""
+
+    @property
+    def duration(self) -> float:
+        """Of the whole [s]."""
+        return float(self.times[-1])
+
+    def at(self, time: float, start: Float[np.ndarray, " servo"]) -> Float[np.ndarray, " servo"]:
+        """Return the servo angles at a time, having begun with the angles ``start`` [rad]."""
+        i = int(np.searchsorted(self.times, time, side="right"))
+        if i >= len(self.times):
+            return self.targets[-1]
+        since, before = (self.times[i - 1], self.targets[i - 1]) if i > 0 else (0.0, start)
+        share = np.clip((time - since) / (self.times[i] - since), 0.0, 1.0)
+        return np.asarray(before + (1.0 - np.cos(np.pi * share)) / 2.0 * (self.targets[i] - before))
+
+
+@lru_cache(maxsize=64)
+def transition(robot: Robot, here: Gait, there: Gait, *, slower: float = 1.0) -> Transition:
+    """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
+
+    The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half
+    of a cycle, LF and RH of four, are lifted, take their new posture and are put down; the others follow; then it goes
+    to the height of the new gait. The axis is straight and changes its steady bends with the limbs.
+
+    Args:
+        robot: the design.
+        here: the gait that it leaves.
+        there: the gait that it begins.
+        slower: factor on all times [-].
+    """
+    place = layout(robot)
+    early = np.array([(phase - here.limb_phases[0] + 0.25) % 1.0 < 0.5 for phase in here.limb_phases], dtype=bool)
+    reach = place.limbs[-1].girdle.limb.reach if place.limbs else 0.0
+    height = max(MEETING, min(here.height, there.height))
+    old, new = replace(here, height=height), replace(there, height=height)
+
+    def standing(gait: Gait, lifted: np.ndarray) -> np.ndarray:
+        steer = Steer(size=0.0, lower=-RAISED * reach * lifted[None])
+        phase = np.full((1, len(place.limbs)), _STANDING)
+        return np.asarray(movement(robot, gait).targets(phase, np.zeros(1, dtype=complex), steer)[0])
+
+    def mixed(turned: np.ndarray, lifted: np.ndarray) -> np.ndarray:
+        before, after = standing(old, lifted), standing(new, lifted)
+        share = turned.mean() if turned.size else 1.0
+        targets = (1.0 - share) * before + share * after
+        for limb, is_new in zip(place.limbs, turned, strict=True):
+            targets[limb.servos] = (after if is_new else before)[limb.servos]
+        return targets
+
+    none = np.zeros(len(place.limbs), dtype=bool)
+    keys = [mixed(none, none)]
+    for before, pair in ((none, early), (early, ~early)):
+        after = before | pair
+        keys += [mixed(before, pair), mixed(after, pair), mixed(after, none)]
+    low, high = servo_ranges(robot).T
+    times = slower * gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
+    return Transition(times, np.clip(np.array([*keys, standing(there, none)]), low, high))

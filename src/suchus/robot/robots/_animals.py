@@ -1,0 +1,125 @@
+"""Animals at their own length, mass and volume, whose lungs make them lighter than their water or nearly so.
+
+None of them is a robot of the shelf: they are built from a few numbers, each of which has a range of its own.
+"""
+
+from dataclasses import replace
+from math import pi, sqrt
+
+from suchus.robot.design import Robot, Rod, Segment, Servo
+from suchus.robot.design.drawing import Drawing
+from suchus.robot.design.pieces import volumes
+from suchus.robot.design.scale import scaled, swim_servo_for
+from suchus.robot.robots.salamander import robot as _salamander
+
+_CATSHARK_JOINTS = tuple(0.14 + 0.79 * i / 11 for i in range(12))
+_EEL_JOINTS = tuple(0.06 + 0.88 * i / 14 for i in range(15))
+
+
+def pleurodeles(length: float, mass: float, density: float, keel: float, *, beat: float) -> Robot:
+    """Return the salamander of the shelf at an animal's length, mass and volume.
+
+    Each part of the axis has the volume of its mass, so that each floats as the whole does; limbs keep their
+    proportions. A part of the mass lies low, as that of flesh and bones below the lungs does.
+
+    Args:
+        length: from the snout to the tip of the tail [m].
+        mass: [kg].
+        density: mass over volume, lungs filled [kg/m3].
+        keel: share of the mass of each part of the axis that lies low [-].
+        beat: frequency of the swim for which its joints are stiff enough [Hz].
+    """
+    grown = scaled(_salamander, length_factor=length / _salamander.length, mass_factor=mass / _salamander.mass)
+    grown = replace(grown, axis=tuple(_held(one, swim_servo_for(mass, length, beat)) for one in grown.axis))
+    factor = 1.0
+    for _ in range(12):
+        robot = replace(grown, name="pleurodeles", axis=tuple(_part(one, density, keel, factor) for one in grown.axis))
+        volume = sum(volumes(robot).values())
+        if abs(volume * density / mass - 1.0) < 1e-9:
+            break
+        factor *= sqrt(mass / density / volume)
+    return robot
+
+
+def _held(segment: Segment, servo: Servo) -> Segment:
+    """Return a segment behind which a servo that holds the water turns the lateral hinges."""
+    hinges = tuple(replace(one, drive=servo) if one.turn == "yaw" else one for one in segment.hinges)
+    return replace(segment, hinges=hinges)
+
+
+def _part(segment: Segment, density: float, keel: float, factor: float) -> Segment:
+    (rod,) = (shape for shape in segment.shapes if isinstance(shape, Rod))
+    long = segment.front + segment.rear
+    radius = factor * sqrt(rod.mass / (density * pi * long))
+    start, end = min(rod.start[0] + rod.radius, 0.0), -long
+    start = -min(radius, 0.4 * long) if rod.start[0] < 0.0 else start
+    end += min(radius, 0.4 * long) if rod.end[0] > -long else 0.0
+    thin, low = 0.2 * radius, -0.6 * radius
+    flesh = replace(rod, start=(start, 0.0, 0.0), end=(end, 0.0, 0.0), radius=radius, mass=(1.0 - keel) * rod.mass)
+    belly = Rod(
+        name=f"{rod.name}_belly", start=(0.4 * end, 0.0, low), end=(0.6 * end, 0.0, low), radius=thin,
+        mass=keel * rod.mass,
+    )  # fmt: skip
+    return replace(segment, shapes=(flesh, belly))
+
+
+def catshark(length: float, mass: float, density: float, wide: float, tail: float, *, beat: float) -> Robot:
+    """Return a small-spotted catshark, its sections ellipses.
+
+    Args:
+        length: from the snout to the tip of the tail [m].
+        mass: [kg].
+        density: mass over volume [kg/m3].
+        wide: factor on the drawn width [-].
+        tail: factor on the height of the caudal fin [-].
+        beat: frequency of the swim for which its joints are stiff enough [Hz].
+
+    Source: proportions of Scyliorhinus canicula, from memory of the drawing in Compagno 1984, FAO Species Catalogue 4.
+    """
+    places = (0.0, 0.03, 0.10, 0.20, 0.32, 0.45, 0.60, 0.75, 0.85, 0.95, 1.0)
+    half_width = (0.012, 0.035, 0.052, 0.055, 0.048, 0.036, 0.024, 0.014, 0.008, 0.006, 0.005)
+    half_height = (0.010, 0.022, 0.036, 0.044, 0.042, 0.040, 0.034, 0.026, 0.036, 0.042, 0.036)
+    high = [value * (tail if place > 0.8 else 1.0) for place, value in zip(places, half_height, strict=True)]
+    drawing = Drawing(
+        name="catshark",
+        length=length,
+        mass=mass,
+        density=density,
+        places=places,
+        half_width=tuple(wide * value for value in half_width),
+        half_height=tuple(high),
+        joints=_CATSHARK_JOINTS,
+    )
+    return drawing.robot(swim_servo_for(mass, length, beat))
+
+
+def eel(length: float, mass: float, density: float, *, beat: float) -> Robot:
+    """Return an eel, its sections ellipses.
+
+    Args:
+        length: from the snout to the tip of the tail [m].
+        mass: [kg].
+        density: mass over volume [kg/m3].
+        beat: frequency of the swim for which its joints are stiff enough [Hz].
+
+    Source: shape of the anguilliform swimmer of Kern and Koumoutsakos 2006, J. Exp. Biol. 209, 4841: half width 0.04
+    body lengths behind a round head, narrowing to 0.01 at 0.95 and from there to an edge, half height that of an
+    ellipse of 0.08 about 0.51; at its ends it has 0.001 and 0.006 here, since a section needs some size.
+    """
+    places = tuple(i / 20 for i in range(21))
+    drawing = Drawing(
+        name="eel", length=length, mass=mass, density=density, places=places,
+        half_width=tuple(_eel_width(place) for place in places),
+        half_height=tuple(max(0.08 * sqrt(max(1.0 - ((place - 0.51) / 0.51) ** 2, 0.0)), 0.006) for place in places),
+        joints=_EEL_JOINTS,
+    )  # fmt: skip
+    return drawing.robot(swim_servo_for(mass, length, beat))
+
+
+def _eel_width(place: float) -> float:
+    head, tail, wide, thin = 0.04, 0.95, 0.04, 0.01
+    if place < head:
+        return max(sqrt(max(2.0 * wide * place - place**2, 0.0)), 0.006)
+    if place < tail:
+        return wide - (wide - thin) * ((place - head) / (tail - head)) ** 2
+    return max(thin * (1.0 - place) / (1.0 - tail), 0.001)

@@ -1,0 +1,196 @@
+"""The contract of a fault: a frozen value that says whom it can befall, what it does and how it ends."""
+
+import math
+import re
+from abc import ABC, abstractmethod
+from collections.abc import MutableMapping, Sequence
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+
+from suchus.robot.design import Robot, servo_names
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.kinds import misfits
+
+SENSORS = (
+    "servo_position",
+    "servo_velocity",
+    "servo_torque",
+    "foot_pressure",
+    "belly_pressure",
+    "tail_pressure",
+    "orientation",
+    "angular_velocity",
+    "acceleration",
+)
+"""Groups of sensors: the fields of ``control.Sensed``."""
+
+
+class Plant(Protocol):
+    """One robot of a running simulation as a fault reaches it, from when the fault begins until it is mended."""
+
+    @property
+    def time(self) -> float:
+        """Since the fault began [s]."""
+
+    @property
+    def memory(self) -> dict[str, float]:
+        """Numbers that the fault keeps for itself; empty when it begins."""
+
+    @property
+    def targets(self) -> MutableMapping[str, float]:
+        """Angles that the servos are commanded in this control period, by name [rad]; only in ``Fault.command``."""
+
+    def angle(self, servo: str) -> float:
+        """Return the angle of a joint at its servo's shaft, as it is now [rad]."""
+
+    def felt(self, group: str, of: str | None = None) -> np.ndarray:
+        """Return readings of this control period for writing; only in ``Fault.sense``.
+
+        Args:
+            group: one of ``SENSORS``.
+            of: whose reading, shape (1,): a servo, a leg, a body of the trunk; None for the whole group.
+        """
+
+    def parameter(self, field: str, of: str) -> np.ndarray:
+        """Return this robot's own row of a field of ``mujoco.MjModel`` for writing; ``restore`` undoes what is written.
+
+        Args:
+            field: such as ``actuator_forcerange``, ``geom_conaffinity``, ``dof_damping``; constants that MuJoCo
+                derives from masses and lengths do not follow.
+            of: name of the servo, geom, body or joint.
+        """
+
+    def speed_limit(self, servo: str) -> np.ndarray:
+        """Return how fast the angle that a servo aims at may change, shape (1,), as ``parameter`` does [rad/s]."""
+
+    def unpower(self, servo: str) -> None:
+        """Take the torque from a servo until ``restore``; the friction of its gear stays."""
+
+    def restore(self) -> None:
+        """Undo all that this fault wrote with ``parameter``, ``speed_limit`` and ``unpower``."""
+
+
+class Fault(ABC):
+    """What breaks, and when. A fault is a frozen dataclass; its first field names the part that breaks.
+
+    One robot can have several at once, but one for each part. In every control period ``command`` is called, and
+    ``sense`` where a controller listens, in the order in which the faults began.
+    """
+
+    __slots__ = ()
+    acts_on: ClassVar[str]
+    """Kind of part that fails: ``servo``, ``limb`` or ``sensor``."""
+    at: float
+    """Time at which the fault begins [s], at least 0."""
+
+    @property
+    @abstractmethod
+    def part(self) -> str:
+        """Name of the part that breaks."""
+
+    @classmethod
+    @abstractmethod
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
+        """Return the names of the parts of a robot that this can befall."""
+
+    @classmethod
+    def kind(cls) -> str:
+        """Return what it is called in files and tables: ``lost_foot`` for ``LostFoot``."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+
+    @property
+    def name(self) -> str:
+        """What it is called in a table, as ``limp LF_yaw``."""
+        return f"{self.kind()} {self.part}"
+
+    def refuse(self, robot: Robot) -> None:
+        """Say in a sentence why a robot cannot have this fault, if it cannot.
+
+        Raises:
+            UnknownName: it has no such part; faults with numbers of their own refuse those too.
+        """
+        if self.part not in self.parts(robot):
+            raise UnknownName("joint" if self.acts_on == "servo" else self.acts_on, self.part, self.parts(robot))
+
+    def apply(self, plant: Plant) -> None:  # noqa: B027 - many faults need nothing when they begin
+        """Let it begin."""
+
+    def command(self, plant: Plant) -> None:  # noqa: B027 - many faults leave commands alone
+        """Change what the servos are commanded in a control period, in ``plant.targets``.
+
+        It may be called again within a period, with the angles as they were before.
+        """
+
+    def sense(self, plant: Plant) -> None:  # noqa: B027 - many faults leave readings alone
+        """Change what is felt in a control period, with ``plant.felt``."""
+
+    def mend(self, plant: Plant) -> None:
+        """Let it end: the robot is as it was built."""
+        plant.restore()
+
+
+class ServoFault(Fault):
+    """A fault of one servo, named by a field ``joint``."""
+
+    __slots__ = ()
+    acts_on = "servo"
+    joint: str
+    """Name of the servo."""
+
+    @property
+    def part(self) -> str:
+        """Name of the servo."""
+        return self.joint
+
+    @classmethod
+    def parts(cls, robot: Robot) -> tuple[str, ...]:
+        """Return the names of the servos."""
+        return servo_names(robot)
+
+
+def check_faults(faults: Sequence[Fault], robot: Robot, duration: float) -> None:
+    """Refuse faults that cannot happen.
+
+    Args:
+        faults: of one run.
+        robot: that they happen to.
+        duration: of the run [s].
+
+    Raises:
+        UnknownName: the robot has no such part.
+        InvalidDesign: a time outside the run, a number outside its range, two faults of one part, no fault at all.
+        OutsideLimits: a joint held at an angle that it cannot reach.
+    """
+    for fault in faults:
+        if not isinstance(fault, Fault):
+            raise InvalidDesign(f"{str(fault)[:60]!r} is no fault; give values such as Limp('LF_yaw').")
+        wrong = [f"{field} {text}" for field, text in misfits(fault)]
+        if wrong:
+            raise InvalidDesign(f"a fault of the kind {fault.kind()} has {'; '.join(wrong)}.")
+        fault.refuse(robot)
+        if not (math.isfinite(fault.at) and 0.0 <= fault.at < duration):
+            raise InvalidDesign(f"{fault} happens at {fault.at} s; the run lasts from 0 to {duration} s.")
+    for i, fault in enumerate(faults):
+        for other in faults[:i]:
+            if fault.part == other.part:
+                raise InvalidDesign(f"{other} and {fault} contradict each other; one fault per part is allowed.")
+
+
+def refuse_number(fault: Fault, value: Any, low: float, high: float, what: str, unit: str = "") -> None:
+    """Refuse a number of a fault outside its range.
+
+    Args:
+        fault: whose.
+        value: the number, in its unit.
+        low: least allowed.
+        high: greatest allowed.
+        what: a verb, as in "moves at 9 rad/s".
+        unit: of the number.
+
+    Raises:
+        InvalidDesign: it is outside, or no finite number.
+    """
+    if not (isinstance(value, (int, float)) and low <= value <= high):
+        text = f"{value:g}" if isinstance(value, (int, float)) else f"{value!r:.40}"
+        raise InvalidDesign(f"{fault} {what} {text}{unit}; {low:g} to {high:g}{unit} is allowed.")

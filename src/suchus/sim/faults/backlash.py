@@ -1,0 +1,45 @@
+"""A worn gear with play."""
+
+from dataclasses import dataclass
+
+from suchus.robot.design import Robot
+from suchus.sim.fault import Plant, ServoFault, refuse_number
+
+
+@dataclass(frozen=True, slots=True)
+class Backlash(ServoFault):
+    """A gear with play: the joint is free while it is within half of the gap from the commanded angle.
+
+    Beyond, the servo turns it from the end of the gap on: the torque is that of a dead band, ``kp dz(target - angle)``
+    with ``dz`` zero within ``gap / 2`` and its distance from there outside (dead-zone model of Nordin and Gutman 2002,
+    Automatica 38, 1633). Where the joint is in the gap is looked at once in a control period.
+    """
+
+    joint: str
+    """Name of the servo."""
+    gap: float = 0.1
+    """Play from one end to the other [rad]; 0 to 1."""
+    at: float = 0.0
+    """Time at which the fault begins [s], at least 0."""
+
+    def refuse(self, robot: Robot) -> None:
+        """Refuse a gap that no gear has, too."""
+        ServoFault.refuse(self, robot)
+        refuse_number(self, self.gap, 0.0, 1.0, "has a gap of", " rad")
+
+    def apply(self, plant: Plant) -> None:
+        """Note the torque limits."""
+        low, high = plant.parameter("actuator_forcerange", self.joint)
+        plant.memory.update(low=float(low), high=float(high))
+
+    def command(self, plant: Plant) -> None:
+        """Aim at the near end of the gap, or let go within it."""
+        wanted, now, half = plant.targets[self.joint], plant.angle(self.joint), self.gap / 2
+        free = abs(now - wanted) < half
+        plant.targets[self.joint] = min(max(now, wanted - half), wanted + half)
+        limits = (0.0, 0.0) if free else (plant.memory["low"], plant.memory["high"])
+        plant.parameter("actuator_forcerange", self.joint)[:] = limits
+
+
+fault = Backlash
+harmless = (Backlash("LF_yaw", 0.0),)

@@ -1,0 +1,39 @@
+"""A servo that holds one angle."""
+
+from dataclasses import dataclass
+
+from suchus.robot.design import Robot
+from suchus.core.errors import OutsideLimits
+from suchus.sim.fault import Plant, ServoFault
+from suchus.robot.motion import servo_range
+
+
+@dataclass(frozen=True, slots=True)
+class Locked(ServoFault):
+    """A servo that holds one angle, within its torque, whatever it is commanded."""
+
+    joint: str
+    """Name of the servo, as ``LH_pitch``."""
+    at: float = 0.0
+    """Time at which the fault begins [s], at least 0."""
+    angle: float | None = None
+    """The angle it holds [rad]; None: the one it has at that time."""
+
+    def refuse(self, robot: Robot) -> None:
+        """Refuse an angle that the joint cannot reach, too."""
+        ServoFault.refuse(self, robot)
+        if self.angle is not None:
+            low, high = servo_range(robot, self.joint)
+            if not low <= self.angle <= high:
+                raise OutsideLimits(f"{self} holds {self.angle:g} rad; {low:.3f} to {high:.3f} rad is allowed.")
+
+    def apply(self, plant: Plant) -> None:
+        """Note the angle."""
+        plant.memory["held"] = plant.angle(self.joint) if self.angle is None else self.angle
+
+    def command(self, plant: Plant) -> None:
+        """Hold it."""
+        plant.targets[self.joint] = plant.memory["held"]
+
+
+fault = Locked

@@ -1,0 +1,265 @@
+"""The formulas: what the water does to pieces of bodies, and what is under water of a body at rest.
+
+Added mass is Kirchhoff's: a piece of added inertia A that moves at w against the water has the momentum p = A w; the
+water answers its rate of change with a force -(A dw/dt + omega x p) and the couple -w x p (Munk). What is proportional
+to the accelerations goes into the mass matrix, the rest to the passive forces. Lighthill's momentum is shed at the
+tail's end: -u p' + (p' . w) t / 2, where the water passes towards the tail (u > 0).
+
+Some pieces at a time are taken together, quantity by quantity below each other (``lanes``), so that the compiler
+handles several with one instruction. It does only where a loop has neither branches nor calls of a library: what needs
+them stands in loops of its own, and what holds for some pieces only is multiplied by zero for the others.
+"""
+
+from math import cos, exp, pi, sin, sqrt
+
+import numpy as np
+
+from suchus.sim.hydro import lanes as at
+from suchus.sim.hydro.lanes import WaterProperties
+from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
+from suchus.sim.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
+
+_TURBULENT = 5e5
+"""Reynolds number from which a plate's turbulent friction counts [-]."""
+_SERIES = (
+    0.1666666666666665,
+    0.07500000000020764,
+    0.044642857103423646,
+    0.03038194736709848,
+    0.02237204763174451,
+    0.01735525995578633,
+    0.013929652902326577,
+    0.011875494382637216,
+    0.007802949477352493,
+    0.016035514349149713,
+    -0.010749050339696914,
+    0.02816921806087918,
+)
+"""(asin(x) / x - 1) / x^2 as a polynomial of x^2 up to 1/4, by interpolation at Chebyshev's points."""
+
+
+@part
+def immersed(kind: float, depth: float) -> tuple[float, float]:
+    """Return the share of a unit shape under a plane, and its first moment along the plane's normal.
+
+    Args:
+        kind: of the shape.
+        depth: of its centre over its half extent along the normal; beyond -1 and 1 it is dry or under water.
+    """
+    d = min(max(depth, -1.0), 1.0)
+    rest = 1.0 - d * d
+    root = sqrt(rest)
+    disc, ball, slab = 0.5 + (_arcsine(d) + d * root) / pi, (2.0 + 3.0 * d - d * d * d) / 4.0, (1.0 + d) / 2.0
+    flat = -2.0 / 3.0 / pi * rest * root
+    share = disc if kind == DISC else (ball if kind == BALL else slab)
+    return share, flat if kind == DISC else (-3.0 / 16.0 * rest * rest if kind == BALL else -rest / 4.0)
+
+
+@part
+def _arcsine(x: float) -> float:
+    """Return the arc sine, to a few units in the last place; the library's would keep a loop from being vectorised."""
+    size = abs(x)
+    small = size < 0.5
+    z = x * x if small else 0.5 * (1.0 - size)
+    y = size if small else sqrt(z)
+    p = _SERIES[11]
+    p = p * z + _SERIES[10]
+    p = p * z + _SERIES[9]
+    p = p * z + _SERIES[8]
+    p = p * z + _SERIES[7]
+    p = p * z + _SERIES[6]
+    p = p * z + _SERIES[5]
+    p = p * z + _SERIES[4]
+    p = p * z + _SERIES[3]
+    p = p * z + _SERIES[2]
+    p = p * z + _SERIES[1]
+    p = p * z + _SERIES[0]
+    near = y + y * z * p
+    found = near if small else 0.5 * pi - 2.0 * near
+    return found if x > 0.0 else -found
+
+
+@compiled
+def hydrostatic(
+    table: np.ndarray,
+    xpos: np.ndarray,
+    xmat: np.ndarray,
+    up: np.ndarray,
+    level: float,
+    air_fraction: tuple[float, float],
+) -> np.ndarray:
+    """Return the volume under water, its first moment about the world's origin, and the work of pushing it there.
+
+    Shape (5,): [m3], three [m4], and the work over density and gravity [m4].
+
+    Args:
+        table: of pieces.
+        xpos: origins of the bodies, shape (body, 3) [m].
+        xmat: their orientations, shape (body, 9).
+        up: unit vector against gravity, shape (3,).
+        level: of the surface above the origin [m].
+        air_fraction: shares of the air that are kept, in the front and in the rear chambers [-].
+    """
+    found, ahead = np.zeros(5), three(up, 0)
+    for row in table:
+        body = int(row[0])
+        axes = turned(xmat[body], row, 5), turned(xmat[body], row, 8), turned(xmat[body], row, 11)
+        at = plus(three(xpos[body], 0), turned(xmat[body], row, 2))
+        ua, ub, ut = row[14] * dot(ahead, axes[0]), row[15] * dot(ahead, axes[1]), row[16] * dot(ahead, axes[2])
+        extent = sqrt(ua * ua + ub * ub + ut * ut)
+        depth = (level - dot(ahead, at)) / extent
+        share, moment = immersed(row[1], depth)
+        arm = blend(row[14] * ua, axes[0], row[15] * ub, axes[1], row[16] * ut, axes[2])
+        volume = row[17] - (1.0 - air_fraction[0]) * row[18] - (1.0 - air_fraction[1]) * row[19]
+        found[0] += volume * share
+        for i in range(3):
+            found[1 + i] += volume * (share * at[i] + moment * arm[i] / extent)
+        found[4] += volume * extent * (depth * share - moment)
+    return found
+
+
+@part
+def _orbit(user: np.ndarray, time: float, x: Vector, up: Vector) -> tuple[float, Vector, Vector]:
+    """Return how high waves stand at a point [m], and velocity and acceleration of the water there.
+
+    Airy's waves on deep water, as they are at the surface for points above the level, and the current.
+    """
+    current, still = three(user, CURRENT), (0.0, 0.0, 0.0)
+    height, omega = user[WAVE], user[WAVE + 4]
+    if height == 0.0:
+        return 0.0, current, still
+    wave = three(user, WAVE + 1)
+    number = sqrt(dot(wave, wave))
+    phase = dot(wave, x) - omega * time + user[WAVE + 5]
+    c, s = cos(phase), sin(phase)
+    speed = height * omega * exp(number * min(dot(up, x) - user[LEVEL], 0.0))
+    moving = blend(1.0, current, speed * c / number, wave, speed * s, up)
+    return height * c, moving, blend(omega * speed * s / number, wave, -omega * speed * c, up, 0.0, still)
+
+
+@part
+def place(table: np.ndarray, rows: np.ndarray) -> None:
+    """Turn axes and centres of pieces from the frames of their bodies into the world."""
+    for n in range(LANES):
+        turn = lane(rows, at.TURN, n), lane(rows, at.TURN + 3, n), lane(rows, at.TURN + 6, n)
+        a, b = lane(table, at.ACROSS, n), lane(table, at.UPWARD, n)
+        t, centre = lane(table, at.FORWARD, n), lane(table, at.AT, n)
+        put(rows, at.E_A, n, (dot(turn[0], a), dot(turn[1], a), dot(turn[2], a)))
+        put(rows, at.E_B, n, (dot(turn[0], b), dot(turn[1], b), dot(turn[2], b)))
+        put(rows, at.E_T, n, (dot(turn[0], t), dot(turn[1], t), dot(turn[2], t)))
+        centre = (dot(turn[0], centre), dot(turn[1], centre), dot(turn[2], centre))
+        put(rows, at.CENTRE, n, plus(lane(rows, at.ORIGIN, n), centre))
+
+
+@part
+def flow(rows: np.ndarray, user: np.ndarray, time: float, up: Vector) -> None:
+    """Say how high the surface stands over the level at each piece, and how the water there moves."""
+    current, still, wave = three(user, CURRENT), (0.0, 0.0, 0.0), user[WAVE] != 0.0
+    for n in range(LANES):
+        raised, stream, surge = 0.0, current, still
+        if wave:
+            raised, stream, surge = _orbit(user, time, lane(rows, at.CENTRE, n), up)
+        rows[at.RAISED, n] = raised
+        put(rows, at.STREAM, n, stream)
+        put(rows, at.SURGE, n, surge)
+
+
+@part
+def meet(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
+    """Compare pieces with the surface and with the water around them: how deep they are, how they move against it."""
+    for n in range(LANES):
+        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
+        ua, ub, ut = dot(water.up, a), dot(water.up, b), dot(water.up, t)
+        ua, ub, ut = table[at.HALF, n] * ua, table[at.HALF + 1, n] * ub, table[at.HALF + 2, n] * ut
+        extent, centre = sqrt(ua * ua + ub * ub + ut * ut), lane(rows, at.CENTRE, n)
+        depth = (water.level + rows[at.RAISED, n] - dot(water.up, centre)) / extent
+        rows[at.DEPTH, n] = depth
+        arm = blend(table[at.HALF, n] * ua, a, table[at.HALF + 1, n] * ub, b, table[at.HALF + 2, n] * ut, t)
+        put(rows, at.ARM, n, times(1.0 / extent, arm))
+        r = plus(centre, times(-1.0, lane(rows, at.REFERENCE, n)))
+        v = plus(lane(rows, at.MOVING + 3, n), cross(lane(rows, at.MOVING, n), r))
+        v = plus(v, times(-1.0, lane(rows, at.STREAM, n)))  # of the centre against the water
+        put(rows, at.FROM, n, r)
+        put(rows, at.AGAINST, n, v)
+        put(rows, at.SPEED, n, (dot(v, a), dot(v, b), dot(v, t)))
+
+
+@part
+def rub(rows: np.ndarray, water: WaterProperties) -> None:
+    """Say how turbulent water rubs, where it does."""
+    per_speed = water.length / water.viscosity
+    for n in range(LANES):
+        reynolds, found = abs(rows[at.SPEED + 2, n]) * per_speed, 0.0
+        if reynolds > _TURBULENT:
+            found = 0.074 * reynolds**-0.2
+        rows[at.TURBULENT, n] = found
+
+
+@part
+def press(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
+    """Say what the water does to each piece: force, couple about the point of reference, volume under water."""
+    per_speed, (front, rear) = water.length / water.viscosity, water.air_fraction
+    for n in range(LANES):
+        share, moment = immersed(table[at.KIND, n], rows[at.DEPTH, n])
+        emptied = (1.0 - front) * table[at.AIR, n] + (1.0 - rear) * table[at.AIR + 1, n]
+        volume = (table[at.VOLUME, n] - emptied) * share
+        a, b, t, w = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n), lane(rows, at.SPEED, n)
+        r, omega, surge = lane(rows, at.FROM, n), lane(rows, at.MOVING, n), lane(rows, at.SURGE, n)
+        # buoyancy and the pressure of the waves, at the centre of what is under water
+        f = times(water.density * volume, plus(times(water.gravity, water.up), surge))
+        torque = cross(times(moment / share, lane(rows, at.ARM, n)), f)
+        # drag across and along, and of a flat piece that rolls, over the share under water
+        dense = water.density * share
+        across = -0.5 * dense * water.cross_drag * sqrt(w[0] * w[0] + w[1] * w[1])
+        speed, roll = abs(w[2]), dot(omega, t)
+        friction = water.thickening * max(1.328 / sqrt(max(speed * per_speed, 1.0)), rows[at.TURBULENT, n])
+        along = -0.5 * dense * (table[at.SKIN, n] * friction + table[at.END, n]) * speed
+        f = plus(
+            f, blend(across * table[at.AREA, n] * w[0], a, across * table[at.AREA + 1, n] * w[1], b, along * w[2], t)
+        )
+        torque = plus(torque, times(-dense * water.cross_drag * table[at.ROLL, n] * abs(roll) * roll, t))
+        # momentum that is shed, where the tail ends and the water passes towards it
+        end = times(table[at.SHED_AT, n], t)
+        here = plus(lane(rows, at.AGAINST, n), cross(omega, end))
+        u, wa, wb = dot(here, t), dot(here, a), dot(here, b)
+        shed = dense * water.added * water.shedding * max(u, 0.0)
+        pa, pb = shed * table[at.SHED, n] * wa, shed * table[at.SHED + 1, n] * wb
+        half = (
+            0.5 * dense * water.added * water.shedding * (table[at.SHED, n] * wa * wa + table[at.SHED + 1, n] * wb * wb)
+        )
+        lost = blend(-pa, a, -pb, b, half if u > 0.0 else 0.0, t)
+        torque = plus(plus(torque, cross(end, lost)), cross(r, plus(f, lost)))
+        put(rows, at.FORCE, n, plus(f, lost))
+        put(rows, at.FORCE - 3, n, torque)
+        rows[at.SHARE, n], rows[at.UNDER, n] = share, volume
+
+
+@part
+def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
+    """Add the added mass of each piece, as a spatial inertia about the point of reference, and its bias force."""
+    for n in range(LANES):
+        dense = water.density * rows[at.SHARE, n] * water.added
+        a, b, t = lane(rows, at.E_A, n), lane(rows, at.E_B, n), lane(rows, at.E_T, n)
+        ma, mb, mt = dense * table[at.ADDED, n], dense * table[at.ADDED + 1, n], dense * table[at.ADDED + 2, n]
+        pushed = (
+            blend(ma * a[0], a, mb * b[0], b, mt * t[0], t),
+            blend(ma * a[1], a, mb * b[1], b, mt * t[1], t),
+            blend(ma * a[2], a, mb * b[2], b, mt * t[2], t),
+        )  # rows of the tensor A
+        r, v, omega = lane(rows, at.FROM, n), lane(rows, at.AGAINST, n), lane(rows, at.MOVING, n)
+        alpha, stream = lane(rows, at.BIAS, n), lane(rows, at.STREAM, n)
+        p = dot(pushed[0], v), dot(pushed[1], v), dot(pushed[2], v)
+        rate = plus(lane(rows, at.BIAS + 3, n), plus(cross(alpha, r), cross(omega, stream)))
+        rate = plus(rate, times(-1.0, lane(rows, at.SURGE, n)))
+        f = plus((dot(pushed[0], rate), dot(pushed[1], rate), dot(pushed[2], rate)), cross(omega, p))
+        torque = plus(cross(v, p), cross(r, f))
+        put(rows, at.FORCE, n, plus(lane(rows, at.FORCE, n), times(-1.0, f)))
+        put(rows, at.FORCE - 3, n, plus(lane(rows, at.FORCE - 3, n), times(-1.0, torque)))
+        x, y, z = cross(r, pushed[0]), cross(r, pushed[1]), cross(r, pushed[2])  # rows: force by rotation
+        put(rows, at.MIXED, n, x)
+        put(rows, at.MIXED + 3, n, y)
+        put(rows, at.MIXED + 6, n, z)
+        put(rows, at.SPUN, n, (r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1]))
+        put(rows, at.SPUN + 3, n, (r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2]))
+        put(rows, at.PUSHED, n, (pushed[0][0], pushed[1][0], pushed[1][1]))
+        put(rows, at.PUSHED + 3, n, (pushed[2][0], pushed[2][1], pushed[2][2]))

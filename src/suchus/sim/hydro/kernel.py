@@ -1,0 +1,191 @@
+"""The compiled kernel: reads a MuJoCo model and its data, gathers what the water does, hands it to the joints.
+
+It is given addresses and byte offsets (see ``land.structs``), so that it needs neither MuJoCo nor Python's lock while
+it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
+"""
+
+import numpy as np
+from numba import carray
+
+from suchus.sim.hydro import lanes, memory
+from suchus.sim.hydro.forces import added_mass, flow, meet, place, press, rub
+from suchus.sim.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, WaterProperties
+from suchus.sim.hydro.memory import Bodies, Motion, pointer, read_bodies, read_given, read_motion, read_water
+from suchus.robot.design.water_table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
+from suchus.sim.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
+
+_BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]
+_COUPLE, _LINEAR = lanes.FORCE - 3 - lanes.FOUND, lanes.FORCE - lanes.FOUND
+_SPUN, _MIXED, _PUSHED = SPUN - lanes.FOUND, MIXED - lanes.FOUND, PUSHED - lanes.FOUND
+
+
+@compiled
+def wet(model: int, data: int, at: np.ndarray) -> bool:
+    """Add the forces of the water to the passive forces, and its added mass to the matrix; tell whether that changed.
+
+    Args:
+        model: address of a ``mjModel``.
+        data: address of its ``mjData``.
+        at: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+    """
+    whole, count = carray(model, (4096,), np.int64), at[memory.NNUMERIC] // 8
+    if whole[count] < HEADER:
+        return False
+    numbers = carray(pointer(whole[at[memory.NUMERIC] // 8]), (whole[count],), np.float64)
+    if numbers[0] != MAGIC or whole[at[memory.NUSER] // 8] < NUMBERS:
+        return False
+    if whole[at[memory.NUSER] // 8] > NUMBERS:
+        _add_given(model, data, at)
+        return True
+    motion = read_motion(model, data, at)
+    user, water = motion.user, read_water(model, motion.user, at, numbers[2])
+    blocks = (len(numbers) - HEADER) // (WIDTH * LANES)
+    table = carray(pointer(whole[at[memory.NUMERIC] // 8] + 8 * HEADER), (blocks, WIDTH, LANES), np.float64)
+    for i in range(4):
+        user[FORCE + i] = 0.0
+    user[UNDER] = 0.0
+    if _all_dry(table, int(numbers[1]), water, abs(user[WAVE]), motion):
+        return False
+    bodies = read_bodies(model, at)
+    sums = _gathered(table, int(numbers[1]), water, bodies, motion)
+    if user[UNDER] == 0.0:
+        return False
+    _hand_over(sums, bodies, motion)
+    if water.added <= 0.0:
+        return False
+    _burden(sums, bodies, motion)
+    return True
+
+
+@part
+def _add_given(model: int, data: int, at: np.ndarray) -> None:
+    """Add to the matrix the added mass that stands behind the numbers of the water."""
+    bodies, motion = read_bodies(model, at), read_motion(model, data, at)
+    given = read_given(model, data, at)
+    for n in range(len(bodies.column)):
+        motion.mass[n] += given[n]
+
+
+@part
+def _all_dry(table: np.ndarray, count: int, water: WaterProperties, height: float, motion: Motion) -> bool:
+    """Return whether all pieces are far above the surface, waves of a height included."""
+    for n in range(count):
+        block, lane = n // LANES, n % LANES
+        at = three(motion.xpos[int(table[block, _BODY, lane])], 0)
+        if water.level + height - dot(water.up, at) > -table[block, _REACH, lane]:
+            return False
+    return True
+
+
+@part
+def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bodies, motion: Motion) -> np.ndarray:
+    """Return inertia, couple and force of the water on each body, shape (body, ``SUMS``)."""
+    bias = _bias(bodies, motion)
+    rows, sums, under = np.zeros((ROWS, LANES)), np.zeros((len(bodies.parent), SUMS)), 0.0
+    for block in range(table.shape[0]):
+        some = table[block]
+        for n in range(LANES):
+            b = np.uint32(some[_BODY, n])
+            for k in range(0, 9, 3):
+                put(rows, lanes.TURN + k, n, three(motion.xmat[b], k))
+            put(rows, lanes.ORIGIN, n, three(motion.xpos[b], 0))
+            put(rows, lanes.REFERENCE, n, three(motion.com[bodies.root[b]], 0))
+            put(rows, lanes.MOVING, n, three(motion.cvel[b], 0))
+            put(rows, lanes.MOVING + 3, n, three(motion.cvel[b], 3))
+            put(rows, lanes.BIAS, n, three(bias[b], 0))
+            put(rows, lanes.BIAS + 3, n, three(bias[b], 3))
+        place(some, rows)
+        if block == 0 or motion.user[WAVE] != 0.0:
+            flow(rows, motion.user, motion.time, water.up)
+        meet(some, rows, water)
+        rub(rows, water)
+        press(some, rows, water)
+        added_mass(some, rows, water)
+        for n in range(min(LANES, count - block * LANES)):
+            if rows[lanes.SHARE, n] > 0.0:
+                under += rows[lanes.UNDER, n]
+                b = np.uint32(some[_BODY, n])
+                for k in range(SUMS):
+                    sums[b, k] += rows[lanes.FOUND + k, n]
+    motion.user[UNDER] = under
+    return sums
+
+
+@part
+def _bias(bodies: Bodies, motion: Motion) -> np.ndarray:
+    """Return spatial accelerations of the bodies without those of the joints, shape (body, 6)."""
+    bias = np.empty((len(bodies.parent), 6))
+    bias[0] = 0.0
+    for b in range(1, len(bodies.parent)):
+        before = bias[bodies.parent[b]]
+        turns, moves = three(before, 0), three(before, 3)
+        for j in range(bodies.first[b], bodies.first[b] + bodies.dofs[b]):
+            turns = plus(turns, times(motion.qvel[j], three(motion.cdof_dot[j], 0)))
+            moves = plus(moves, times(motion.qvel[j], three(motion.cdof_dot[j], 3)))
+        write(bias[b], 0, turns)
+        write(bias[b], 3, moves)
+    return bias
+
+
+@part
+def _hand_over(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
+    """Add up what acts on the bodies towards the roots, and hand the forces to the joints."""
+    user, power = motion.user, 0.0
+    for b in range(len(bodies.parent) - 1, 0, -1):
+        parent = bodies.parent[b]
+        if parent > 0:
+            for k in range(SUMS):
+                sums[parent, k] += sums[b, k]
+        else:
+            for i in range(3):
+                user[FORCE + i] += sums[b, _LINEAR + i]
+    for i in range(len(bodies.owner)):
+        acts, b = 0.0, bodies.owner[i]
+        for k in range(6):
+            acts += motion.cdof[i, k] * sums[b, _COUPLE + k]
+        motion.passive[i] += acts
+        power += acts * motion.qvel[i]
+    user[POWER] = power
+
+
+@part
+def _burden(sums: np.ndarray, bodies: Bodies, motion: Motion) -> None:
+    """Add the added inertia of each joint's subtree to the matrix.
+
+    From force and power of the water is taken what this inertia takes by the accelerations of the last step.
+    """
+    power, pulled, cdof, qvel, qacc = 0.0, (0.0, 0.0, 0.0), motion.cdof, motion.qvel, motion.qacc
+    for i in range(len(bodies.owner)):
+        turns, moves = three(cdof[i], 0), three(cdof[i], 3)
+        couple, force = _answer(sums[bodies.owner[i]], turns, moves)
+        start, speeds, speedings = bodies.rowadr[i], 0.0, 0.0
+        for n in range(start, start + bodies.rownnz[i]):
+            j = bodies.column[n]
+            more = dot(three(cdof[j], 0), couple) + dot(three(cdof[j], 3), force)
+            motion.mass[n] += more
+            speeds += more * qvel[j]
+            speedings += more * qacc[j]
+        own = (dot(turns, couple) + dot(moves, force)) * qvel[i]
+        power += qvel[i] * speedings + qacc[i] * (speeds - own)
+        pulled = plus(pulled, times(qacc[i], force))
+    motion.user[POWER] -= power
+    write(motion.user, FORCE, plus(three(motion.user, FORCE), times(-1.0, pulled)))
+
+
+@part
+def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, Vector]:
+    """Return couple and force of an added inertia that is accelerated."""
+    s, x, y = three(inertia, _SPUN), three(inertia, _MIXED), three(inertia, _MIXED + 3)
+    rest, z = three(inertia, _SPUN + 3), three(inertia, _MIXED + 6)
+    m, more = three(inertia, _PUSHED), three(inertia, _PUSHED + 3)
+    force = (
+        dot(x, turns) + dot((m[0], m[1], more[0]), moves),
+        dot(y, turns) + dot((m[1], m[2], more[1]), moves),
+        dot(z, turns) + dot(more, moves),
+    )
+    couple = (
+        dot((s[0], s[1], rest[0]), turns) + dot((x[0], y[0], z[0]), moves),
+        dot((s[1], s[2], rest[1]), turns) + dot((x[1], y[1], z[1]), moves),
+        dot(rest, turns) + dot((x[2], y[2], z[2]), moves),
+    )
+    return couple, force

@@ -1,0 +1,150 @@
+"""MuJoCo's memory as the kernel reads it: a model and its data at addresses, their fields at byte offsets."""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import carray, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from suchus.sim.hydro.lanes import WaterProperties
+from suchus.robot.design.water_table import ADDED, AIR_FRACTION, CROSS_DRAG, DENSITY, LEVEL, NUMBERS, SHEDDING, THICKENING, VISCOSITY
+from suchus.sim.hydro.vectors import dot, part, three, times
+
+FIELDS = (
+    "nv", "nbody", "nnumericdata", "nuserdata", "opt.gravity", "numeric_data", "body_parentid", "body_rootid",
+    "body_dofadr", "body_dofnum", "dof_bodyid", "M_rownnz", "M_rowadr", "M_colind",
+)  # fmt: skip
+"""Fields of the model whose offsets the kernel needs, in the order of the table of offsets; then those of the data."""
+DATA_FIELDS = (
+    "time", "qvel", "qacc", "xpos", "xmat", "subtree_com", "cvel", "cdof", "cdof_dot", "qfrc_passive", "M", "userdata",
+)  # fmt: skip
+"""Fields of the data."""
+(
+    _NV, _NBODY, NNUMERIC, NUSER, _GRAVITY, NUMERIC, _PARENT, _ROOT, _DOFADR, _DOFNUM, _DOFBODY, _ROWNNZ, _ROWADR,
+    _COLIND, _TIME, _QVEL, _QACC, _XPOS, _XMAT, _COM, _CVEL, _CDOF, _CDOFDOT, _PASSIVE, _MASS, _USER,
+) = range(26)  # fmt: skip
+
+
+@intrinsic
+def pointer(typing, address):  # type: ignore[no-untyped-def]
+    """Take a number for an address."""
+    del typing, address
+
+    def generate(context, builder, signature, given):  # type: ignore[no-untyped-def]
+        del context, signature
+        return builder.inttoptr(given[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.int64), generate
+
+
+class Bodies(NamedTuple):
+    """The tree of bodies and joints."""
+
+    parent: np.ndarray
+    """Of each body (body,)."""
+    root: np.ndarray
+    """First body of its tree (body,)."""
+    first: np.ndarray
+    """First joint of each body (body,)."""
+    dofs: np.ndarray
+    """Number of its joints (body,)."""
+    owner: np.ndarray
+    """Body that each joint moves (joint,)."""
+    rownnz: np.ndarray
+    """Numbers in each row of the matrix (joint,)."""
+    rowadr: np.ndarray
+    """Where each row begins (joint,)."""
+    column: np.ndarray
+    """Joint of each number."""
+
+
+class Motion(NamedTuple):
+    """Where the bodies are and how they move, in the world."""
+
+    time: float
+    """[s]."""
+    xpos: np.ndarray
+    """Origins (body, 3) [m]."""
+    xmat: np.ndarray
+    """Orientations (body, 9)."""
+    com: np.ndarray
+    """Centres of mass of the subtrees (body, 3) [m]."""
+    cvel: np.ndarray
+    """Spatial velocities (body, 6)."""
+    cdof: np.ndarray
+    """Spatial velocities by the joints (joint, 6)."""
+    cdof_dot: np.ndarray
+    """Their rates (joint, 6)."""
+    qvel: np.ndarray
+    """Velocities of the joints (joint,)."""
+    qacc: np.ndarray
+    """Their accelerations in the last step (joint,)."""
+    passive: np.ndarray
+    """Passive forces on them (joint,), changed."""
+    mass: np.ndarray
+    """The matrix, changed."""
+    user: np.ndarray
+    """The numbers of the water, changed."""
+
+
+@part
+def read_bodies(model: int, at: np.ndarray) -> Bodies:
+    """Return the tree of a model."""
+    whole = carray(model, (4096,), np.int64)
+    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
+    rownnz = carray(pointer(whole[at[_ROWNNZ] // 8]), (nv,), np.uint32)
+    rowadr = carray(pointer(whole[at[_ROWADR] // 8]), (nv,), np.uint32)
+    return Bodies(
+        carray(pointer(whole[at[_PARENT] // 8]), (nbody,), np.uint32),
+        carray(pointer(whole[at[_ROOT] // 8]), (nbody,), np.uint32),
+        carray(pointer(whole[at[_DOFADR] // 8]), (nbody,), np.uint32),
+        carray(pointer(whole[at[_DOFNUM] // 8]), (nbody,), np.uint32),
+        carray(pointer(whole[at[_DOFBODY] // 8]), (nv,), np.uint32),
+        rownnz,
+        rowadr,
+        carray(pointer(whole[at[_COLIND] // 8]), (rowadr[nv - 1] + rownnz[nv - 1],), np.uint32),
+    )
+
+
+@part
+def read_motion(model: int, data: int, at: np.ndarray) -> Motion:
+    """Return where the bodies of a model are."""
+    whole = carray(model, (4096,), np.int64)
+    state, clock = carray(data, (65536,), np.int64), carray(data, (65536,), np.float64)
+    nv, nbody = whole[at[_NV] // 8], whole[at[_NBODY] // 8]
+    return Motion(
+        clock[at[_TIME] // 8],
+        carray(pointer(state[at[_XPOS] // 8]), (nbody, 3), np.float64),
+        carray(pointer(state[at[_XMAT] // 8]), (nbody, 9), np.float64),
+        carray(pointer(state[at[_COM] // 8]), (nbody, 3), np.float64),
+        carray(pointer(state[at[_CVEL] // 8]), (nbody, 6), np.float64),
+        carray(pointer(state[at[_CDOF] // 8]), (nv, 6), np.float64),
+        carray(pointer(state[at[_CDOFDOT] // 8]), (nv, 6), np.float64),
+        carray(pointer(state[at[_QVEL] // 8]), (nv,), np.float64),
+        carray(pointer(state[at[_QACC] // 8]), (nv,), np.float64),
+        carray(pointer(state[at[_PASSIVE] // 8]), (nv,), np.float64),
+        carray(pointer(state[at[_MASS] // 8]), (nv * nv,), np.float64),
+        carray(pointer(state[at[_USER] // 8]), (NUMBERS,), np.float64),
+    )
+
+
+@part
+def read_given(model: int, data: int, at: np.ndarray) -> np.ndarray:
+    """Return what stands behind the numbers of the water."""
+    whole, state = carray(model, (4096,), np.int64), carray(data, (65536,), np.int64)
+    first = 8 * NUMBERS
+    return carray(pointer(state[at[_USER] // 8] + first), (whole[at[NUSER] // 8] - NUMBERS,), np.float64)
+
+
+@part
+def read_water(model: int, user: np.ndarray, at: np.ndarray, length: float) -> WaterProperties:
+    """Return what the water is."""
+    down = three(carray(model, (4096,), np.float64), at[_GRAVITY] // 8)
+    gravity = sqrt(dot(down, down))
+    up = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
+    return WaterProperties(
+        user[LEVEL], user[DENSITY], (user[AIR_FRACTION], user[AIR_FRACTION + 1]), user[VISCOSITY], user[CROSS_DRAG],
+        user[THICKENING], user[ADDED], user[SHEDDING], up, gravity, length,
+    )  # fmt: skip

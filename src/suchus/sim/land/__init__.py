@@ -1,0 +1,46 @@
+"""Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
+
+from suchus.robot.design.ground import ARENAS, Ground
+from suchus.sim.fault import Fault
+from suchus.sim.faults import Backlash, Deaf, Limp, Locked, LostFoot, Offset, Slow, Weak
+from suchus.sim.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
+from suchus.sim.land.lake import Lake, Wave
+from suchus.sim.land.live import Live
+from suchus.sim.land.loop import CONTROL_PERIOD
+from suchus.sim.land.push_search import smallest_pushes
+from suchus.sim.land.run import VACUUM, WATER, Afloat, Push, Run
+from suchus.sim.land.simulation import crawl, simulate
+from suchus.sim.land.tolerances import Tolerances
+
+__all__ = [
+    "ARENAS",
+    "CONTROL_PERIOD",
+    "FAILED_JOINTS",
+    "KINDS",
+    "LEGS_FAILED",
+    "VACUUM",
+    "WATER",
+    "Afloat",
+    "Backlash",
+    "Deaf",
+    "Fault",
+    "Ground",
+    "Lake",
+    "Limp",
+    "Live",
+    "Locked",
+    "LostFoot",
+    "Offset",
+    "Push",
+    "Run",
+    "Slow",
+    "Tolerances",
+    "Wave",
+    "Weak",
+    "angle_at",
+    "crawl",
+    "failing_joints",
+    "joint_failure",
+    "simulate",
+    "smallest_pushes",
+]

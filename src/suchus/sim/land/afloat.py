@@ -1,0 +1,183 @@
+"""A robot put on the water: whether it floats upright, and level with the surface as deep as its weight asks for."""
+
+import warnings
+from functools import lru_cache
+from math import isnan
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq
+
+from suchus.robot.design import Robot
+from suchus.robot.design.hull import Hull
+from suchus.robot.design.pieces import chambers, pieces, volumes
+from suchus.core.errors import Doubtful, InvalidDesign
+from suchus.robot.design.water_table import column, unpacked
+from suchus.sim.hydro.forces import hydrostatic
+from suchus.sim.land import wetting
+from suchus.sim.land.lake import Lake
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.sim.model.wet import wet_model
+from suchus.core.rotation import about, multiply
+
+HEAVIER = 1e-3
+"""Share of its mass by which a swimmer may be heavier than its water; the water holds one that swims so slowly down."""
+INDIFFERENT = 1e-4
+"""Metacentric height over length down to which a body is not said to capsize, if it is below zero [-]."""
+AIRBORNE = 0.15
+"""Share of the volume in the air from which a swimmer is told so: limbs and tail then beat the air [-]."""
+_ABOVE, _MOVED = 0.05, 0.1
+"""Share of the volume that is above the surface once it is mended, and of the mass that is moved to mend it [-]."""
+
+
+def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
+    """Return the volume of a robot wholly under water with the air that it keeps, and that of its weight [m3].
+
+    Args:
+        robot: the design; it floats if the first is greater.
+        lake: the water, as it is at the beginning.
+    """
+    table = pieces(robot)
+    lost = (1 - lake.at(0.0)[1]) * column(table, "air").sum()
+    return float(column(table, "volume").sum() - lost), robot.mass / lake.water.density
+
+
+def hovers(robot: Robot, lake: Lake) -> bool:
+    """Return whether a robot has so much air that it hovers when it lets a part of it out."""
+    spare = sum(volumes(robot).values()) - robot.mass / lake.water.density
+    return 0.0 < spare <= sum(chambers(robot))
+
+
+def floats(robot: Robot) -> bool:
+    """Return whether a robot is lighter than the fresh water that it displaces, its air as it is built."""
+    volume, weight = capacity(robot, Lake(level=robot.length))
+    return volume >= weight
+
+
+def check_floats(robot: Robot, lake: Lake) -> None:
+    """Refuse a robot that is heavier than the water that it displaces.
+
+    Args:
+        robot: the design.
+        lake: the water, as it is at the beginning.
+
+    Raises:
+        InvalidDesign: it sinks; the message says by how much, and what foam is missing.
+    """
+    volume, weight = capacity(robot, lake)
+    if volume < weight:
+        raise InvalidDesign(_sinks(robot, lake.water.density, (weight - volume) * lake.water.density))
+
+
+def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"]) -> None:
+    """Warn of a swimmer that sinks, capsizes or lies in the air, before it moves; say what would mend it.
+
+    Args:
+        robot: the design.
+        lake: the water, as it is at the beginning.
+        posture: the angles of its servos in which it begins [rad].
+
+    Warns:
+        Doubtful: it is heavier than its water by ``HEAVIER`` of its mass; upright its metacentric height is below zero
+            by ``INDIFFERENT`` of its length; or a share ``AIRBORNE`` of its volume and more is above the surface.
+    """
+    text = _doubt(robot, lake.water.density, lake.at(0.0)[1], tuple(map(float, posture)))
+    if text:
+        warnings.warn(text, Doubtful, stacklevel=2)
+
+
+@lru_cache(maxsize=64)
+def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
+    """Return what is doubtful about a swimmer at rest in a sentence; nothing where all is well."""
+    rest = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heels=3)
+    if rest.surplus > HEAVIER * rest.mass:
+        return _sinks(robot, density, rest.surplus)
+    above = 1.0 - rest.mass / (density * rest.volume)
+    lever = -rest.metacentric_height
+    if isnan(lever):
+        return (
+            f"robot {robot.name!r} floats on end: no pitch up to 80 degrees balances it; give it foam where it is "
+            "heavy, as design.flotation.float_hull does, or move mass along its axis."
+        )
+    if lever > INDIFFERENT * robot.length:
+        return (
+            f"robot {robot.name!r} capsizes: upright its metacentric height is {-1e3 * lever:.3g} mm; lower more than "
+            f"{_grams(_MOVED * rest.mass)} of its mass by {1e3 * lever / _MOVED:.3g} mm, or give its back foam."
+        )
+    if above >= AIRBORNE:
+        lacking = (1.0 - _ABOVE) * density * rest.volume - rest.mass
+        spare = rest.volume - rest.mass / ((1.0 - _ABOVE) * density)
+        return (
+            f"robot {robot.name!r} floats with {above:.0%} of its volume in the air, where it moves no water; "
+            f"{_grams(lacking)} more mass, or {_litres(spare)} less foam, air or other volume, leaves {_ABOVE:.0%} "
+            "above."
+        )
+    return ""
+
+
+def _sinks(robot: Robot, density: float, surplus: float) -> str:
+    """Return the sentence on a robot that is too heavy by a mass [kg]."""
+    foam = (robot.hull or Hull(foam=())).density
+    carried = f"{_litres(surplus / (density - foam))} of foam" if foam < density else "lighter foam"
+    return (
+        f"robot {robot.name!r} sinks: it is {_grams(surplus)} heavier than the water that it displaces; at least "
+        f"{carried} more, as design.flotation.float_hull makes, {_litres(surplus / density)} more air, or "
+        f"{_grams(surplus)} less mass would carry it."
+    )
+
+
+def _grams(mass: float) -> str:
+    return f"{mass:.3g} kg" if mass >= 1.0 else f"{1e3 * mass:.3g} g"
+
+
+def _litres(volume: float) -> str:
+    return f"{1e3 * volume:.3g} l" if volume >= 1e-4 else f"{1e6 * volume:.3g} ml"
+
+
+def surfaced(
+    robot: Robot, lake: Lake, up: Float[np.ndarray, "3"], qpos: Float[np.ndarray, " q"], timestep: float
+) -> Float[np.ndarray, " q"]:
+    """Return a posture lifted to the surface, level with it but for its heel, if the robot floats clear of the ground.
+
+    A robot that is heavier than its water, or that would touch the ground, stays as it stands.
+
+    Args:
+        robot: the design.
+        lake: the water.
+        up: against gravity, unit vector.
+        qpos: the posture on the ground.
+        timestep: of the physics [s].
+    """
+    level, air_fraction = lake.at(0.0)
+    table = np.array(pieces(robot))
+    volume, weight = capacity(robot, lake)
+    if volume <= weight:
+        return qpos
+    wetting.install()
+    model = wet_model(robot, timestep, None, len(table), acting=True)
+    data = mujoco.MjData(model)
+    floating = np.array(qpos)
+    floating[3:7] = multiply(multiply(_raising(up), about(np.array([1.0, 0.0, 0.0]), lake.heel)), qpos[3:7])
+    floating[:3] = 0.0
+    data.qpos[:] = floating
+    mujoco.mj_kinematics(model, data)
+    bodies = unpacked(model.numeric_data)
+
+    def lacking(height: float) -> float:
+        return float(hydrostatic(bodies, data.xpos, data.xmat, up, -height, (air_fraction, air_fraction))[0]) - weight
+
+    reach = float(robot.length)
+    height = brentq(lacking, -reach, reach, xtol=1e-9)  # of the root above the surface
+    floating[:3] = qpos[:3] + (level + height - float(up @ qpos[:3])) * up
+    data.qpos[:] = floating
+    mujoco.mj_forward(model, data)
+    touching = any(contact.dist < 0.0 for contact in data.contact)
+    return qpos if touching else floating
+
+
+def _raising(up: np.ndarray) -> np.ndarray:
+    """Return the shortest turn that takes z to ``up``, as a quaternion wxyz."""
+    axis = np.cross([0.0, 0.0, 1.0], up)
+    turn = np.array([1.0 + up[2], *axis])
+    return np.asarray(turn / np.linalg.norm(turn))

@@ -1,0 +1,426 @@
+"""A batch of MuJoCo simulations, each with its own ground, water and faults, and what its sensors say of a period."""
+
+import copy
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from mujoco.batch import Batch, SimulationError
+
+from suchus.robot.design import water_table as hydro
+from suchus.core import threads
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.correction import SectionCorrection
+from suchus.robot.design.ground import Ground, Relief
+from suchus.robot.design.pieces import pieces
+from suchus.sim.land import wetting
+from suchus.sim.land.afloat import surfaced
+from suchus.sim.land.corrected import correct
+from suchus.sim.land.lake import Waters, gravity, up
+from suchus.sim.land.run import Afloat, Run
+from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
+from suchus.sim.model.wet import wet_model
+from suchus.robot.motion import hip_height
+
+_TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
+_CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
+
+
+class Beginning(NamedTuple):
+    """State in which a robot begins."""
+
+    qpos: Float[np.ndarray, " q"]
+    """Generalised positions [m], [rad]."""
+    qvel: Float[np.ndarray, " v"]
+    """Generalised velocities [m/s], [rad/s]."""
+    act: Float[np.ndarray, " a"]
+    """Inner states of the servos: slew-limited targets and integrals."""
+    commanded: Float[np.ndarray, " servo"]
+    """Last commanded angle of each servo [rad]."""
+
+
+class Meter:
+    """Keeps step by step what the water does to the robots and what their servos do; both jitter within a period.
+
+    Args:
+        water: of the batch, shape (run, ``hydro.NUMBERS``); read anew at every step.
+        sensors: of the batch, shape (run, sensor); likewise.
+        velocities: where the servos' speeds are among the sensors.
+        torques: where their torques are.
+        steps: of the physics in a control period.
+    """
+
+    def __init__(self, water: np.ndarray, sensors: np.ndarray, velocities: slice, torques: slice, steps: int) -> None:
+        first, last = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
+        self._acts, self._felt = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, first:last]
+        self._did, self._all = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._felt.shape))
+        speeds = self._all[..., velocities.start - first : velocities.stop - first]
+        self._before, self._after = speeds[:-1], speeds[1:]
+        self._torque = self._all[1:, :, torques.start - first : torques.stop - first]
+        self._sum = np.zeros(self._torque.shape)
+        self._share = np.full(steps, 1.0 / steps)
+
+    def begin(self) -> None:
+        """Keep what is felt before the first step."""
+        self._all[0] = self._felt
+
+    def read(self, step: int) -> None:
+        """Keep what a physics step has left."""
+        self._did[step] = self._acts
+        self._all[step + 1] = self._felt
+
+    def mean(self, into: np.ndarray, who: np.ndarray | slice) -> None:
+        """Write the means of force and power of the water and of the power of the servos, shape (run, 5).
+
+        The power of a servo in a step is its torque times the mean of its speeds before and after.
+
+        Args:
+            into: where to.
+            who: runs for which they are written.
+        """
+        np.add(self._before, self._after, out=self._sum)
+        into[who, :4] = (self._share @ self._did.reshape(len(self._did), -1)).reshape(-1, 4)[who]
+        into[who, 4] = (0.5 * self._share @ np.vecdot(self._sum, self._torque))[who]
+
+
+class SimulationBatch:
+    """The simulations of one group of runs, whose robots share a topology.
+
+    Runs of one robot on one relief share a model, with per-run values where they differ (``Batch.expand``). Where
+    robots or reliefs differ, each has a model (``Batch.set_models``), which runs share until one's values change.
+    """
+
+    def __init__(self, runs: Sequence[Run], timestep: float) -> None:
+        corrections = [None if run.lake is None else run.lake.correction for run in runs]
+        bodies = [(run.robot, run.ground.relief, one) for run, one in zip(runs, corrections, strict=True)]
+        wet = any(run.lake is not None or run.solved is not None for run in runs)
+        if wet:
+            wetting.install()
+        room = max(len(pieces(run.robot)) for run in runs) if wet else 0
+        solved = runs[0].solved is not None
+        models = {body: _model(body, timestep, room, solved=solved) for body in dict.fromkeys(bodies)}
+        shared = models[bodies[0]]
+        self.model = shared
+        self._single = len(models) == 1
+        self._models: list[Any] = [] if self._single else [models[body] for body in bodies]
+        self._owned: set[int] = set()
+        self._written = False
+        self._timestep, self._robots = timestep, [run.robot for run in runs]
+        self.physics = Batch(shared, len(runs), nthread=min(threads.count(), len(runs)), persistent=True)
+        self._lay_ground(runs)
+        if self._models:
+            self.physics.set_models(self._models)
+            self._written = False
+        self.qpos, self.qvel, self.ctrl, self.sensors = (
+            self.physics.bind(name) for name in ("qpos", "qvel", "ctrl", "sensordata")
+        )
+        self.activations, self._pushed = self.physics.bind("act"), self.physics.bind("xfrc_applied")
+        self.readings = self.sensors.copy()
+        self._lengths = self.physics.bind("actuator_length")
+        self._shafts = self._lengths.copy()
+        self._sensing = True
+        self.waters = Waters([run.lake for run in runs], [run.ground for run in runs], self.physics)
+        forces = force_sensors(runs[0].robot)
+        self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
+        self._felt, self._mean = self.sensors[:, self._forces], self.readings[:, self._forces]
+        self._sum, self._speeds = np.zeros_like(self._felt), np.zeros_like(self.qvel)
+        names = layout(runs[0].robot).servos
+        self.velocities, self.torques = (
+            slice(int(shared.sensor(f"{names[0]}_{what}").adr[0]), int(shared.sensor(f"{names[-1]}_{what}").adr[0]) + 1)
+            for what in ("velocity", "torque")
+        )
+        self.worked = np.zeros((len(runs), 5))
+        self._meters: dict[int, Meter] = {}
+        self.alive = np.ones(len(runs), dtype=bool)
+        self.ended = np.full(len(runs), np.inf)
+        self.cause = [""] * len(runs)
+
+    def field(self, name: str, sim: int) -> np.ndarray:
+        """Return a run's own values of a model field, for writing; ``commit`` after it."""
+        if self._single:
+            values: np.ndarray = self.physics.expand(name)[sim]
+            return values
+        self._written = True
+        owner: Any = self._own(sim)
+        for part in name.split("."):
+            owner = getattr(owner, part)
+        return np.asarray(owner)
+
+    def commit(self) -> None:
+        """Let the physics know of written model fields."""
+        if self._models and self._written:
+            self.physics.set_models(self._models)
+            self._written = False
+
+    def _own(self, sim: int) -> Any:
+        """Return a run's model, which it shares with no other from now on."""
+        if sim not in self._owned:
+            self._models[sim] = copy.copy(self._models[sim])
+            self._owned.add(sim)
+        return self._models[sim]
+
+    def _lay_ground(self, runs: Sequence[Run]) -> None:
+        for sim, run in enumerate(runs):
+            if run.ground.friction_scale != 1.0:
+                self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
+            if run.ground.uphill or run.ground.sideways:
+                self.field("opt.gravity", sim)[:] = gravity(run.ground)
+            if run.supply != 1.0:
+                self.supply(sim, run.supply)
+            if run.afloat is not None:
+                self._cast_off(sim, run.afloat)
+            if run.solved is not None:
+                self._lift(sim)
+
+    def _lift(self, sim: int) -> None:
+        """Take weight and contact from a run: it hovers in deep water."""
+        self.field("opt.gravity", sim)[:] = 0.0
+        no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
+
+    def _cast_off(self, sim: int, afloat: Afloat) -> None:
+        self.field("opt.gravity", sim)[:] = 0.0
+        self._set_option("density", sim, afloat.density)
+        self._set_option("viscosity", sim, afloat.viscosity)
+        self._set_option("integrator", sim, int(mujoco.mjtIntegrator.mjINT_RK4))
+        no_contact = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        self._set_option("disableflags", sim, int(self.model.opt.disableflags) | no_contact)
+
+    def _set_option(self, name: str, sim: int, value: float) -> None:
+        if self._single:
+            self.physics.expand(f"opt.{name}")[sim] = value
+        else:
+            setattr(self._own(sim).opt, name, value)
+            self._written = True
+
+    def power(self, sim: int, servo: str, *, on: bool) -> None:
+        """Give a servo its torque, or take it away, from the next ``commit`` on."""
+        bit = 1 << int(self.model.actuator(servo).group[0])
+        now = self.physics.expand("opt.disableactuator")[sim] if self._single else self._own(sim).opt.disableactuator
+        self._set_option("disableactuator", sim, int(now) & ~bit if on else int(now) | bit)
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """The contact forces among the readings, for writing, shape (run, 3 forces) [N]."""
+        return self._mean
+
+    def supply(self, sim: int, share: float) -> None:
+        """Let a run's servos that have a winding get a share of their supply, from the next ``commit`` on.
+
+        Args:
+            sim: the run.
+            share: of the supply of the design [-].
+        """
+        volts = supplies(self._robots[sim])
+        motors = ~np.isnan(volts)
+        if motors.any():
+            self.field("actuator_gainprm", sim)[motors, SUPPLY] = share * volts[motors]
+
+    def angles(self, sim: int) -> np.ndarray:
+        """Return the angles of a run's joints at the servos' shafts as they are now, shape (servo,) [rad]."""
+        angles: np.ndarray = self._shafts[sim]
+        return angles
+
+    def tilt(self, sim: int, ground: Ground) -> None:
+        """Let a ground slope as it says from now on; its friction and relief are not looked at."""
+        self.field("opt.gravity", sim)[:] = gravity(ground)
+        self.waters.tilt(sim, ground)
+
+    def push(self, sim: int, body: str, force: np.ndarray) -> None:
+        """Let a force act on the centre of mass of a body from now on.
+
+        Args:
+            sim: the run.
+            body: name of the body.
+            force: in the world, shape (3,) [N]; zeros end the push.
+        """
+        self._pushed[sim, self.model.body(body).id, :3] = force
+
+    def place(self, runs: Sequence[Run], first: np.ndarray) -> None:
+        """Put every robot on the ground in its first posture, nothing below the surface.
+
+        Args:
+            runs: the runs.
+            first: the servo angles at the start, shape (run, servo) [rad].
+        """
+        postures: dict[object, tuple[np.ndarray, np.ndarray]] = {}
+        afloat: dict[object, np.ndarray] = {}
+        for sim, run in enumerate(runs):
+            height = hip_height(run.robot, run.gait)
+            key = (run.robot, height, first[sim].tobytes())
+            if key not in postures:
+                model = compile_model(run.robot, self._timestep)  # every run begins on even ground
+                posture = standing(model, run.robot, height, first[sim])
+                postures[key] = posture, activations(model, first[sim])
+            self.qpos[sim], self.activations[sim] = postures[key]
+            if run.lake is not None:
+                float_key = (key, run.lake, run.ground)
+                if float_key not in afloat:
+                    afloat[float_key] = surfaced(run.robot, run.lake, up(run.ground), self.qpos[sim], self._timestep)
+                self.qpos[sim] = afloat[float_key]
+            self.ctrl[sim] = first[sim]
+        self.physics.forward()
+        self.read(slice(None))
+
+    def read(self, who: int | slice) -> None:
+        """Take the readings of some runs at rest in their present state, which has been brought up to date."""
+        self.readings[who], self._shafts[who], self.worked[who] = self.sensors[who], self._lengths[who], 0.0
+        if self.waters:
+            self.worked[who, :4] = self.waters.acts()[who]
+
+    def felt(self, sim: int) -> dict[str, np.ndarray]:
+        """Return copies of what controllers and faults of a run decide by: sensors, angles at the shafts, places."""
+        return {name: values[sim].copy() for name, values in self._decided_by.items()}
+
+    def feel(self, sim: int, felt: Mapping[str, np.ndarray]) -> None:
+        """Let controllers and faults of a run decide by what was ``felt`` at another time."""
+        for name, values in self._decided_by.items():
+            values[sim] = felt[name]
+
+    @property
+    def _decided_by(self) -> dict[str, np.ndarray]:
+        return {"readings": self.readings, "shafts": self._shafts, "qpos": self.qpos, "worked": self.worked}
+
+    def restart(self, sim: int, begin: Beginning) -> None:
+        """Put one robot into a state, without a push, also after it has diverged; its faults are the injector's.
+
+        The others stay as they are. From then on it moves as a robot of a fresh batch does, to the last bit.
+
+        Args:
+            sim: index of the robot in the batch.
+            begin: the state in which it begins.
+        """
+        who = np.array([sim])
+        self._sense(True)
+        self.physics.reset(who, stage=mujoco.mjtStage.mjSTAGE_NONE)
+        self.qpos[sim], self.qvel[sim], self.ctrl[sim] = begin.qpos, begin.qvel, begin.commanded
+        self.activations[sim] = begin.act
+        self.waters.refill(sim)
+        self.physics.forward(who)
+        self.read(sim)
+        self.alive[sim], self.ended[sim], self.cause[sim] = True, np.inf, ""
+
+    def advance(
+        self,
+        targets: np.ndarray,
+        steps: int,
+        time: float,
+        who: np.ndarray | None = None,
+        *,
+        felt: bool = True,
+        read: bool = True,
+    ) -> None:
+        """Command servo angles and advance the living by some steps; who diverges dies, with the time and the cause.
+
+        On return ``readings`` holds what the sensors say: contact forces as their mean over the steps, as a pressure
+        sensor filters them, everything else as it is now.
+
+        Args:
+            targets: shape (run, servo) [rad].
+            steps: number of physics steps.
+            time: at which they begin [s].
+            who: whether each run is advanced, shape (run,); None for all.
+            felt: whether contact forces will be read; if not, they are those of the last step, which takes less time.
+            read: whether any of ``readings`` will be; if not, they are older, and a step takes a ninth less time.
+        """
+        # what all runs share is done at once: with one run alone each of these lines shows in its time
+        going = self._going(who)
+        if going is None or self.alive.all():
+            self.ctrl[:] = targets
+        else:
+            self.ctrl[self.alive] = targets[self.alive]
+        meter = self._meter(steps)
+        self._sense(read or meter is not None)
+        calls = steps if felt or meter is not None else 1
+        self._sum.fill(0.0)
+        for call in range(calls):
+            try:
+                self.physics.step(going, steps // calls, _CURRENT)
+            except SimulationError as error:
+                for sim in error.ids:
+                    self._end(int(sim), time, self.physics.error(int(sim)))
+                going = self._going(who)
+            self._sum += self._felt
+            if meter is not None:
+                meter.read(call)
+        if meter is not None:
+            meter.mean(self.worked, slice(None) if who is None else who)
+        self.readings[:], self._shafts[:] = self.sensors, self._lengths
+        np.divide(self._sum, calls, out=self._mean)
+        np.abs(self.qvel, out=self._speeds)
+        if not self._speeds.max() < _TOO_FAST:  # a NaN is not below anything
+            fastest = self._speeds.max(axis=1)
+            for sim in np.flatnonzero(self._living(who) & ~(fastest < _TOO_FAST)):
+                self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+
+    def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
+        """Let runs be where others are, and feel and suffer the same.
+
+        Args:
+            sims: indices of the runs, shape (n,).
+            whom: for each of them the index of the other, shape (n,).
+        """
+        self.physics.state[sims] = self.physics.state[whom]
+        self.readings[sims], self._shafts[sims] = self.readings[whom], self._shafts[whom]
+        self.worked[sims] = self.worked[whom]
+        for sim, other in zip(sims, whom, strict=True):
+            if not self.alive[other]:
+                self._end(int(sim), float(self.ended[other]), self.cause[other])
+
+    def _sense(self, on: bool) -> None:
+        """Let the physics work out its sensors from now on, or not; the states that it comes to are the same."""
+        if on == self._sensing:
+            return
+        self._sensing, bit = on, int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+        if self._single:
+            flags = self.physics.expand("opt.disableflags")
+            flags[:] = flags & ~bit if on else flags | bit
+            return
+        for model in {id(model): model for model in self._models}.values():
+            now = int(model.opt.disableflags)
+            model.opt.disableflags = now & ~bit if on else now | bit
+        self._written = True
+        self.commit()
+
+    def _meter(self, steps: int) -> Meter | None:
+        """Return the meter of a control period, which is kept from one to the next; None on dry land."""
+        if not self.waters:
+            return None
+        if steps not in self._meters:
+            self._meters[steps] = Meter(self.waters.rows, self.sensors, self.velocities, self.torques, steps)
+        self._meters[steps].begin()
+        return self._meters[steps]
+
+    def _living(self, who: np.ndarray | None) -> np.ndarray:
+        """Return who is alive, of some or of all."""
+        return self.alive if who is None else self.alive & who
+
+    def _going(self, who: np.ndarray | None) -> np.ndarray | None:
+        """Return which simulations are stepped; None for all."""
+        going = self._living(who)
+        return None if going.all() else np.flatnonzero(going)
+
+    def _end(self, sim: int, time: float, cause: str) -> None:
+        if self.alive[sim]:
+            self.alive[sim], self.ended[sim], self.cause[sim] = False, time, cause
+
+
+def _model(
+    body: tuple[Robot, Relief | None, SectionCorrection | None], timestep: float, room: int, *, solved: bool = False
+) -> Any:  # fmt: skip
+    """Return a model of its own, which does not look for islands; for the water where there is room for pieces.
+
+    A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
+    """
+    robot, relief, correction = body
+    if room:
+        made = wet_model(robot, timestep, relief, room, acting=True, solved=solved)
+    else:
+        made = compile_model(robot, timestep, relief)
+    model = copy.copy(made)
+    if correction is not None:
+        correct(model, correction)
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+    return model

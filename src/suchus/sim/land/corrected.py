@@ -1,0 +1,30 @@
+"""Factors on what the pieces of a robot feel in its water, written into its model."""
+
+from typing import Any
+
+import numpy as np
+
+from suchus.robot.design.correction import SectionCorrection
+from suchus.robot.design.water_table import column, packed, unpacked
+from suchus.robot.design.water_table import HEADER, WIDTH
+
+_ADDED, _DRAG = ("added", "shed"), ("area", "roll", "skin", "end")
+"""Columns of the table of pieces that each factor is on."""
+
+
+def correct(model: Any, correction: SectionCorrection) -> None:
+    """Multiply added mass and drag of the pieces of each corrected body, in a model that is the caller's own.
+
+    Args:
+        model: an ``MjModel`` that carries a table of pieces; bodies that it lacks, as limbs left out, are passed over.
+        correction: the factors.
+    """
+    numbers = model.numeric_data
+    table = unpacked(numbers)
+    for name, factors in correction.factors.items():
+        ids = [body for body in range(model.nbody) if model.body(body).name == name]
+        mine = np.isin(table[:, 0].astype(int), ids)
+        for columns, factor in ((_ADDED, factors.added), (_DRAG, factors.drag)):
+            for one in columns:
+                column(table, one)[mine] *= factor
+    numbers[:] = packed(table, float(numbers[2]), (len(numbers) - HEADER) // WIDTH)

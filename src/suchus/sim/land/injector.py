@@ -1,0 +1,272 @@
+"""What goes wrong in the runs of a batch: faults, which the injector begins and mends, pushes, errors of servos."""
+
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from math import floor
+
+import numpy as np
+
+from suchus.robot.control import Sensed
+from suchus.robot.design import Robot, layout
+from suchus.sim.fault import Fault
+from suchus.sim.land.batch import SimulationBatch
+from suchus.sim.land.run import Push, Run
+from suchus.sim.model import slew_column
+
+_KINDS = {"actuator": "actuator", "geom": "geom", "body": "body", "jnt": "joint"}
+"""What the rows of a model's field are, by how its name begins."""
+
+
+class Injector:
+    """What is broken in the runs of a batch: the one entry of faults into batches, live walks and environments.
+
+    Args:
+        batch: the simulations.
+        period: of control [s].
+        robot: one of the batch's robots, which share a layout.
+    """
+
+    def __init__(self, batch: SimulationBatch, period: float, robot: Robot) -> None:
+        self._batch, self._period = batch, period
+        place = layout(robot)
+        self._columns = {
+            group: {name: i for i, name in enumerate(names)}
+            for group, names in (
+                ("servo", place.servos),
+                ("foot_pressure", place.limb_names),
+                ("belly_pressure", place.trunk),
+            )
+        }
+        self._broken: dict[tuple[int, str], tuple[Fault, Site]] = {}
+
+    def begin(self, sim: int, fault: Fault) -> None:
+        """Let a fault of a run begin now, instead of what was wrong with the same part before."""
+        self.mend(sim, fault.part)
+        site = Site(self._batch, sim, self._columns)
+        self._broken[sim, fault.part] = fault, site
+        fault.apply(site)
+        self._batch.commit()
+
+    def mend(self, sim: int, part: str | None = None) -> None:
+        """Mend a part of a run, or all of them; nothing happens where nothing is broken."""
+        for key in [key for key in self._broken if key[0] == sim and part in (None, key[1])]:
+            fault, site = self._broken.pop(key)
+            fault.mend(site)
+        self._batch.commit()
+
+    def broken(self, sim: int) -> tuple[Fault, ...]:
+        """Return the faults that a run has now, in the order in which they began."""
+        return tuple(fault for (owner, _), (fault, _) in self._broken.items() if owner == sim)
+
+    def command(self, tick: int, targets: np.ndarray) -> np.ndarray:
+        """Return the angles that the servos are commanded in the end, a new array of shape (run, servo) [rad].
+
+        Args:
+            tick: number of the control period.
+            targets: what they are commanded by the controllers, shape (run, servo) [rad].
+        """
+        targets = np.array(targets)
+        for (sim, _), (fault, site) in self._broken.items():
+            site.enter(tick, self._period, targets[sim])
+            fault.command(site)
+        self._batch.commit()
+        return targets
+
+    def sense(self, sensed: Sensed) -> Sensed:
+        """Return what is felt by sensors that may be broken; the arrays of ``sensed`` are written."""
+        for fault, site in self._broken.values():
+            site.sensed = sensed
+            fault.sense(site)
+        return sensed
+
+
+class Site:
+    """Where one fault acts: the ``fault.Plant`` of one run in a batch, with a list of what it changed there.
+
+    Args:
+        batch: the simulations.
+        sim: the run.
+        columns: of servos, feet and bodies of the trunk in arrays, by group.
+    """
+
+    def __init__(self, batch: SimulationBatch, sim: int, columns: Mapping[str, Mapping[str, int]]) -> None:
+        self._batch, self._sim, self._groups, self._columns = batch, sim, columns, columns["servo"]
+        self._since: int | None = None
+        self._before: dict[tuple[str, int], np.ndarray] = {}
+        self._unpowered: list[str] = []
+        self.time = 0.0
+        self.memory: dict[str, float] = {}
+        self.targets: MutableMapping[str, float] = {}
+        self.sensed: Sensed | None = None
+
+    def enter(self, tick: int, period: float, targets: np.ndarray) -> None:
+        """Begin a control period with the angles that the run's servos are commanded, shape (servo,) [rad]."""
+        self._since = tick if self._since is None else self._since
+        self.time, self.targets = (tick - self._since) * period, Named(self._columns, targets)
+
+    def angle(self, servo: str) -> float:
+        """Return the angle of a joint at its servo's shaft [rad]."""
+        return float(self._batch.angles(self._sim)[self._columns[servo]])
+
+    def felt(self, group: str, of: str | None = None) -> np.ndarray:
+        """Return readings for writing, see ``fault.Plant.felt``."""
+        whole: np.ndarray = getattr(self.sensed, group)[self._sim : self._sim + 1]
+        if of is None:
+            return whole[0] if whole.ndim > 1 else whole
+        column = self._groups.get(group, self._columns)[of]
+        return whole[0, column : column + 1]
+
+    def parameter(self, field: str, of: str) -> np.ndarray:
+        """Return a row of a model field for writing, see ``fault.Plant.parameter``."""
+        kind = _KINDS.get(field.partition("_")[0], "dof")
+        part = getattr(self._batch.model, "joint" if kind == "dof" else kind)(of)
+        row = int(part.dofadr[0]) if kind == "dof" else int(part.id)
+        view = self._batch.field(field, self._sim)[row : row + 1]
+        view = view[0] if view.ndim > 1 else view
+        self._before.setdefault((field, row), view.copy())
+        return view
+
+    def speed_limit(self, servo: str) -> np.ndarray:
+        """Return the speed limit of a servo for writing [rad/s]."""
+        column = slew_column(self._batch.model, servo)
+        return self.parameter("actuator_dynprm", servo)[column : column + 1]
+
+    def unpower(self, servo: str) -> None:
+        """Take the torque from a servo."""
+        self._unpowered.append(servo)
+        self._batch.power(self._sim, servo, on=False)
+
+    def restore(self) -> None:
+        """Undo what was written."""
+        for (field, row), before in self._before.items():
+            self._batch.field(field, self._sim)[row : row + 1] = before
+        for servo in self._unpowered:
+            self._batch.power(self._sim, servo, on=True)
+        self._before, self._unpowered = {}, []
+
+
+class Named(MutableMapping[str, float]):
+    """A row of an array, read and written by name; no name can be added or taken away."""
+
+    def __init__(self, columns: Mapping[str, int], row: np.ndarray) -> None:
+        self._columns, self._row = columns, row
+
+    def __getitem__(self, name: str) -> float:
+        return float(self._row[self._columns[name]])
+
+    def __setitem__(self, name: str, value: float) -> None:
+        self._row[self._columns[name]] = value
+
+    def __delitem__(self, name: str) -> None:
+        raise TypeError(f"{name} cannot be taken away.")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+
+_NEVER = np.iinfo(np.int64).max
+_EARLY = 1e-6
+"""By how much too early rather than too late a push may be awaited [control period]."""
+
+
+class Disturbances:
+    """The faults, the pushes and the servos' errors of all runs of a batch, each run by a clock of its own.
+
+    Args:
+        runs: of the batch.
+        batch: the simulations.
+        ticks: number of control periods for which there is noise.
+        period: of control [s].
+    """
+
+    def __init__(self, runs: Sequence[Run], batch: SimulationBatch, ticks: int, period: float) -> None:
+        self._batch, self._period = batch, period
+        self.injector = Injector(batch, period, runs[0].robot)
+        self._faults: list[dict[int, list[Fault]]] = [{} for _ in runs]
+        self._pushes: list[list[Push]] = [[] for _ in runs]
+        self._next, self._ahead = np.full(len(runs), _NEVER), False
+        servos = len(layout(runs[0].robot).servos)
+        self._noise = {
+            sim: run.noise * np.random.default_rng(run.seed).standard_normal((ticks, servos))
+            for sim, run in enumerate(runs)
+            if run.noise > 0
+        }
+        self._built = [sim for sim, run in enumerate(runs) if any(run.zero_error) or any(run.play)]
+        none = (0.0,) * servos
+        self._zero_error = np.array([runs[sim].zero_error or none for sim in self._built])
+        self._half_play = np.array([runs[sim].play or none for sim in self._built]) / 2
+        self._answered = np.full((len(runs), servos), np.nan)  # the angle that each servo turned to last
+        for sim, run in enumerate(runs):
+            self.schedule(sim, run.faults, run.pushes)
+
+    def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
+        """Let other faults and pushes than before be ahead of a run, whose clock is at 0; all that is broken is mended.
+
+        Args:
+            sim: the run.
+            faults: what breaks, each at its time.
+            pushes: forces from outside, each at its time.
+        """
+        self.injector.mend(sim)
+        self._answered[sim] = np.nan
+        self._faults[sim], self._pushes[sim] = {}, list(pushes)
+        for fault in faults:
+            self._faults[sim].setdefault(int(np.ceil(fault.at / self._period - 1e-9)), []).append(fault)
+        self._await(sim, -1)
+
+    def push(self, sim: int, push: Push) -> None:
+        """Add a push to those that are ahead of a run."""
+        self._pushes[sim].append(push)
+        self._await(sim, -1)
+
+    def happen(self, clocks: np.ndarray, going: np.ndarray) -> None:
+        """Let the faults of this control period begin, and push.
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            going: whether each run goes on in it, shape (run,).
+        """
+        if self._ahead:
+            for sim in np.flatnonzero((self._next <= clocks) & going):
+                self._happen(int(sim), int(clocks[sim]))
+
+    def disturb(self, clocks: np.ndarray, tick: int, targets: np.ndarray) -> np.ndarray:
+        """Return the angles that the servos are commanded in the end, a new array of shape (run, servo) [rad].
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            tick: number of the control period of the batch.
+            targets: what the controllers command, shape (run, servo) [rad].
+        """
+        if self._noise:
+            targets = targets.copy()
+            for sim, noise in self._noise.items():
+                targets[sim] += noise[clocks[sim]]
+        if self._built:
+            targets = targets.copy()
+            wanted, before = targets[self._built] + self._zero_error, self._answered[self._built]
+            before = np.where(np.isnan(before), wanted, before)
+            answer = np.clip(before, wanted - self._half_play, wanted + self._half_play)
+            targets[self._built] = self._answered[self._built] = answer
+        return self.injector.command(tick, targets)
+
+    def _happen(self, sim: int, tick: int) -> None:
+        start, end = tick * self._period, (tick + 1) * self._period
+        forces: dict[str, np.ndarray] = {}
+        for push in self._pushes[sim]:
+            force = push.share(start, end) * np.array(push.force)
+            forces[push.body] = forces.get(push.body, np.zeros(3)) + force
+        for body, force in forces.items():
+            self._batch.push(sim, body, force)
+        self._pushes[sim] = [push for push in self._pushes[sim] if push.at + push.duration > start]
+        for fault in self._faults[sim].pop(tick, ()):
+            self.injector.begin(sim, fault)
+        self._await(sim, tick)
+
+    def _await(self, sim: int, tick: int) -> None:
+        """Note the next control period after ``tick`` in which something may happen to a run."""
+        begins = [floor(push.at / self._period - _EARLY) for push in self._pushes[sim]]
+        self._next[sim] = max(min([*self._faults[sim], *begins], default=_NEVER), tick + 1)
+        self._ahead = bool((self._next < _NEVER).any())

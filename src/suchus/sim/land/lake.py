@@ -1,0 +1,257 @@
+"""The water of a run: where its surface is, how heavy it is, how it moves; some of it may change while the run goes.
+
+A ``Lake`` is the frozen value of one run; ``Waters`` are those of a batch, in the memory that the physics reads.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from math import cos, pi, sin, sqrt, tau
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus.robot.design import water_table as hydro
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.core.checks import Checks, Course
+from suchus.robot.design.correction import SectionCorrection
+from suchus.robot.design.ground import Ground
+from suchus.robot.design.water import Water
+from suchus.core.errors import InvalidDesign
+
+STEEPEST = 0.142
+"""Height over length beyond which waves on deep water break [-]. Source: Michell 1893."""
+DEEPEST = 1000.0
+"""Greatest distance of the level from the world's origin [m]."""
+FASTEST = 5.0
+"""Greatest speed of a current [m/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wave:
+    """Plane waves of small height on deep water, after Airy."""
+
+    height: float
+    """Height from trough to crest [m]."""
+    length: float
+    """Length from crest to crest [m]."""
+    heading: float = 0.0
+    """Direction in which they run, forward 0, to the left positive [rad]."""
+    phase: float = 0.0
+    """Phase at the world's origin at time 0, a crest at 0 [cycle]."""
+
+    def __post_init__(self) -> None:
+        with Checks("wave", self) as check:
+            check.number("height", 0.0, 100.0, "m")
+            check.number("length", 0.01, 1000.0, "m")
+            check.number("heading", -2 * pi, 2 * pi, "rad")
+            check.number("phase", -1.0, 1.0, "cycle")
+            steep = self.height / self.length if self.length > 0 else 0.0
+            check.that(
+                not steep > STEEPEST,
+                f"a wave {self.height:g} m high and {self.length:g} m long is steeper than {STEEPEST:g}, where waves "
+                f"break: at this length at most {STEEPEST * self.length:.3g} m are allowed",
+            )
+
+    @property
+    def frequency(self) -> float:
+        """Of deep water, sqrt(g / (2 pi length)) [Hz]."""
+        return sqrt(GRAVITY / (tau * self.length))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lake:
+    """Water with a level surface. Where the ground slopes, the surface is level and the slope is the shore.
+
+    Level and air fraction may be courses over time, as ``((0.0, 0.1), (5.0, 0.3))``.
+    """
+
+    level: Course
+    """Level of the surface above the world's origin, against gravity [m]; the ground passes through the origin."""
+    water: Water = field(default_factory=Water)
+    """Density, viscosity, and what sections of a body feel."""
+    current: tuple[float, float] = (0.0, 0.0)
+    """Velocity of the water, forward and to the left [m/s]."""
+    wave: Wave | None = None
+    """Waves on the surface; None where it is flat."""
+    air_fraction: Course = 1.0
+    """Share of the air of the robot's hull that is kept, 0 to 1, alike in all its chambers [-]."""
+    heel: float = 0.0
+    """Roll with which a robot that floats is put on the water, right side down positive [rad]."""
+    added_mass: float = 1.0
+    """Factor on the added mass of all pieces [-]."""
+    shedding: float = 1.0
+    """Factor on the momentum that is shed at the end of the tail [-]."""
+    correction: SectionCorrection | None = None
+    """Factors on what each link's sections feel, as a flow found them at one Reynolds number; None leaves all as they
+    are. ``coupling.earned_correction`` makes one."""
+
+    def __post_init__(self) -> None:
+        with Checks("lake", self) as check:
+            check.each("current", ("forward", "left"), -FASTEST, FASTEST, "m/s")
+            check.number("heel", -pi, pi, "rad")
+            check.number("added_mass", 0.0, 10.0, "")
+            check.number("shedding", 0.0, 10.0, "")
+            check.course("level", -DEEPEST, DEEPEST, "m")
+            check.course("air_fraction", 0.0, 1.0, "")
+
+    def at(self, time: float) -> tuple[float, float]:
+        """Return level [m] and air fraction [-] at a time [s]."""
+        return _now(self.level, time), _now(self.air_fraction, time)
+
+    def shore(self, uphill: float) -> float:
+        """Return where the level at time 0 meets ground that rises by ``uphill`` [rad], ahead along the ground [m]."""
+        return self.at(0.0)[0] / sin(uphill)
+
+    def changes(self) -> bool:
+        """Return whether level or air fraction change while the run goes."""
+        return not isinstance(self.level, (int, float)) or not isinstance(self.air_fraction, (int, float))
+
+    def numbers(self, up: Float[np.ndarray, "3"], time: float = 0.0) -> Float[np.ndarray, " n"]:
+        """Return the row of numbers that the physics reads, see ``hydro``.
+
+        Args:
+            up: unit vector against gravity.
+            time: [s].
+        """
+        row = np.zeros(hydro.NUMBERS)
+        row[hydro.LEVEL], row[hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2] = self.at(time)
+        row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
+        row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
+        row[hydro.ADDED], row[hydro.SHEDDING] = self.added_mass, self.shedding
+        ahead, left = _level_axes(up)
+        row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * ahead + self.current[1] * left
+        if self.wave is not None:
+            number = tau / self.wave.length
+            heading = cos(self.wave.heading) * ahead + sin(self.wave.heading) * left
+            numbers = [self.wave.height / 2, *(number * heading), tau * self.wave.frequency, tau * self.wave.phase]
+            row[hydro.WAVE : hydro.WAVE + len(numbers)] = numbers
+        return row
+
+
+def lake_text(lake: Lake | None) -> str:
+    """Return a lake as JSON text; the empty one stands for none."""
+    said = {} if lake is None else asdict(lake)
+    if said.get("correction", 0) is None:
+        del said["correction"]
+    return json.dumps(said, sort_keys=True) if said else ""
+
+
+def check_lake(robot: Robot, lake: Lake) -> None:
+    """Refuse an air fraction that a robot's hull has no air for, and a correction of another robot.
+
+    Raises:
+        InvalidDesign: air is let out, and the robot has no hull with air; or it lacks a body that is corrected.
+    """
+    if lake.correction is not None:
+        lake.correction.check(tuple(body.name for body in layout(robot).bodies), robot.name)
+    hull = robot.hull
+    if (hull is None or hull.air == 0.0) and lake.air_fraction != 1.0:
+        raise InvalidDesign(
+            f"lake.air_fraction is {str(lake.air_fraction)[:60]}, and robot {robot.name!r} has no air that it could "
+            "let out: leave air_fraction at 1, or give the robot a design.Hull with air."
+        )
+
+
+def _now(course: Course, time: float) -> float:
+    if isinstance(course, (int, float)):
+        return float(course)
+    return float(np.interp(time, [instant for instant, _ in course], [value for _, value in course]))
+
+
+def _level_axes(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return forward and left along the surface."""
+    ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+    ahead /= np.linalg.norm(ahead)
+    return ahead, np.cross(up, ahead)
+
+
+_AIR_FRACTION = slice(hydro.AIR_FRACTION, hydro.AIR_FRACTION + 2)
+
+
+class Waters:
+    """The numbers of the water of every run, in the memory that the physics reads and writes.
+
+    Args:
+        lakes: of the runs of a batch; None for those on dry land.
+        grounds: of the runs.
+        physics: the ``mujoco.batch.Batch``.
+    """
+
+    def __init__(self, lakes: Sequence[Lake | None], grounds: Sequence[Ground], physics: Any) -> None:
+        self._lakes = {sim: lake for sim, lake in enumerate(lakes) if lake is not None}
+        self._changing = {sim: lake for sim, lake in self._lakes.items() if lake.changes()}
+        self._ups = np.array([up(ground) for ground in grounds])
+        self.rows: Float[np.ndarray, "run number"] = (
+            physics.bind("userdata") if self._lakes else np.zeros((len(grounds), 0))
+        )
+        """See ``hydro.table``; without columns where all is dry."""
+        for sim in self._lakes:
+            self.refill(sim)
+
+    def __bool__(self) -> bool:
+        return bool(self._lakes)
+
+    def flood(self, time: float, air_fraction: Float[np.ndarray, "run chamber"] | None = None) -> None:
+        """Let level and air fraction of the lakes be what they are at a time, where they change or are commanded.
+
+        Args:
+            time: [s].
+            air_fraction: what controllers command of front and rear chambers, NaN where they leave it to the lake [-];
+                None for all.
+        """
+        for sim, lake in self._changing.items():
+            self.rows[sim, hydro.LEVEL], self.rows[sim, _AIR_FRACTION] = lake.at(time)
+        if air_fraction is not None and self._lakes:
+            commanded = np.isfinite(air_fraction).all(axis=1)
+            self.rows[commanded, _AIR_FRACTION] = air_fraction[commanded]
+
+    def fill(self, sim: int, lake: Lake, time: float) -> None:
+        """Let the water of a run be another one from now on; what the water did last stays to be read.
+
+        Args:
+            sim: a run that has a lake.
+            lake: the other one.
+            time: [s].
+        """
+        self._lakes[sim] = lake
+        self._changing = {run: other for run, other in self._lakes.items() if other.changes()}
+        self.rows[sim, : hydro.FORCE] = lake.numbers(self._ups[sim], time)[: hydro.FORCE]
+
+    def refill(self, sim: int) -> None:
+        """Write the water of a run anew, as it is at the beginning; a reset of the physics drains it."""
+        if sim in self._lakes:
+            self.rows[sim] = self._lakes[sim].numbers(self._ups[sim])
+
+    def tilt(self, sim: int, ground: Ground) -> None:
+        """Let the ground of a run slope otherwise from now on; the level stays level."""
+        if sim in self._lakes:
+            self._ups[sim] = up(ground)
+
+    def depths(self, roots: Float[np.ndarray, "run 3"]) -> Float[np.ndarray, " run"] | None:
+        """Return how deep the roots are below the level of their water, 0 above it [m]; None if all is dry.
+
+        Args:
+            roots: their places in the world [m].
+        """
+        if not self._lakes:
+            return None
+        height = np.einsum("ij,ij->i", roots, self._ups)
+        return np.asarray(np.maximum(self.rows[:, hydro.LEVEL] - height, 0.0))
+
+    def acts(self) -> Float[np.ndarray, "run 4"]:
+        """Return force [N] and power [W] of the water, as the physics left them; a view."""
+        return self.rows[:, hydro.FORCE : hydro.FORCE + 4]
+
+
+def up(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return the direction against gravity in the frame of a tilted ground, a unit vector."""
+    return -gravity(ground) / GRAVITY
+
+
+def gravity(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return gravity in the frame of a tilted ground [m/s2]."""
+    down = np.array([-np.sin(ground.uphill), 0.0, -np.cos(ground.uphill)])
+    c, s = np.cos(ground.sideways), np.sin(ground.sideways)
+    return GRAVITY * np.array([down[0], down[2] * s, down[2] * c])

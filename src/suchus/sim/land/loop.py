@@ -1,0 +1,265 @@
+"""The loop: what is due happens, the controller decides, the physics goes on; one control period after the other.
+
+A batch of runs, a live walk and the learning environments are its clients.
+"""
+
+from collections.abc import Sequence
+from math import floor
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+from suchus.robot.control import Amphibious, Command, Control, Controller, Runs, Sensed, Swimming
+from suchus.core.checks import require
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import InvalidDesign
+from suchus.sim.fault import Fault
+from suchus.sim.land.afloat import check_afloat
+from suchus.sim.land.batch import Beginning, SimulationBatch
+from suchus.sim.land.injector import Disturbances
+from suchus.sim.land.readings import Recorder, Sensors
+from suchus.sim.land.run import Push, Run
+from suchus.robot.motion import hip_height
+
+CONTROL_PERIOD = 0.01
+"""Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""
+
+
+def physics_steps(timestep: float, period: float = CONTROL_PERIOD) -> int:
+    """Return the number of physics steps in a control period.
+
+    Args:
+        timestep: of the physics [s].
+        period: of control [s].
+
+    Raises:
+        InvalidDesign: the time step does not divide the control period.
+    """
+    require("simulate", "timestep", timestep, 1e-6, period, "s")
+    steps = round(period / timestep)
+    if abs(steps * timestep - period) > 1e-9:
+        raise InvalidDesign(f"simulate.timestep is {timestep} s; it must divide the control period of {period} s.")
+    return steps
+
+
+def start(runs: Sequence[Run], ticks: int, period: float = CONTROL_PERIOD) -> Controller:
+    """Start the controller of a group of runs that share one.
+
+    Args:
+        runs: with equal controls, or with controls that can be joined.
+        ticks: number of control periods to come.
+        period: of control [s].
+    """
+    control = runs[0].control
+    group = Runs(
+        controls=tuple(run.control for run in runs),
+        robots=tuple(run.robot for run in runs),
+        gaits=tuple(run.gait for run in runs),
+        seeds=tuple(run.seed for run in runs),
+        ticks=ticks,
+    )
+    return control.start(group, period)
+
+
+class Loop:
+    """Robots on their grounds, their controller, their faults and pushes, for a group of runs that share a controller.
+
+    In each control period ``decide`` comes first, then ``advance``. Each run has a clock of its own, since single runs
+    can begin anew; its faults and pushes happen by it.
+
+    Args:
+        runs: of the group.
+        timestep: of the physics [s], a whole part of the control period.
+        ticks: number of control periods for which controllers and noise are prepared.
+        controller: what decides; None for the one that the runs name.
+
+    Raises:
+        InvalidDesign: the time step does not divide the control period.
+    """
+
+    def __init__(
+        self, runs: Sequence[Run], timestep: float, *, ticks: int, controller: Controller | None = None
+    ) -> None:
+        self.runs = runs
+        self.period = control_period(runs[0].robot)
+        self.steps = physics_steps(timestep, self.period)
+        """Physics steps of a control period [-]."""
+        self.batch = SimulationBatch(runs, timestep)
+        self.sensors = Sensors(self.batch, runs[0].robot)
+        self.feels = any(run.control.feels for run in runs)
+        self.controller = start(runs, ticks, self.period) if controller is None else controller
+        first = self.controller.rest()
+        for run, posture in zip(runs, first, strict=True):
+            if run.lake is not None and _swims(run.control):
+                check_afloat(run.robot, run.lake, posture)
+        self.batch.place(runs, first)
+        self._deduplication = Deduplication(runs, first, self.period)
+        self.disturbances = Disturbances(runs, self.batch, ticks, self.period)
+        self.tick = 0
+        """Number of the control period."""
+        self.clocks: Int[np.ndarray, " run"] = np.zeros(len(runs), dtype=int)
+        """Number of the control period of each run since it began."""
+        self._going = np.ones(len(runs), dtype=bool)
+
+    @property
+    def time(self) -> float:
+        """Time since the beginning [s]."""
+        return self.tick * self.period
+
+    def recorder(self, samples: int) -> Recorder:
+        """Return what keeps samples of this batch, with room for so many."""
+        return Recorder(self.batch, self.sensors, self.runs, samples)
+
+    def sensed(self) -> Sensed:
+        """Return what the robots feel now, by sensors that may be broken."""
+        return self.disturbances.injector.sense(self.sensors.sensed(self.time))
+
+    def decide(self, beat: int | None = None) -> None:
+        """Let happen what is due, ask the controller, and disturb what it commands: ``command`` is the result.
+
+        Args:
+            beat: the control period that the controller takes this one for; the same if None.
+        """
+        self.disturbances.happen(self.clocks, self._going)
+        sensed = self.sensed() if self.feels else None
+        self._wanted = self.controller.command(self.tick if beat is None else beat, sensed)
+        self.disturb()
+
+    def disturb(self) -> None:
+        """Disturb anew what the controller commanded last: with noise, and with what is broken by now."""
+        targets = self.disturbances.disturb(self.clocks, self.tick, self._wanted.targets)
+        self.command = Command(targets, self._wanted.phase, self._wanted.air_fraction)
+
+    def advance(self, *, felt: bool = True, read: bool = True, before: tuple[np.ndarray, int] | None = None) -> None:
+        """Let one control period pass in which the servos do as they are commanded.
+
+        Args:
+            felt: whether contact forces will be read after it, see ``SimulationBatch.advance``.
+            read: whether any sensor will be.
+            before: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many physics
+                steps, fewer than the period has, where a command arrives late; of a loop of one run.
+        """
+        if before is not None:
+            self._advance_late(*before)
+            return
+        targets, _, air_fraction = self.command
+        shared = self._deduplication
+        shared.part(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
+        self.batch.waters.flood(self.time, air_fraction)
+        if shared.others.size:
+            self.batch.advance(targets, self.steps, self.time, shared.first, felt=felt, read=read)
+            self.batch.copy(shared.others, shared.whom)
+        else:
+            self.batch.advance(targets, self.steps, self.time, felt=felt, read=read)
+        self._count()
+
+    def _advance_late(self, early: np.ndarray, steps: int) -> None:
+        """Let a control period pass whose command acts after some physics steps; forces are means over all of it."""
+        targets, _, air_fraction = self.command
+        self.batch.waters.flood(self.time, air_fraction)
+        self.batch.advance(early, steps, self.time)
+        means, share = (self.batch.pressed, self.batch.worked), steps / self.steps
+        first = [share * mean for mean in means]
+        self.batch.advance(targets, self.steps - steps, self.time)
+        for mean, part in zip(means, first, strict=True):
+            mean[:] = part + (1.0 - share) * mean
+        self._count()
+
+    def skip(self, periods: int) -> None:
+        """Let control periods pass in which others move the robots that go on."""
+        for _ in range(periods):
+            self._count()
+
+    def _count(self) -> None:
+        self.tick += 1
+        self.clocks += self._going
+
+    def choose(self, going: Bool[np.ndarray, " run"]) -> None:
+        """Choose which runs go on from now, whether or not they have diverged; the others wait."""
+        self._going[:] = self.batch.alive[:] = going
+
+    def restart(self, sim: int, begin: Beginning, faults: Sequence[Fault] = (), pushes: Sequence[Push] = ()) -> None:
+        """Let one run begin anew; the others go on.
+
+        Args:
+            sim: the run.
+            begin: the state in which it begins.
+            faults: what breaks, each at its time since this beginning.
+            pushes: forces from outside, likewise.
+        """
+        self._deduplication.leave(sim)
+        self.disturbances.schedule(sim, faults, pushes)
+        self.batch.restart(sim, begin)
+        self.clocks[sim] = 0
+
+
+def _swims(control: Control) -> bool:
+    """Return whether a run begins with a swim."""
+    return isinstance(control, Swimming) or (isinstance(control, Amphibious) and control.begins == "swimming")
+
+
+_EARLY = 1e-6
+"""By how much too early rather than too late a trouble may be awaited [control period]."""
+
+
+class Deduplication:
+    """The runs of a batch in groups that differ in nothing that the physics has felt yet.
+
+    Such are the runs of one robot that is pushed in many ways, up to the push. Members of a group have the same robot,
+    ground, supply and first posture, and had the same commanded servo angles to the last bit; a run with another
+    command, or is about to break or be pushed, leaves.
+
+    Args:
+        runs: the runs.
+        first: the servo angles at the start, shape (run, servo) [rad].
+        period: of control [s].
+    """
+
+    def __init__(self, runs: Sequence[Run], first: np.ndarray, period: float) -> None:
+        groups: dict[object, list[int]] = {}
+        for sim, run in enumerate(runs):
+            world = (run.ground, run.afloat, run.lake, run.supply)
+            key = (run.robot, *world, hip_height(run.robot, run.gait), first[sim].tobytes())
+            groups.setdefault(key, []).append(sim)
+        self._groups = [members for members in groups.values() if len(members) > 1]
+        self._leaves: dict[int, set[int]] = {}
+        for sim, run in enumerate(runs):
+            times = [*(fault.at for fault in run.faults), *(push.at for push in run.pushes)]
+            if times:
+                self._leaves.setdefault(max(floor(min(times) / period - _EARLY), 0), set()).add(sim)
+        self._count = len(runs)
+        self._number()
+
+    def part(self, tick: int, targets: np.ndarray) -> None:
+        """Let those leave whose first trouble is due, and those that have other commands than the others.
+
+        Args:
+            tick: number of the control period.
+            targets: commanded servo angles in it, shape (run, servo) [rad].
+        """
+        if not self._groups:
+            return
+        leaving = self._leaves.get(tick, ())
+        parted: list[list[int]] = []
+        for members in self._groups:
+            by_command: dict[object, list[int]] = {}
+            for sim in members:
+                by_command.setdefault(sim if sim in leaving else targets[sim].tobytes(), []).append(sim)
+            parted += by_command.values()
+        if len(parted) > len(self._groups):
+            self._groups = [members for members in parted if len(members) > 1]
+            self._number()
+
+    def leave(self, sim: int) -> None:
+        """Let a run go on alone."""
+        if self._groups:
+            left = [[other for other in members if other != sim] for members in self._groups]
+            self._groups = [members for members in left if len(members) > 1]
+            self._number()
+
+    def _number(self) -> None:
+        """Note who follows whom."""
+        self.first = np.ones(self._count, dtype=bool)
+        self.others = np.array([sim for members in self._groups for sim in members[1:]], dtype=int)
+        self.whom = np.array([members[0] for members in self._groups for _ in members[1:]], dtype=int)
+        self.first[self.others] = False

@@ -1,0 +1,103 @@
+"""The smallest push that topples: a scan of forces, then a finer one below the first that does."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+
+from suchus.core.errors import InvalidDesign
+from suchus.sim.land.run import Push, Run
+from suchus.sim.land.simulation import simulate
+from suchus.core.progress import Progress, silent, staged
+
+
+def smallest_pushes(
+    runs: Sequence[Run],
+    directions: Sequence[tuple[float, float, float]],
+    *,
+    at: float,
+    levels: Sequence[float],
+    fell: Callable[[xr.Dataset], xr.DataArray],
+    finer: int = 4,
+    duration: float = 0.2,
+    body: str = "thorax",
+    wait: float = 3.0,
+    timestep: float = 0.005,
+    progress: Progress = silent,
+) -> Float[np.ndarray, "run direction"]:
+    """Return the smallest push that topples each run in each direction [N].
+
+    All levels of all runs and directions go into one batch; then ``finer`` forces between the last level that was
+    survived and the first that was not go into another. A robot that falls at one force and not at a greater one
+    counts as falling. Where no level topples, the answer is infinite.
+
+    Args:
+        runs: without pushes of their own.
+        directions: unit vectors in the world: forward, left, up.
+        at: when the push begins [s].
+        levels: forces to try, increasing [N].
+        fell: returns from a record which runs fell, along the dimension ``run``; its last sample is ``wait`` after the
+            push.
+        finer: number of forces of the second batch; the answer is off by at most the gap between two of them.
+        duration: of the push [s].
+        body: what is pushed.
+        wait: how long is waited for the fall [s].
+        timestep: of the physics [s].
+        progress: told the share that is done.
+
+    Raises:
+        InvalidDesign: the levels do not increase from above zero.
+    """
+    scan = np.array([0.0, *levels])
+    if len(scan) < 2 or np.any(np.diff(scan) <= 0):
+        raise InvalidDesign(f"levels are {tuple(levels)}; increasing forces above 0 N are needed.")
+    topples = _Trial(
+        runs, directions, Push(force=(0.0, 0.0, 0.0), at=at, duration=duration, body=body), fell, wait, timestep
+    )
+    forces = np.broadcast_to(scan[1:], (len(runs), len(directions), len(levels)))
+    coarse = topples(forces, staged(progress, "coarse levels", 0.0, 0.6))
+    first = np.where(coarse.any(axis=-1), coarse.argmax(axis=-1), len(levels))
+    low, smallest = scan[first], np.append(scan[1:], np.inf)[first]
+    if finer:
+        gap = np.where(
+            np.isfinite(smallest), smallest - low, 1.0
+        )  # of those that never fall any will do: it is not used
+        between = low[..., None] + gap[..., None] * (np.arange(1, finer + 1) / (finer + 1))
+        fine = topples(between, staged(progress, "finer levels", 0.6, 1.0))
+        nearer = np.take_along_axis(between, fine.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        smallest = np.where(fine.any(axis=-1) & np.isfinite(smallest), nearer, smallest)
+    progress("finer levels", 1.0)
+    return smallest
+
+
+class _Trial(NamedTuple):
+    """Runs to be pushed."""
+
+    runs: Sequence[Run]
+    directions: Sequence[tuple[float, float, float]]
+    push: Push
+    fell: Callable[[xr.Dataset], xr.DataArray]
+    wait: float
+    timestep: float
+
+    def __call__(
+        self, forces: Float[np.ndarray, "run direction force"], progress: Progress
+    ) -> Bool[np.ndarray, "run direction force"]:
+        """Tell which of the forces topple [N]."""
+        batch = [
+            replace(run, pushes=(replace(self.push, force=_along(toward, force)),))
+            for run, of_run in zip(self.runs, forces, strict=True)
+            for toward, levels in zip(self.directions, of_run, strict=True)
+            for force in levels
+        ]
+        end = self.push.at + self.push.duration + self.wait
+        record = simulate(batch, duration=end, timestep=self.timestep, every=10, progress=progress)
+        return np.asarray(self.fell(record).values, dtype=bool).reshape(forces.shape)
+
+
+def _along(direction: tuple[float, float, float], force: float) -> tuple[float, float, float]:
+    x, y, z = direction
+    return float(x * force), float(y * force), float(z * force)

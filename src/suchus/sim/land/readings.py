@@ -1,0 +1,261 @@
+"""The sensors of a batch: what they say now, for controllers, and what is kept of it, as a record."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from suchus.robot.design import water_table as hydro
+from suchus.robot.control import Sensed
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.robot.design.pieces import chambers, pieces
+from suchus.robot.design.water_table import column
+from suchus.sim.land.batch import SimulationBatch
+from suchus.sim.land.lake import lake_text, up
+from suchus.sim.land.run import Run
+from suchus.sim.model import ambient, joint_addresses, sensor_names, warming
+from suchus.sim.record import HEAT, WATER, dataset, ground_text
+
+
+class Sensors:
+    """Where the sensors of the robots of a batch stand, and what they say now."""
+
+    def __init__(self, batch: SimulationBatch, robot: Robot) -> None:
+        self._batch = batch
+        self.layout = place = layout(robot)
+        model = batch.model
+        self._columns = {
+            name: slice(int(model.sensor(name).adr[0]), int(model.sensor(name).adr[0] + model.sensor(name).dim[0]))
+            for name in sensor_names(place.robot)
+        }
+        self._felt = {
+            "servo_position": self.span(place.servos, "position"),
+            "servo_velocity": self.span(place.servos, "velocity"),
+            "servo_torque": self.span(place.servos, "torque"),
+            "orientation": self._columns["imu_orientation"],
+            "angular_velocity": self._columns["imu_gyroscope"],
+            "acceleration": self._columns["imu_accelerometer"],
+        }
+        self._pressed = {
+            "foot_pressure": self._upward(place.limb_names),
+            "belly_pressure": self._upward(place.trunk),
+        }
+
+    def __getitem__(self, name: str) -> Float[np.ndarray, "run n"]:
+        """Return what a sensor says of every run now; a view, which the next control period overwrites."""
+        return self._batch.readings[:, self._columns[name]]
+
+    def columns(self, name: str) -> slice:
+        """Return where the values of one sensor stand in a row of readings."""
+        return self._columns[name]
+
+    def span(self, names: Sequence[str], suffix: str) -> slice:
+        """Return where the values of neighbouring sensors, ``NAME_SUFFIX`` for each name, stand in a row."""
+        if not names:
+            return slice(0, 0)
+        return slice(self._columns[f"{names[0]}_{suffix}"].start, self._columns[f"{names[-1]}_{suffix}"].stop)
+
+    def tail(self, rows: np.ndarray) -> np.ndarray:
+        """Return the force of the tail on the ground in rows of readings; zero where there is no tail [N]."""
+        columns = self._columns.get("tail_force")
+        return np.zeros((*rows.shape[:-1], 3)) if columns is None else rows[..., columns]
+
+    def sensed(self, time: float) -> Sensed:
+        """Return what the robots feel now, in arrays of its own."""
+        rows = self._batch.readings
+        felt = {name: rows[:, columns].copy() for name, columns in self._felt.items()}
+        pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
+        depth = self._batch.waters.depths(self._batch.qpos[:, :3])
+        return Sensed(time=time, **felt, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)
+
+    def _upward(self, names: Sequence[str]) -> slice:
+        """Return where the vertical parts of neighbouring forces stand."""
+        all_parts = self.span(names, "force")
+        return slice(min(all_parts.start + 2, all_parts.stop), all_parts.stop, 3)
+
+
+class Recorder:
+    """Keeps samples of a batch, for which there is room from the beginning, and makes them a record.
+
+    Args:
+        batch: the simulations.
+        sensors: of the batch.
+        runs: of the batch.
+        samples: for how many there is room.
+    """
+
+    def __init__(self, batch: SimulationBatch, sensors: Sensors, runs: Sequence[Run], samples: int) -> None:
+        self._batch, self._sensors, self._runs = batch, sensors, runs
+        self._layout = place = sensors.layout
+        self._joints = joint_addresses(batch.model, place.hinges)
+        shape = len(runs), samples
+        self._readings = np.full((*shape, batch.readings.shape[1]), np.nan)
+        self._qpos = np.full((*shape, batch.qpos.shape[1]), np.nan)
+        self._phase = np.full((*shape, len(place.limbs)), np.nan)
+        self._targets = np.full((*shape, len(place.servos)), np.nan)
+        self._water = np.full((*shape, batch.waters.rows.shape[1]), np.nan)
+        self._worked = np.full((*shape, batch.worked.shape[1]), np.nan)
+        self._warm = warming(batch.model, runs[0].robot)
+        self._air = np.array([ambient(run.robot) for run in runs])
+        heated = len(place.servos) if (self._warm >= 0).any() else 0
+        self._temperature = np.full((*shape, heated), np.nan)
+
+    def store(self, sample: int, phase: np.ndarray, targets: np.ndarray) -> None:
+        """Keep one sample of the living.
+
+        Args:
+            sample: its number.
+            phase: of the limbs, shape (run, limb) [cycle].
+            targets: commanded servo angles, shape (run, servo) [rad].
+        """
+        alive = slice(None) if self._batch.alive.all() else self._batch.alive
+        self._readings[alive, sample] = self._batch.readings[alive]
+        self._qpos[alive, sample] = self._batch.qpos[alive]
+        self._phase[alive, sample] = phase[alive]
+        self._targets[alive, sample] = targets[alive]
+        self._water[alive, sample] = self._batch.waters.rows[alive]
+        self._worked[alive, sample] = self._batch.worked[alive]
+        if self._temperature.shape[-1]:
+            self._temperature[alive, sample] = self._batch.activations[alive][:, self._warm] + self._air[alive]
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return copies of all samples, by name."""
+        return {name: values.copy() for name, values in self._kept.items()}
+
+    def resume(self, state: Mapping[str, np.ndarray]) -> None:
+        """Take up the samples that another recorder of the same runs kept."""
+        for name, values in self._kept.items():
+            values[:] = state[name]
+
+    @property
+    def _kept(self) -> dict[str, np.ndarray]:
+        return {
+            "readings": self._readings, "qpos": self._qpos, "phase": self._phase, "targets": self._targets,
+            "water": self._water, "worked": self._worked, "temperature": self._temperature,
+        }  # fmt: skip
+
+    def sample(self, run: int, sample: int) -> dict[str, np.ndarray]:
+        """Return one stored sample of one run: the variables of ``record.VARIABLES`` without run and time.
+
+        In water those of ``record.WATER`` too, with servos that warm up that of ``record.HEAT``.
+        """
+        arrays = self._arrays()
+        wet = self._wet(arrays["foot_force"]) if self._water.shape[-1] else {}
+        return {name: np.array(values[run, sample]) for name, values in (arrays | wet | self._warmed()).items()}
+
+    def record(self, time: np.ndarray) -> xr.Dataset:
+        """Return everything that was read, in the schema of a run."""
+        robots = [run.robot for run in self._runs]
+        # parts of a block of all sensors would keep the whole block
+        arrays = {name: np.ascontiguousarray(values) for name, values in self._arrays().items()}
+        last = np.minimum(self._batch.ended, time[-1])
+        per_run = {
+            "mass": np.array([robot.mass for robot in robots]),
+            "period": np.array([run.gait.period for run in self._runs]),
+            "duty_factor": np.array([run.gait.duty_factor for run in self._runs]),
+            "ended": last,
+            "cause": np.array(self._batch.cause),
+            "stands_on": np.array(
+                [ground_text(None if run.afloat or run.solved else run.ground) for run in self._runs]
+            ),
+        }
+        coordinates: dict[str, Sequence[object] | np.ndarray] = {
+            "run": np.arange(len(robots)),
+            "time": time,
+            "leg": self._layout.limb_names,
+            "segment": self._layout.trunk,
+            "joint": self._layout.hinges,
+            "servo": self._layout.servos,
+            "robot": [robot.name for robot in robots],
+            "gait": [run.gait.name for run in self._runs],
+            "label": [run.label or run.gait.name for run in self._runs],
+        }
+        record = dataset(arrays, per_run, coordinates)
+        for name, values in self._warmed().items():
+            dims, unit, what = HEAT[name]
+            record[name] = (("run", *dims), values, {"units": unit, "long_name": what})
+        if not self._water.shape[-1]:
+            return record
+        return _put(record, self._wet(arrays["foot_force"]), [lake_text(run.lake) for run in self._runs])
+
+    def _warmed(self) -> dict[str, np.ndarray]:
+        """Return how warm the servos are, by the name of ``record.HEAT``; nothing where none warms up."""
+        return {"servo_temperature": self._temperature} if self._temperature.shape[-1] else {}
+
+    def _wet(self, foot_force: np.ndarray) -> dict[str, np.ndarray]:
+        """Return what the water does, by the names of ``record.WATER``."""
+        water, worked = self._water, self._worked
+        total = np.array([column(pieces(run.robot), "volume").sum() for run in self._runs])
+        ups = np.array([up(run.ground) for run in self._runs])
+        air = np.array([chambers(run.robot) for run in self._runs])
+        air[air.sum(axis=1) == 0.0] = 1.0  # nothing to share out
+        air_kept = water[..., hydro.AIR_FRACTION : hydro.AIR_FRACTION + 2]
+        weight = GRAVITY * np.array([run.robot.mass for run in self._runs])
+        return {
+            "water_level": water[..., hydro.LEVEL],
+            "air_fraction": np.einsum("rtc,rc->rt", air_kept, air / air.sum(axis=1, keepdims=True)),
+            "air_fraction_front": air_kept[..., 0],
+            "share_under": water[..., hydro.UNDER] / total[:, None],
+            "water_force": worked[..., :3],
+            "water_power": worked[..., 3],
+            "servo_power": worked[..., 4],
+            "feet_share": (foot_force.sum(axis=2) @ ups[:, :, None])[..., 0] / weight[:, None],
+        }
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        rows, place = self._readings, self._layout
+
+        def block(names: Sequence[str], suffix: str) -> np.ndarray:
+            return np.array(rows[..., self._sensors.span(names, suffix)])
+
+        def points(names: Sequence[str], suffix: str) -> np.ndarray:
+            return block(names, suffix).reshape(*rows.shape[:2], len(names), 3)
+
+        return {
+            "position": self._qpos[..., :3],
+            "orientation": self._qpos[..., 3:7],
+            "joint_angle": self._qpos[..., self._joints],
+            "centre_of_mass": rows[..., self._sensors.columns("centre_of_mass")],
+            "angular_momentum": rows[..., self._sensors.columns("angular_momentum")],
+            "snout": block(("snout",), "position"),
+            "tail_tip": block(("tail_tip",), "position"),
+            "foot_position": points([f"{limb}_foot" for limb in place.limb_names], "position"),
+            # the sensors read the robot's force on the ground; the record holds the ground's on the robot
+            "foot_force": -points(place.limb_names, "force"),
+            "belly_force": -points(place.trunk, "force"),
+            "tail_force": -self._sensors.tail(rows),
+            "servo_angle": block(place.servos, "position"),
+            "servo_velocity": block(place.servos, "velocity"),
+            "servo_torque": block(place.servos, "torque"),
+            "servo_target": self._targets,
+            "limb_phase": self._phase,
+            "angular_velocity": rows[..., self._sensors.columns("imu_gyroscope")],
+            "acceleration": rows[..., self._sensors.columns("imu_accelerometer")],
+        }
+
+
+def with_equal_variables(records: Sequence[xr.Dataset]) -> list[xr.Dataset]:
+    """Return records that hold the same variables: on dry land the water does nothing, and its level is NaN."""
+    if len({"water_level" in record for record in records}) < 2:
+        return list(records)
+    equal = []
+    for record in records:
+        if "water_level" in record:
+            equal.append(record)
+            continue
+        shape = record.sizes["run"], record.sizes["time"]
+        dry = {name: np.zeros((*shape, *(3 for dim in dims if dim == "xyz"))) for name, (dims, _, _) in WATER.items()}
+        equal.append(_put(record, dry | {"water_level": np.full(shape, np.nan)}, shape[0] * [""]))
+    return equal
+
+
+def _put(record: xr.Dataset, values: Mapping[str, np.ndarray], lakes: Sequence[str]) -> xr.Dataset:
+    """Return a record with what the water does beside the rest."""
+    about = {"units": "1", "long_name": "the lake as JSON; empty on dry land"}
+    wet: dict[str, Any] = {
+        name: (("run", *dims), values[name], {"units": unit, "long_name": what})
+        for name, (dims, unit, what) in WATER.items()
+    }
+    return record.assign(wet | {"swims_in": ("run", np.array(lakes, dtype=object).astype(str), about)})

@@ -1,0 +1,233 @@
+"""Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.control import Control, OpenLoop
+from suchus.robot.design import Robot
+from suchus.core.checks import require
+from suchus.robot.design.ground import Ground
+from suchus.robot.design.scale import check_step, control_period, physics_step
+from suchus.core.errors import Diverged, InvalidDesign, out_of_memory
+from suchus.sim.fault import Fault, check_faults
+from suchus.robot.gaits import gait_of
+from suchus.sim.land.extent import check_extent
+from suchus.sim.land.lake import Lake, check_lake
+from suchus.sim.land.loop import Loop, physics_steps
+from suchus.sim.land.readings import with_equal_variables
+from suchus.sim.land.run import Push, Run, check_pushes
+from suchus.sim.model import longest_step, topology
+from suchus.robot.motion import START, Gait, check_limits
+from suchus.core.progress import Progress, portion, silent
+from suchus.robot.robots import ROBOTS
+
+
+def simulate(
+    runs: Sequence[Run],
+    *,
+    duration: float = 9.0,
+    timestep: float | None = None,
+    every: int = 1,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Simulate a batch of runs.
+
+    The same runs give the same bytes, whatever the number of threads. A run that diverges ends there: its samples
+    from then on are NaN, ``ended`` and ``cause`` say when and why, and the others go on.
+
+    Args:
+        runs: at least one; the robots must share their number of tail joints, and which servos have integral action
+            and warm up.
+        duration: [s].
+        timestep: of the physics [s], a whole part of the control period; that of the robots' size if None, and where
+            one is ``afloat`` the longest, no longer than that, with which explicit steps hold its joints.
+        every: keep one sample of so many control periods.
+        progress: told the share that is done.
+
+    Returns:
+        A record with the dimensions ``run`` and ``time`` (see ``record.schema``), the first sample at time 0.
+        Contact forces are means over the control period before each sample, torques those of its last physics step.
+
+    Raises:
+        NoMemory: the memory does not suffice.
+        InvalidDesign: no runs, robots of different topology, a bad duration or time step, more than the machine bears.
+        OutsideLimits: a gait that a robot's joints cannot follow.
+        UnknownName: a fault of a joint, or a push on a body, that does not exist.
+    """
+    runs = tuple(runs)
+    if not runs:
+        raise InvalidDesign("there are no runs to simulate; give at least one.")
+    timestep = _own_step(runs) if timestep is None else timestep
+    period = _check(runs, duration, timestep, every)
+    check_extent(runs, duration, timestep, period, every)
+    ticks = round(duration / period)
+    parts, order = [], []
+    groups = _groups(runs)
+    for number, members in enumerate(groups):
+        grouped = [runs[i] for i in members]
+        with out_of_memory():
+            parts.append(_simulate_group(grouped, ticks, timestep, every, portion(progress, number, len(groups))))
+        order.extend(members)
+    parts = with_equal_variables(parts)
+    record = parts[0] if len(parts) == 1 else xr.concat(parts, "run", join="exact", data_vars="minimal")
+    if len(groups) > 1:
+        record = record.isel(run=np.argsort(order))
+    record = record.assign_coords(run=np.arange(len(runs)))
+    record.attrs.update(timestep=timestep, control_period=period)
+    return record
+
+
+def _own_step(runs: Sequence[Run]) -> float:
+    """Return the time step of runs that are asked for none [s]."""
+    step, period = physics_step(runs[0].robot), control_period(runs[0].robot)
+    longest = [longest_step(robot) for robot in {run.robot for run in runs if run.afloat is not None}]
+    return step if not longest or min(longest) >= step else period / ceil(period / min(longest))
+
+
+def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) -> float:
+    """Refuse what cannot be simulated; return the control period [s]."""
+    periods = {control_period(run.robot) for run in runs}
+    if len(periods) > 1:
+        known = " and ".join(f"{period:g}" for period in sorted(periods))
+        raise InvalidDesign(
+            f"the robots of one batch have control periods of {known} s, "
+            "since they differ so much in size; simulate them one after another."
+        )
+    (period,) = periods
+    require("simulate", "duration", duration, period, 86400.0, "s")
+    require("simulate", "every", every, 1, 10000, "control periods")
+    physics_steps(timestep, period)
+    for robot in {run.robot for run in runs}:
+        check_step(robot, timestep)
+    if len({topology(run.robot) for run in runs}) > 1:
+        raise InvalidDesign(
+            "the robots of one batch must have the same bodies, hinges and servos (equally many tail joints, as an "
+            "example), and integral action in the same servos, and the same servos must warm up; "
+            "simulate them one after another."
+        )
+    for pair in {(run.robot, run.gait) for run in runs}:
+        check_limits(*pair)
+    for run in runs:
+        if run.solved is not None:
+            raise InvalidDesign(
+                f"the water of run {run.label or run.gait.name!r} is a flow that is solved together with the robot; "
+                "give the runs to suchus.swim.coupling.simulate."
+            )
+        check_faults(run.faults, run.robot, duration)
+        check_pushes(run.pushes, run.robot, duration)
+        if run.lake is not None:
+            check_lake(run.robot, run.lake)
+    return period
+
+
+def _groups(runs: Sequence[Run]) -> list[list[int]]:
+    """Return the indices of the runs that share a controller: those whose controls are of one class.
+
+    Runs on different types of relief, and runs in water and on dry land, have models of different sizes and run one
+    after another.
+    """
+    groups: dict[object, list[int]] = {}
+    for i, run in enumerate(runs):
+        key = type(run.control), type(run.ground.relief), run.lake is None
+        groups.setdefault(key, []).append(i)
+    return list(groups.values())
+
+
+def _simulate_group(runs: Sequence[Run], ticks: int, timestep: float, every: int, progress: Progress) -> xr.Dataset:
+    loop = Loop(runs, timestep, ticks=ticks + 1)
+    recorder = loop.recorder(ticks // every + 1)
+    for tick in range(ticks + 1):
+        loop.decide()
+        if tick % every == 0:
+            recorder.store(tick // every, loop.command.phase, loop.command.targets)
+        if tick < ticks:
+            read = loop.feels or (tick + 1) % every == 0
+            loop.advance(felt=read, read=read)
+        if tick % 16 == 0:
+            progress("simulating", tick / ticks)
+    progress("simulating", 1.0)
+    return recorder.record(np.arange(0, ticks + 1, every) * loop.period)
+
+
+def crawl(
+    robot: Robot | str,
+    gait: Gait | str,
+    *,
+    duration: float | None = None,
+    cycles: float | None = None,
+    faults: Sequence[Fault] = (),
+    pushes: Sequence[Push] = (),
+    ground: Ground | None = None,
+    lake: Lake | None = None,
+    control: Control | None = None,
+    noise: float = 0.0,
+    seed: int = 0,
+    timestep: float | None = None,
+) -> xr.Dataset:
+    """Let a robot walk.
+
+    Args:
+        robot: the robot that walks, or its name on the shelf.
+        gait: the gait, its name on the shelf, or the path of its file.
+        duration: including the first second, in which the robot settles [s]; 9 s where ``cycles`` is not given.
+        cycles: cycles of the gait after that second, in the place of ``duration``, above 0 [-]: gaits of other cycle
+            times are compared over equal cycles, and by their speed.
+        faults: what breaks, and when.
+        pushes: forces from outside.
+        ground: the ground; level if None.
+        lake: the water around the robot; dry land if None.
+        control: open loop if None.
+        noise: standard deviation of noise on every servo angle commanded [rad].
+        seed: of the noise.
+        timestep: of the physics [s]; that of the robot's size if None.
+
+    Returns:
+        The record, without the dimension ``run`` (see ``record.schema``).
+
+    Raises:
+        InvalidDesign: both ``duration`` and ``cycles`` are given, or one of them is out of range.
+        Diverged: the simulation diverged; the error carries the time and the record so far.
+        OutsideLimits: the robot's joints cannot follow the gait.
+    """
+    run = Run(
+        robot=ROBOTS.resolve(robot),
+        gait=gait_of(ROBOTS.resolve(robot), gait),
+        ground=ground or Ground(),
+        lake=lake,
+        faults=tuple(faults),
+        pushes=tuple(pushes),
+        control=control or OpenLoop(),
+        noise=noise,
+        seed=seed,
+    )
+    record = simulate([run], duration=_duration(run.gait, duration, cycles), timestep=timestep).isel(run=0)
+    if record.cause.item():
+        time = float(record.ended)
+        raise Diverged(
+            f"the crawl diverged at {time:.2f} s: {record.cause.item()}. "
+            f"A shorter timestep than {record.timestep} s may help.",
+            time=time,
+            record=record.sel(time=slice(None, time + 1e-9)),
+        )
+    return record
+
+
+_USUAL = 9.0
+"""Duration of a crawl that names none [s]: one second to settle, and two cycles of the article's gait."""
+
+
+def _duration(gait: Gait, duration: float | None, cycles: float | None) -> float:
+    """Return how long to simulate [s].
+
+    Raises:
+        InvalidDesign: both are given, or ``cycles`` is out of range.
+    """
+    if cycles is None:
+        return _USUAL if duration is None else duration
+    if duration is not None:
+        raise InvalidDesign(f"crawl was given duration = {duration!r} s and cycles = {cycles!r}; give one of the two.")
+    require("crawl", "cycles", cycles, 0.01, 10_000.0, "")
+    return START + cycles * gait.period

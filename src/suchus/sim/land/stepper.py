@@ -1,0 +1,500 @@
+"""One robot with its servos, springs, controller and troubles, stepped by whoever knows what the water does to it.
+
+Time goes on in stretches of whole physics steps. A stretch can be gone through as often as it takes until force and
+motion agree: it begins each time in the same state, and what was commanded and pushed the first time is kept. A stretch
+ends where a fault begins, or a push does or ends.
+
+``state`` and ``resume`` let a run that was stopped go on to the same bytes. Controllers and faults have no state to
+write down: they decide again by all that they felt, and must come to the same commands.
+
+In the plane the root moves along, to the left and about the vertical; the others of its coordinates are as good as
+locked, by an inertia that ``LOCKED`` times exceeds the robot's. Else all coordinates of the robot are the water's too.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+from mujoco.batch import SimulationError
+
+from suchus.robot.design import water_table as hydro
+from suchus.robot.control import Command, Controller
+from suchus.robot.design import layout
+from suchus.core.errors import Diverged, UnreadableFile
+from suchus.sim.land.batch import Beginning, SimulationBatch
+from suchus.sim.land.links import RobotLinks
+from suchus.sim.land.loop import Loop
+from suchus.sim.land.readings import Recorder
+from suchus.sim.land.run import Run
+from suchus.sim.model import joint_addresses
+from suchus.sim.model.stability import damping_of
+
+LOCKED = 1e7
+"""Inertia of the root against heave, roll and pitch, over the robot's own [-]."""
+_PLANE, _ACROSS = (0, 1, 5), (2, 3, 4)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoordinateState:
+    """Where the root and some joints are, and how fast they move.
+
+    In space the root has a place of seven numbers, its position and a quaternion, and six rates: its velocity in the
+    world and its angular velocity about its own axes.
+    """
+
+    place: Float[np.ndarray, " place"]
+    """Root along, to the left and its yaw, then the joints; in space see above [m, rad, -]."""
+    rate: Float[np.ndarray, " coordinate"]
+    """Their rates [m/s, rad/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """What became of the robot in a stretch of time.
+
+    Works are those of the forces as they act over each step, dampers and the servos' loops with the velocity at its
+    end, along the mean of its velocities at both ends: they add up to the kinetic energy that is gained.
+    """
+
+    way: Float[np.ndarray, " coordinate"]
+    """Integral of the coordinates' velocities [m, rad]."""
+    worked: float
+    """Work of the servos on the joints [J]."""
+    yielded: float
+    """Work of springs, dampers, friction and joint limits on the joints [J]."""
+    energy: float
+    """Kinetic energy at its end, the water's not counted [J]."""
+    effort: float
+    """Work of the servos, braking counted as much as driving [J]."""
+    momentum: Float[np.ndarray, " axis"]
+    """Momentum of the whole robot at its end, along and to the left, in space upwards too, the water's not counted
+    [kg m/s]."""
+    strayed: Float[np.ndarray, " axis"]
+    """Momentum that the robot gained without a force: MuJoCo's step holds the mass matrix of its start [kg m/s]."""
+
+
+@dataclass(slots=True)
+class _Saved:
+    """A state to begin from."""
+
+    state: np.ndarray
+    step: int
+    last: "_Decision | None"
+    passive: np.ndarray
+    bias: np.ndarray
+    inertia: np.ndarray
+    carried: np.ndarray
+    momentum: np.ndarray
+    decisions: dict[int, "_Decision"] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class _Tape:
+    """What was seen in each physics step of a stretch, one a row.
+
+    Velocities, passive forces and those of the motion itself are of its start too.
+    """
+
+    velocity: list[np.ndarray]
+    passive: list[np.ndarray]
+    bias: list[np.ndarray]
+    served: list[np.ndarray] = field(default_factory=list)
+    held: list[np.ndarray] = field(default_factory=list)
+    smooth: list[np.ndarray] = field(default_factory=list)
+    power: list[float] = field(default_factory=list)
+
+
+class _Decision(NamedTuple):
+    """What was decided at the beginning of a control period, by what was felt then."""
+
+    command: Command
+    """What the servos are commanded."""
+    pushed: np.ndarray
+    """Forces from outside [N]."""
+    felt: dict[str, np.ndarray]
+    """What controller and faults decided by; see ``SimulationBatch.felt``."""
+
+
+class Stepper:
+    """A run whose water is solved elsewhere.
+
+    Args:
+        run: of one robot.
+        joints: names of those that the water feels beside the root, which then moves in its plane; None for all, and
+            a root that moves in space.
+        timestep: of the physics [s], a whole part of the control period.
+        ticks: control periods for which controller, noise and record are prepared.
+        controller: what decides; None for the one that the run names.
+        begin: state in which it begins; None for the controller's first posture.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        joints: tuple[str, ...] | None,
+        timestep: float,
+        ticks: int,
+        *,
+        controller: Controller | None = None,
+        begin: Beginning | None = None,
+    ) -> None:
+        self._loop = loop = Loop([run], timestep, ticks=ticks + 1, controller=controller)
+        if begin is not None:
+            loop.restart(0, begin, run.faults, run.pushes)
+        self.timestep, self.period = timestep, loop.period
+        self._per_tick = round(loop.period / timestep)
+        self._batch, self._physics = loop.batch, loop.batch.physics
+        self.model: Any = loop.batch.model
+        self._recorder: Recorder = loop.recorder(ticks + 1)
+        self._ticks = ticks
+        self.links = RobotLinks(self.model)
+        """What the robot is made of, and how it moves in space."""
+        self.in_plane = joints is not None
+        joints = self.links.joints if joints is None else joints
+        self._places = joint_addresses(self.model, joints)
+        hinge_dofs = [int(self.model.joint(name).dofadr[0]) for name in joints]
+        self.dofs = np.array([*(_PLANE if self.in_plane else range(6)), *hinge_dofs])
+        self._joints = joints
+        hinges = [self.model.joint(name) for name in joints]
+        self._ranges = np.array(
+            [
+                hinge.range if hinge.id in np.flatnonzero(self.model.jnt_limited) else (-np.inf, np.inf)
+                for hinge in hinges
+            ]
+        ).reshape(-1, 2)
+        self._other_hinges = [
+            name for name in layout(run.robot).hinges
+            if self.in_plane and name not in joints and name in {hinge.name for hinge in run.robot.axis_hinges}
+        ]  # fmt: skip
+        self._data = mujoco.MjData(self.model)
+        self._applied = self._physics.bind("qfrc_applied")
+        self._pushed = self._physics.bind("xfrc_applied")
+        self._user = self._physics.bind("userdata")
+        self._served, self._passive, self._held = (
+            self._physics.bind(f"qfrc_{name}") for name in ("actuator", "passive", "constraint")
+        )
+        self._smooth, self._bias = self._physics.bind("qfrc_smooth"), self._physics.bind("qfrc_bias")
+        self._whole = np.zeros((self.model.nv, self.model.nv))
+        self.steps = 0
+        self.at_begin: CoordinateState = self.now
+        """State in which the present stretch began."""
+        self._saved: _Saved | None = None
+        self._last: _Decision | None = None
+        self._decided: list[_Decision] = []
+        self._is_read = False
+        ends = [time / loop.period for push in run.pushes for time in (push.at, push.at + push.duration)]
+        ticks_of = [np.ceil(fault.at / loop.period - 1e-9) for fault in run.faults]
+        ticks_of += [round_(end) for end in ends for round_ in (np.floor, np.ceil)]
+        self._troubles = np.unique(np.array(ticks_of, int)) * self._per_tick
+        self.burden(np.zeros((len(self.dofs), len(self.dofs))))
+        self._physics.forward()
+        self._batch.read(slice(None))
+        self._is_looked_at = False
+        self._look()
+        self._damping = damping_of(self.model, self._data)
+        self._tape = _Tape([], [], [])
+
+    # --- where it is -------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Time since the beginning [s]."""
+        return self.steps * self.timestep
+
+    @property
+    def now(self) -> CoordinateState:
+        """Root and joints now."""
+        qpos, qvel = self._batch.qpos[0], self._batch.qvel[0]
+        if not self.in_plane:
+            return CoordinateState(place=qpos.copy(), rate=qvel.copy())
+        w, x, y, z = qpos[3:7]
+        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        return CoordinateState(
+            place=np.array([qpos[0], qpos[1], yaw, *qpos[self._places]]), rate=np.array(qvel[self.dofs])
+        )  # fmt: skip
+
+    @property
+    def off_plane(self) -> tuple[str, float]:
+        """Joint of the axis that is bent out of the plane the most, and by how much [rad]; an empty name for none."""
+        bends = {
+            name: float(self._batch.qpos[0, int(self.model.joint(name).qposadr[0])]) for name in self._other_hinges
+        }
+        worst = max(bends, key=lambda name: abs(bends[name]), default="")
+        return worst, bends.get(worst, 0.0)
+
+    @property
+    def at_stops(self) -> dict[str, float]:
+        """Joints that are at the end of their range, with their angles [rad]."""
+        angles, (low, high) = self._batch.qpos[0, self._places], self._ranges.T
+        found = np.flatnonzero((angles <= low) | (angles >= high))
+        return {self._joints[k]: float(angles[k]) for k in found}
+
+    def mass(self) -> Float[np.ndarray, "coordinate coordinate"]:
+        """Return the mass matrix of the coordinates as they are now, without the water's [kg, kg m, kg m2]."""
+        self._look()
+        return np.array(self._whole[np.ix_(self.dofs, self.dofs)])
+
+    def centre(self) -> Float[np.ndarray, "3"]:
+        """Return the centre of mass in the world [m]."""
+        self._look()
+        return np.array(self._data.subtree_com[1])
+
+    def show(self, batch: SimulationBatch, row: int) -> None:
+        """Let a run of another batch of such robots be where this one is, and feel the same."""
+        self._read()
+        batch.feel(row, self._batch.felt(0))
+        batch.physics.state[row] = self._physics.state[0]
+
+    def _look(self) -> None:
+        if self._is_looked_at:
+            return
+        self._is_looked_at = True
+        data, model = self._data, self.model
+        data.qpos[:], data.qvel[:] = self._batch.qpos[0], self._batch.qvel[0]
+        data.userdata[:] = 0.0
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_crb(model, data)
+        mujoco.mj_fullM(model, data, self._whole)
+
+    # --- what the water does -----------------------------------------------------------------------------------
+
+    def burden(self, added: Float[np.ndarray, "coordinate coordinate"]) -> Float[np.ndarray, "coordinate coordinate"]:
+        """Let joints and root have an added mass from now on; return how much of it MuJoCo's matrix has room for.
+
+        It has none between joints on different branches of the tree, as trunk and tail. What it takes in the place of
+        these is never too little in any motion, so that the matrix stays positive definite.
+        """
+        model = self.model
+        whole = np.zeros((model.nv, model.nv))
+        whole[np.ix_(self.dofs, self.dofs)] = added
+        heavy = LOCKED * float(model.body_mass.sum())
+        for dof in _ACROSS if self.in_plane else ():
+            whole[dof, dof] = heavy
+        rows, columns = self._entries
+        room = np.zeros(whole.shape, bool)
+        room[rows, columns] = room[columns, rows] = True
+        whole = np.where(room, whole, 0.0) + _above(np.where(room, 0.0, whole), room)
+        self._user[0, hydro.NUMBERS :] = 0.0
+        self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)] = whole[rows, columns]
+        return np.array(whole[np.ix_(self.dofs, self.dofs)])
+
+    @cached_property
+    def _entries(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of MuJoCo's matrix that have room."""
+        rows = np.repeat(np.arange(self.model.nv), self.model.M_rownnz)
+        return rows, np.array(self.model.M_colind)[: len(rows)]
+
+    def _carried(self) -> Float[np.ndarray, "dof dof"]:
+        """Return what the mass matrix of all that moves has been burdened with."""
+        (rows, columns), whole = self._entries, np.zeros_like(self._whole)
+        given = self._user[0, hydro.NUMBERS : hydro.NUMBERS + len(rows)]
+        whole[rows, columns] = whole[columns, rows] = given
+        return whole
+
+    @property
+    def axes(self) -> int:
+        """Axes in which the root moves [-]."""
+        return 2 if self.in_plane else 3
+
+    def _momentum(self) -> Float[np.ndarray, " axis"]:
+        """Return the momentum of the whole robot along the axes in which the root moves [kg m/s]."""
+        self._look()
+        return np.asarray(self._whole[: self.axes] @ self._batch.qvel[0])
+
+    # --- going on ----------------------------------------------------------------------------------------------
+
+    def begin(self) -> None:
+        """Begin a stretch here."""
+        self.at_begin = self.now
+        state, passive, bias = self._physics.state[0].copy(), self._passive[0].copy(), self._bias[0].copy()
+        carried, momentum = self._carried(), self._momentum()
+        self._saved = _Saved(
+            state, self.steps, self._last, passive, bias, self._whole + carried, carried, momentum
+        )  # fmt: skip
+
+    def until(self, time: float, most: int, landing: int = 0) -> int:
+        """Return how many physics steps the next stretch has, so that none goes beyond a time [s] or a trouble.
+
+        Args:
+            time: at which a stretch ends [s].
+            most: physics steps in a stretch, at most [-].
+            landing: stretches before such an end that are about equally long, so that the last is no jolt [-].
+        """
+        ahead = self._troubles[self._troubles > self.steps]
+        left = max(min([round(time / self.timestep) - self.steps, *(ahead[:1] - self.steps).tolist()]), 1)
+        stretches = -(-left // most)
+        return -(-left // stretches) if stretches <= max(landing, 1) else most
+
+    def go(self, count: int, force: Float[np.ndarray, " coordinate"]) -> CoordinateState:
+        """Go through the stretch that was begun, in so many steps, under a constant force of the water; ``account`` it.
+
+        Args:
+            count: physics steps.
+            force: along the coordinates, that on a body that does not accelerate; the added mass comes on top [N, N m].
+
+        Returns:
+            Root and joints at its end.
+
+        Raises:
+            Diverged: the physics did.
+        """
+        saved = self._saved
+        assert saved is not None
+        kept = self._user[0].copy()
+        self._physics.state[0] = saved.state
+        self._user[0] = kept
+        self.steps, self._last = saved.step, saved.last
+        self._is_looked_at = False
+        self._applied[0] = 0.0
+        self._applied[0, self.dofs] = force
+        sensors, speeds, torques = self._batch.sensors[0], self._batch.velocities, self._batch.torques
+        tape = self._tape = _Tape([self._batch.qvel[0].copy()], [saved.passive], [saved.bias])
+        for _ in range(count):
+            if self.steps % self._per_tick == 0:
+                self._decide(saved)
+            assert self._last is not None
+            self._batch.ctrl[0] = self._last.command.targets[0]
+            try:
+                self._physics.step(None, 1, int(mujoco.mjtStage.mjSTAGE_VEL))
+            except SimulationError as error:
+                raise Diverged(
+                    f"at t = {self.time:.4g} s the robot in the flow diverged: {self._physics.error(0)}; take a "
+                    f"shorter timestep than {self.timestep:g} s.", time=self.time,
+                ) from error  # fmt: skip
+            tape.velocity.append(self._batch.qvel[0].copy())
+            tape.passive.append(self._passive[0].copy())
+            tape.bias.append(self._bias[0].copy())
+            tape.served.append(self._served[0].copy())
+            tape.held.append(self._held[0].copy())
+            tape.smooth.append(self._smooth[0].copy())
+            tape.power.append(float(np.abs(sensors[speeds] * sensors[torques]).sum()))
+            self.steps += 1
+        return self.now
+
+    def account(self) -> Stretch:
+        """Return what became of the robot in the stretch that it went through last."""
+        saved = self._saved
+        assert saved is not None
+        tape, dt = self._tape, self.timestep
+        rate = np.array(tape.velocity)
+        way, gained = 0.5 * dt * (rate[1:] + rate[:-1]), np.diff(rate, axis=0)
+        # MuJoCo's implicit step takes dampers and servos at the velocity it leads to: by so much they differ from qfrc
+        later = gained / dt @ saved.inertia - np.array(tape.smooth) - np.array(tape.held)
+        damped = -gained @ self._damping
+        last, momentum = rate[-1], self._momentum()
+        pushed = dt * (np.array(tape.smooth) + np.array(tape.bias[:-1]) + np.array(tape.held)).sum(axis=0)
+        given = (pushed - saved.carried @ (last - rate[0]))[: self.axes]
+        return Stretch(
+            way=way.sum(axis=0)[self.dofs],
+            worked=float(((np.array(tape.served) + later - damped) * way).sum()),
+            yielded=float(((np.array(tape.passive[:-1]) + np.array(tape.held) + damped) * way).sum()),
+            energy=0.5 * float(last @ self._whole @ last), effort=dt * sum(tape.power),
+            momentum=momentum, strayed=momentum - saved.momentum - given,
+        )  # fmt: skip
+
+    def _decide(self, saved: _Saved) -> None:
+        """Take what a control period is commanded, which is thought of once, and keep a sample."""
+        tick = self.steps // self._per_tick
+        again = tick in saved.decisions
+        first = not (again and self.steps == saved.step)  # else the sensors are those of the end of the last go
+        if first:
+            self._read()
+        if not again:
+            saved.decisions[tick] = self._thought(tick)
+            self._decided.append(saved.decisions[tick])
+        self._last = saved.decisions[tick]
+        self._pushed[0] = self._last.pushed
+        self._is_read = False
+        if first:
+            self._store(tick)
+
+    def _thought(self, tick: int) -> _Decision:
+        felt = self._batch.felt(0)
+        self._loop.tick = self._loop.clocks[:] = tick
+        self._loop.decide()
+        return _Decision(self._loop.command, self._pushed[0].copy(), felt)
+
+    def _read(self) -> None:
+        if not self._is_read:
+            self._batch.read(slice(None))
+
+    def _store(self, tick: int) -> None:
+        assert self._last is not None
+        if tick <= self._ticks:
+            self._recorder.store(tick, self._last.command.phase, self._last.command.targets)
+
+    def finish(self) -> None:
+        """Keep the last sample, if the run has come to the end of a control period."""
+        if self.steps % self._per_tick == 0:
+            self._read()
+            self._store(self.steps // self._per_tick)
+
+    # --- stopped and gone on -----------------------------------------------------------------------------------
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Return all with which this run can go on in another process, between two stretches."""
+        self._read()  # where a control period ends the next decision is by this, else by what is read later
+        felt = [one.felt for one in self._decided]
+        return {
+            "steps": np.array(self.steps), "physics": self._physics.state[0].copy(),
+            "targets": np.array([one.command.targets[0] for one in self._decided]),
+            **{f"felt.{name}": np.array([one[name] for one in felt]) for name in (felt[0] if felt else ())},
+            **{f"now.{name}": values for name, values in self._batch.felt(0).items()},
+            **{f"samples.{name}": values for name, values in self._recorder.state().items()},
+        }  # fmt: skip
+
+    def resume(self, state: Mapping[str, np.ndarray]) -> None:
+        """Go on from the state of a run of the same robot that was stopped; to be asked of a fresh one.
+
+        Raises:
+            UnreadableFile: controller or faults decide otherwise than they did then.
+        """
+        parts = {kind: _under(state, f"{kind}.") for kind in ("felt", "now", "samples")}
+        for tick, targets in enumerate(state["targets"]):
+            self._batch.feel(0, {name: values[tick] for name, values in parts["felt"].items()})
+            self._last = self._thought(tick)
+            self._decided.append(self._last)
+            if not np.array_equal(self._last.command.targets[0], targets):
+                raise UnreadableFile(
+                    f"what was kept of the run {self._loop.runs[0].label!r} cannot go on: its controller commands "
+                    f"otherwise at t = {tick * self.period:.4g} s than it did. Delete what was kept to start anew."
+                )
+        self.steps = int(state["steps"])
+        self._recorder.resume(parts["samples"])
+        self._batch.feel(0, parts["now"])
+        self._physics.state[0] = state["physics"]
+        self._physics.forward(None, int(mujoco.mjtStage.mjSTAGE_VEL))
+        self._is_looked_at = False
+        self._is_read = self.steps % self._per_tick == 0
+        self.at_begin = self.now
+
+    def end(self, time: float, cause: str) -> None:
+        """Let the run have ended at a time [s], with the last samples that were taken until then."""
+        self._batch.alive[0], self._batch.ended[0], self._batch.cause[0] = False, time, cause
+
+    def record(self) -> xr.Dataset:
+        """Return what was read, in the schema of a run; NaN where nothing has been yet."""
+        return self._recorder.record(np.arange(self._ticks + 1) * self.period)
+
+
+def _under(state: Mapping[str, np.ndarray], start: str) -> dict[str, np.ndarray]:
+    """Return the values whose names begin so, by the rest of their names."""
+    return {name.removeprefix(start): values for name, values in state.items() if name.startswith(start)}
+
+
+def _above(left: Float[np.ndarray, "n n"], room: Bool[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
+    """Return a matrix that is nowhere smaller than another one, as quadratic forms, with entries where there is room.
+
+    Between two branches it is the absolute value, else a diagonal of sums.
+    """
+    values, vectors = np.linalg.eigh(left)
+    size = (vectors * np.abs(values)) @ vectors.T
+    if np.abs(np.where(room, 0.0, size)).max() <= 1e-9 * np.abs(size).max(initial=1e-300):
+        return np.where(room, size, 0.0)
+    return np.diag(np.abs(left).sum(axis=1))

@@ -1,0 +1,150 @@
+"""Where the fields of MuJoCo's structs lie: derived from its own description, verified against its bindings."""
+
+import ctypes
+import re
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.introspect import structs
+from mujoco.introspect.ast_nodes import AnonymousStructDecl, ArrayType, PointerType
+
+from suchus.core.errors import OtherMuJoCo
+
+_PLAIN: dict[str, Any] = {
+    "mjtNum": ctypes.c_double,
+    "double": ctypes.c_double,
+    "float": ctypes.c_float,
+    "int": ctypes.c_int,
+    "char": ctypes.c_char,
+    "mjtSize": ctypes.c_int64,
+    "int64_t": ctypes.c_int64,
+    "mjtByte": ctypes.c_ubyte,
+    "mjtBool": ctypes.c_bool,
+    "size_t": ctypes.c_size_t,
+    "uint64_t": ctypes.c_uint64,
+    "uintptr_t": ctypes.c_size_t,
+}
+"""Plain C types by the names that MuJoCo's description uses."""
+
+
+def offset(struct: str, field: str) -> int:
+    """Return where a field of a struct begins [byte].
+
+    Args:
+        struct: as ``mjModel``.
+        field: its name; of a struct inside, as ``opt.gravity``.
+
+    Raises:
+        OtherMuJoCo: MuJoCo's description has no such struct or field, or a type that is not known.
+    """
+    first, _, rest = field.partition(".")
+    kind = _struct(struct)
+    if not hasattr(kind, first):
+        raise OtherMuJoCo(f"{struct}.{field}", mujoco.__version__, "its description has no such field")
+    begins = int(getattr(kind, first).offset)
+    if not rest:
+        return begins
+    members: Any = kind._fields_
+    inner = next(member[1] for member in members if member[0] == first)
+    return begins + offset(inner.__name__, rest)
+
+
+@lru_cache(maxsize=1)
+def plugin_struct() -> type[ctypes.Structure]:
+    """Return the struct of a plugin with its members in the order of the header that comes with MuJoCo.
+
+    ``mujoco.introspect`` does not describe it. Functions are addresses.
+
+    Raises:
+        OtherMuJoCo: there is no such header, or the struct lacks what a plugin of passive forces needs.
+    """
+    header = Path(mujoco.__file__).parent / "include" / "mujoco" / "mjplugin.h"
+    text = re.sub(r"//[^\n]*", "", header.read_text(encoding="utf-8")) if header.is_file() else ""
+    body = re.search(r"typedef struct mjpPlugin_ \{(.*?)\} mjpPlugin;", text, re.DOTALL)
+    fields: list[tuple[str, Any]] = []
+    for declaration in body.group(1).split(";") if body else ():
+        name = re.search(r"(?<=\(\*)\w+(?=\))|\w+\s*$", declaration.strip())
+        if name is None:
+            continue
+        kind = ctypes.c_char_p if name.group() == "name" else ctypes.c_void_p if "*" in declaration else ctypes.c_int
+        fields.append((name.group(), kind))
+    missing = {"name", "capabilityflags", "nstate", "init", "reset", "compute"} - {name for name, _ in fields}
+    if missing:
+        raise OtherMuJoCo(f"mjpPlugin.{min(missing)}", mujoco.__version__, "its header has no such field")
+    return type("mjpPlugin", (ctypes.Structure,), {"_fields_": fields})
+
+
+@lru_cache(maxsize=32)
+def _struct(name: str) -> type[ctypes.Structure]:
+    """Return a struct with the fields of MuJoCo's description in their order."""
+    if name not in structs.STRUCTS:
+        raise OtherMuJoCo(name, mujoco.__version__, "its description has no such struct")
+    return _made(name, structs.STRUCTS[name].fields)
+
+
+def _made(name: str, members: Sequence[Any]) -> type[ctypes.Structure]:
+    fields = [(member.name, _type(f"{name}.{member.name}", member.type)) for member in members]
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+def _type(where: str, declared: Any) -> Any:
+    if isinstance(declared, PointerType):
+        return ctypes.c_void_p
+    if isinstance(declared, ArrayType):
+        return _type(where, declared.inner_type) * int(np.prod(declared.extents))
+    if isinstance(declared, AnonymousStructDecl):
+        return _made(where, declared.fields)
+    if declared.name in _PLAIN:
+        return _PLAIN[declared.name]
+    if declared.name in structs.STRUCTS:
+        return _struct(declared.name)
+    if hasattr(mujoco, declared.name):  # an enumeration
+        return ctypes.c_int
+    raise OtherMuJoCo(where, mujoco.__version__, f"its type {declared.name} is not known")
+
+
+def verify(struct: str, instance: Any, fields: Sequence[str]) -> None:
+    """Compare what lies at the derived offsets with what MuJoCo's bindings say.
+
+    Args:
+        struct: as ``mjModel``.
+        instance: a ``mujoco.MjModel`` or ``mujoco.MjData`` in which no field is empty.
+        fields: the names of its fields; arrays are compared by address, numbers by value.
+
+    Raises:
+        OtherMuJoCo: another thing lies there; the message names field and version.
+    """
+    for field, derived in _found(struct, instance._address, fields):
+        bound = _bound(instance, field)
+        same = derived == bound.ctypes.data if isinstance(bound, np.ndarray) else derived == bound
+        if not same:
+            raise OtherMuJoCo(
+                f"{struct}.{field}", mujoco.__version__, f"{derived} lies at its offset, not what it holds"
+            )
+
+
+def _bound(instance: Any, field: str) -> Any:
+    for name in field.split("."):
+        instance = getattr(instance, name)
+    return instance
+
+
+def _found(struct: str, address: int, fields: Sequence[str]) -> Iterator[tuple[str, float]]:
+    """Yield what lies at the offset of each field: the address of an array, or the number itself."""
+    for field in fields:
+        place = address + offset(struct, field)
+        owner, name = (structs.STRUCTS[struct], field)
+        while "." in name:
+            first, _, name = name.partition(".")
+            owner = structs.STRUCTS[next(member.type.name for member in owner.fields if member.name == first)]
+        declared = next(member.type for member in owner.fields if member.name == name)
+        if isinstance(declared, ArrayType):
+            yield field, place
+        elif isinstance(declared, PointerType):
+            yield field, ctypes.c_size_t.from_address(place).value
+        else:
+            yield field, _PLAIN[declared.name].from_address(place).value

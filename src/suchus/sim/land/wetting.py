@@ -1,0 +1,153 @@
+"""Water inside the physics step: a plugin of passive forces, registered once in a process, where a run has water.
+
+MuJoCo calls it at every evaluation of the passive forces of a model that names it, on whatever thread, without Python's
+lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
+positions and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is
+not, since it freezes what it refers to, the offsets of this MuJoCo among it.
+"""
+
+import ctypes
+from functools import lru_cache
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+import mujoco
+import numpy as np
+from llvmlite import binding
+from numba import cfunc, types
+
+from suchus.core.errors import OtherMuJoCo
+from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, UNDER, column
+from suchus.sim.hydro.kernel import wet
+from suchus.sim.hydro.memory import DATA_FIELDS, FIELDS
+from suchus.robot.design.water_table import WIDTH
+from suchus.sim.land.structs import offset, plugin_struct, verify
+from suchus.sim.model.wet import PLUGIN, with_pieces
+
+_FACTOR, _DEFAULT, _REGISTER = "mj_factorM", "mjp_defaultPlugin", "mjp_registerPlugin"
+_kept: list[Any] = []
+_lock = Lock()
+
+
+def install() -> None:
+    """Let water act in every simulation of this process whose model is made for it (``model.wet``, ``acting``).
+
+    Raises:
+        OtherMuJoCo: what the kernel needs is not where MuJoCo's own description says.
+    """
+    with _lock:
+        if not _kept:
+            _kept.append(_register(offsets()))
+        _check_that_it_acts()
+
+
+def offsets() -> np.ndarray:
+    """Return where the fields lie that the kernel needs, verified, in its order [byte].
+
+    Raises:
+        OtherMuJoCo: a field is not where it should be, or is not aligned as the kernel reads it.
+    """
+    model = mujoco.MjModel.from_xml_string(_SAMPLE)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    data.time = 0.375
+    verify("mjModel", model, FIELDS)
+    verify("mjData", data, DATA_FIELDS)
+    needed = [("mjModel", field) for field in FIELDS] + [("mjData", field) for field in DATA_FIELDS]
+    places = np.array([offset(struct, field) for struct, field in needed])
+    for (struct, field), place in zip(needed, places, strict=True):
+        if place % 8:
+            raise OtherMuJoCo(
+                f"{struct}.{field}", mujoco.__version__, f"it begins places byte {place}, not places a whole word"
+            )
+    return places
+
+
+def _register(at: np.ndarray) -> list[Any]:
+    """Compile the functions of the plugin, register it, and return what must stay in memory."""
+    library = _library()
+    binding.add_symbol(f"suchus_{_FACTOR}", _address(library, _FACTOR))
+    pair, number = (types.voidptr, types.voidptr), types.int32
+    factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
+
+    def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
+        if wet(model, data, at):
+            factor(model, data)
+
+    def no_state(_model: Any, _instance: int) -> int:
+        return 0
+
+    def begin(_model: Any, _data: Any, _instance: int) -> int:
+        return 0
+
+    def reset(_model: Any, _state: Any, _plugin_data: Any, _instance: int) -> None:
+        return None
+
+    made = {
+        "compute": cfunc(types.void(*pair, number, number), nopython=True)(act),
+        "nstate": cfunc(number(types.voidptr, number), nopython=True)(no_state),
+        "init": cfunc(number(*pair, number), nopython=True)(begin),
+        "reset": cfunc(types.void(*pair, types.voidptr, number), nopython=True)(reset),
+    }
+    plugin = plugin_struct()()
+    for name in (_DEFAULT, _REGISTER):
+        _address(library, name)
+    getattr(library, _DEFAULT)(ctypes.byref(plugin))
+    plugin.name = PLUGIN.encode()
+    plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)
+    for name, function in made.items():
+        setattr(plugin, name, function.address)
+    getattr(library, _REGISTER)(ctypes.byref(plugin))
+    return [made, plugin, at]
+
+
+@lru_cache(maxsize=1)
+def _check_that_it_acts() -> None:
+    """Put a ball under water and look whether the kernel saw it there; once, if it did."""
+    spec = mujoco.MjSpec()
+    ball = spec.worldbody.add_body()
+    ball.add_freejoint()
+    ball.add_geom(size=[0.1, 0, 0])
+    table = np.zeros((1, WIDTH))
+    column(table, "body")[:], column(table, "kind")[:] = 1, BALL
+    for name, axis in (("across", 0), ("upward", 1), ("forward", 2)):
+        column(table, name)[:, axis] = 1.0
+    column(table, "half")[:], column(table, "volume")[:] = 0.1, 0.004
+    model = with_pieces(spec, table, 1.0, acting=True)
+    data = mujoco.MjData(model)
+    data.userdata[[LEVEL, DENSITY, AIR_FRACTION, AIR_FRACTION + 1]] = 5.0, 1000.0, 1.0, 1.0
+    mujoco.mj_forward(model, data)
+    if data.userdata[UNDER] != 0.004:
+        why = f"a ball of 4 l under water displaces {1000 * data.userdata[UNDER]:g} l"
+        raise OtherMuJoCo("mjpPlugin.compute", mujoco.__version__, why)
+
+
+def _address(library: ctypes.CDLL, name: str) -> int:
+    """Return where a function of MuJoCo's library begins.
+
+    Raises:
+        OtherMuJoCo: it has no such function.
+    """
+    if not hasattr(library, name):
+        raise OtherMuJoCo(name, mujoco.__version__, "its library has no such function")
+    return int(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0)
+
+
+def _library() -> ctypes.CDLL:
+    """Return MuJoCo's own library, as its bindings have loaded it."""
+    folder = Path(mujoco.__file__).parent
+    for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
+        for path in sorted(folder.glob(pattern)):
+            return ctypes.CDLL(str(path))
+    raise OtherMuJoCo(_FACTOR, mujoco.__version__, f"its library is not in the package folder {folder.name}")
+
+
+_SAMPLE = """
+<mujoco>
+  <size nuserdata="2"/>
+  <custom><numeric name="a" data="1 2 3"/></custom>
+  <worldbody><body><freejoint/><geom size="0.1" pos="0.01 0.02 0"/>
+    <body pos="0.2 0 0"><joint axis="0 1 0"/><geom size="0.05" pos="0.1 0 0"/></body></body></worldbody>
+</mujoco>
+"""

@@ -1,0 +1,50 @@
+"""How well the limbs keep the phases of their gait, and when they have found them."""
+
+import numpy as np
+import xarray as xr
+
+from suchus.sim.metrics.gait import diagonals
+from suchus.robot.motion import Gait
+
+WITHIN = 0.1
+"""A limb this close to its place against another counts as coordinated [cycle]."""
+
+
+def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
+    """Return how far the limbs are from the gait's phases against each other [cycle].
+
+    It is the largest error of four differences, the two diagonal pairs and the two girdles; of any body as many as it
+    has.
+
+    Args:
+        phase: of the limbs, with the dimension ``leg`` [cycle].
+        gait: whose phases are meant.
+    """
+    meant, legs = gait.limb_phases, phase.sizes["leg"]
+    errors = []
+    for one, other in [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]:
+        off = phase.isel(leg=one, drop=True) - phase.isel(leg=other, drop=True) - (meant[one] - meant[other])
+        errors.append(abs(np.mod(off + 0.5, 1.0) - 0.5))
+    return xr.concat(errors, "pair", join="exact").max("pair").rename("phase_error")
+
+
+def cycles_until(
+    error: xr.DataArray, period: float, *, start: float, hold: float, within: float = WITHIN
+) -> xr.DataArray:
+    """Return after how many cycles an error has come within bounds for good, infinity if it has not [cycle].
+
+    For good: every later sample of the record is within bounds, for at least ``hold`` cycles.
+
+    Args:
+        error: with the dimension ``time`` [cycle].
+        period: of one cycle [s].
+        start: from when the cycles count [s].
+        hold: for how long it must stay [cycle].
+        within: the bounds [cycle].
+    """
+    cycles = (error.time - start) / period
+    outside = (error > within) & (cycles >= 0.0)
+    step = float(cycles[1] - cycles[0])
+    last = cycles.where(outside).max("time") + step
+    found = last.fillna(0.0)
+    return found.where(found <= float(cycles[-1]) - hold, np.inf)

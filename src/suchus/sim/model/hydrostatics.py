@@ -1,0 +1,212 @@
+"""Hydrostatics of a robot at rest, as naval architects draw them: draft, trim, metacentric height, righting curve."""
+
+from dataclasses import dataclass
+from math import atan2, cos, isnan, nan, radians, sin
+from typing import Any
+
+import mujoco
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq
+
+from suchus.robot.design import WATER_DENSITY, Robot, layout, servo_names
+from suchus.core.checks import require
+from suchus.robot.design.pieces import pieces
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design.water_table import column, unpacked
+from suchus.sim.hydro.forces import hydrostatic
+from suchus.sim.model.build import TIMESTEP, joint_addresses
+from suchus.sim.model.wet import wet_model
+
+AirFractions = tuple[float, float]
+"""Shares of the air that are kept in the front and in the rear chambers [-]."""
+_STEEPEST = radians(80)
+_SMALL = radians(0.5)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hydrostatics:
+    """How a robot floats, rigid in a posture."""
+
+    mass: float
+    """Mass with the foam [kg]."""
+    volume: float
+    """Volume with the foam, all of it under water [m3]."""
+    floats: bool
+    """Whether it is lighter than the water that it can displace."""
+    missing: float
+    """Volume that it lacks to float with nothing above the surface; negative where it has some to spare [m3]."""
+    surplus: float
+    """Mass by which it is too heavy; negative where it could carry more [kg]."""
+    draft: float
+    """Distance from the surface down to its lowest point, upright; NaN if it sinks or no trim balances it [m]."""
+    trim: float
+    """Pitch at rest, upright, nose down positive; NaN if it sinks, or none up to 80 degrees balances it [rad]."""
+    trim_submerged: float
+    """Pitch at which, wholly under water, its centre of buoyancy is above that of mass, nose down positive [rad]."""
+    metacentric_height: float
+    """Transverse: slope of the righting lever where it is upright; under water, the centre of buoyancy over that of
+    mass [m]."""
+    heel: Float[np.ndarray, " heel"]
+    """Angles of heel [rad]."""
+    lever: Float[np.ndarray, " heel"]
+    """Righting lever GZ at each, trim and draft free, under water the trim held level; positive rights it; NaN where
+    no trim balances it [m]."""
+
+    @property
+    def vanishing(self) -> float:
+        """Least heel beyond which it does not right itself; that of the end of the curve if it does all along [rad]."""
+        lost = np.flatnonzero((self.lever <= 0.0) & (self.heel > 0.0))
+        if not lost.size:
+            return float(self.heel[-1])
+        last = int(lost[0])
+        if last == 0 or self.lever[last - 1] <= 0.0:
+            return float(self.heel[max(last - 1, 0)])
+        share = self.lever[last - 1] / (self.lever[last - 1] - self.lever[last])
+        return float(self.heel[last - 1] + share * (self.heel[last] - self.heel[last - 1]))
+
+
+class _Rigid:
+    """A robot frozen in a posture: its pieces, its weight and its centre of mass, root at the origin."""
+
+    def __init__(self, robot: Robot, servos: np.ndarray, density: float, air_fraction: AirFractions) -> None:
+        table = np.array(pieces(robot))
+        model = wet_model(robot, TIMESTEP, None, len(table))
+        self.data = data = mujoco.MjData(model)
+        data.qpos[:3] = 0.0  # the model begins at a height that may be beyond the reach of a small robot
+        _bend(model, data, robot, servos)
+        mujoco.mj_fwdPosition(model, data)
+        self.table = unpacked(model.numeric_data)
+        self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
+        air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(air_fraction)))
+        self.volume, self.air_fraction, self.density = float(column(table, "volume").sum()) - air, air_fraction, density
+        self.reach = 2.0 * float(robot.length)
+        self.sunk = self.volume <= self.mass / density
+
+    def at(self, heel: float, rise: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """Return up in the body's frame, the lever from the centre of mass to that of buoyancy, and the level [m]."""
+        up = np.array([sin(rise), cos(rise) * sin(heel), cos(rise) * cos(heel)])
+        level = self.reach if self.sunk else brentq(lambda one: self._statics(up, one)[0] - self.mass / self.density,
+                                               -self.reach, self.reach, xtol=1e-10)  # fmt: skip
+        found = self._statics(up, level)
+        return up, found[1:4] / found[0] - self.centre, level
+
+    def _statics(self, up: np.ndarray, level: float) -> np.ndarray:
+        return np.asarray(hydrostatic(self.table, self.data.xpos, self.data.xmat, up, level, self.air_fraction))
+
+    def trim_submerged(self) -> float:
+        """Return the pitch at which the centre of buoyancy is above that of mass, under water, nose down [rad]."""
+        found = self._statics(np.array([0.0, 0.0, 1.0]), 2.0 * self.reach)
+        arm = found[1:4] / found[0] - self.centre
+        return -atan2(arm[0], arm[2]) + 0.0  # no -0
+
+    def rest(self, heel: float, near: float) -> tuple[float, float, float]:
+        """Return by how much the nose rises [rad], righting lever and level [m] at a heel; afloat it rises as it likes.
+
+        It is looked for from a rise nearby on. All three are NaN where none up to 80 degrees balances it: it would hang
+        upright in the water.
+        """
+
+        def along(rise: float) -> float:
+            up, arm, _ = self.at(heel, rise)
+            ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+            return float(arm @ ahead)
+
+        rise = 0.0 if self.sunk else _root(along, near)
+        if isnan(rise):
+            return nan, nan, nan
+        up, arm, level = self.at(heel, rise)
+        ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
+        left = np.cross(up, ahead / np.linalg.norm(ahead))
+        return rise, -float(arm @ left), level
+
+
+def _root(function: Any, near: float) -> float:
+    """Return the zero that lies nearest to a place, by widening around it; NaN if none lies up to the steepest."""
+    for width in np.geomspace(radians(0.5), 2 * _STEEPEST, 12):
+        low, high = max(near - width, -_STEEPEST), min(near + width, _STEEPEST)
+        if function(low) * function(high) <= 0:
+            return float(brentq(function, low, high, xtol=1e-7))
+    return float("nan")
+
+
+def _bend(model: Any, data: Any, robot: Robot, servos: np.ndarray) -> None:
+    place = layout(robot)
+    direct = [i for i in range(len(place.servos)) if i not in place.cables]
+    data.qpos[joint_addresses(model, [place.servos[i] for i in direct])] = servos[direct]
+
+
+def hydrostatics(
+    robot: Robot,
+    servos: Float[np.ndarray, " servo"] | None = None,
+    *,
+    density: float = WATER_DENSITY,
+    air_fraction: float | AirFractions = 1.0,
+    heels: int = 37,
+) -> Hydrostatics:
+    """Return how a robot floats, rigid in a posture with its cables straight.
+
+    Args:
+        robot: the design.
+        servos: angles of its servos; zeros if None.
+        density: of the water [kg/m3].
+        air_fraction: share of the hull's air that is kept, or those of its front and rear chambers [-].
+        heels: angles of heel from 0 to 180 degrees at which the lever is computed [-].
+
+    Raises:
+        InvalidDesign: a density or air fraction that cannot be, or another number of servo angles.
+    """
+    require("hydrostatics", "density", density, 1.0, 2e4, "kg/m3")
+    fractions = _both(air_fraction)
+    require("hydrostatics", "heels", heels, 3, 1000, "")
+    angles = np.zeros(len(servo_names(robot))) if servos is None else np.asarray(servos, dtype=float)
+    if len(angles) != len(servo_names(robot)):
+        raise InvalidDesign(
+            f"{len(angles)} servo angles are given and robot {robot.name!r} has {len(servo_names(robot))} servos."
+        )
+    body = _Rigid(robot, angles, density, fractions)
+    floats = body.volume * density > body.mass
+    rise, _, level = body.rest(0.0, 0.0)
+    heel = np.linspace(0.0, np.pi, int(heels))
+    lever, near = np.zeros(len(heel)), 0.0 if isnan(rise) else rise
+    for i, angle in enumerate(heel):
+        balanced, lever[i], _ = body.rest(float(angle), near)
+        near = near if isnan(balanced) else balanced
+    near = 0.0 if isnan(rise) else rise
+    slope = (body.rest(_SMALL, near)[1] - body.rest(-_SMALL, near)[1]) / (2 * _SMALL)
+    ends = nan if isnan(rise) else _lowest(body, body.at(0.0, rise)[0])
+    return Hydrostatics(
+        mass=body.mass,
+        volume=body.volume,
+        floats=bool(floats),
+        missing=body.mass / density - body.volume,
+        surplus=body.mass - density * body.volume,
+        draft=level - ends if floats else float("nan"),
+        trim=-rise + 0.0 if floats else float("nan"),
+        trim_submerged=body.trim_submerged(),
+        metacentric_height=float(slope),
+        heel=heel,
+        lever=lever,
+    )
+
+
+def _both(air_fraction: float | AirFractions) -> AirFractions:
+    """Return the shares of the air in front and rear chambers."""
+    if isinstance(air_fraction, tuple):
+        for name, share in zip(("front", "rear"), air_fraction, strict=True):
+            require("hydrostatics", f"air_fraction ({name})", share, 0.0, 1.0, "")
+        return air_fraction
+    require("hydrostatics", "air_fraction", air_fraction, 0.0, 1.0, "")
+    return float(air_fraction), float(air_fraction)
+
+
+def _lowest(body: _Rigid, up: np.ndarray) -> float:
+    """Return the height of the lowest point of the pieces [m]."""
+    ids = body.table[:, 0].astype(int)
+    turn = body.data.xmat[ids].reshape(-1, 3, 3)
+    middle = body.data.xpos[ids] + np.einsum("nij,nj->ni", turn, column(body.table, "at"))
+    extent = [
+        (np.einsum("nij,nj->ni", turn, column(body.table, axis)) @ up) * column(body.table, "half")[:, k]
+        for k, axis in enumerate(("across", "upward", "forward"))
+    ]
+    return float((middle @ up - np.sqrt(np.sum(np.square(extent), axis=0))).min())

@@ -1,0 +1,403 @@
+"""What of a URDF or an MJCF describes its tree of hinges, checked, and freed of all that names files or makes bodies.
+
+XML from outside is parsed without entities, within a size and a depth, or refused in one sentence.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+from suchus.core.errors import UnreadableFile
+from suchus.sim.model.export.urdf import MUJOCO
+from suchus.sim.model.importing.meshes import Meshes, inside
+from suchus.core.files import read_text
+
+LARGEST = 16 * 2**20
+"""Size of a file of a robot [byte]."""
+_DEEPEST, _MOST = 200, 200_000  # levels of nesting; elements
+
+
+def parse(path: Path) -> ElementTree.Element:
+    """Return the root element of an XML file; nothing that it names is opened, no entity is expanded.
+
+    Raises:
+        UnreadableFile: it is no ordinary file, too large, no XML, declares a document type, or nests too deeply.
+    """
+    text = read_text(path, LARGEST)
+    builder, parser = ElementTree.TreeBuilder(), expat.ParserCreate("utf-8")
+    depth = count = 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count
+        depth, count = depth + 1, count + 1
+        if depth > _DEEPEST:
+            raise UnreadableFile(f"{path} nests more than {_DEEPEST} elements; no robot needs so many.")
+        if count > _MOST:
+            raise UnreadableFile(f"{path} holds more than {_MOST} elements; no robot needs so many.")
+        if ":" in tag:
+            raise UnreadableFile(
+                f"{path} holds <{tag[:40]}>, an element of a macro language; expand it first, as with "
+                "`xacro robot.urdf.xacro > robot.urdf`."
+            )
+        builder.start(tag, attributes)
+
+    def end(tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        builder.end(tag)
+
+    def doctype(*_: object) -> None:
+        raise UnreadableFile(f"{path} declares a document type, in which entities could hide; remove <!DOCTYPE ...>.")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.StartDoctypeDeclHandler = doctype
+    try:
+        parser.Parse(text.encode(), True)
+    except expat.ExpatError as error:
+        raise UnreadableFile(f"{path} is no XML: {error}.") from error
+    return builder.close()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """What moves a hinge, as far as the file says."""
+
+    torque: float | None
+    """Greatest torque [N m]; None if not said."""
+    speed: float | None
+    """Greatest speed [rad/s]; None if not said."""
+    passive: bool
+    """Whether nothing drives it."""
+
+
+_TURNING = ("revolute", "continuous")
+_OTHER = ("prismatic", "planar", "floating")
+
+
+def clean_urdf(
+    root: ElementTree.Element, meshes: Meshes
+) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+    """Return a URDF of links and joints alone, what drives each hinge, and sentences on what was left out.
+
+    Raises:
+        UnreadableFile: it has loops, joints that do not turn, or no links.
+    """
+    links, joints = root.findall("link"), root.findall("joint")
+    if not links:
+        raise UnreadableFile("the URDF has no <link>; a robot needs some.")
+    links, joints, afloat = _freed(links, joints)
+    _refuse_kinds(joints)
+    _refuse_loops(links, joints)
+    made = ElementTree.Element("robot", name="imported")
+    compiler = {**MUJOCO, "discardvisual": "true"}
+    ElementTree.SubElement(ElementTree.SubElement(made, "mujoco"), "compiler", compiler)
+    for link in links:
+        _add_link(made, link, meshes)
+    for joint in joints:
+        copy = ElementTree.SubElement(made, "joint", {k: joint.get(k, "") for k in ("name", "type")})
+        bounded = ("limit",) if joint.get("type") == "revolute" else ()  # MuJoCo before 4.0 bounds continuous ones too
+        copy.extend(e for e in joint if e.tag in ("origin", "parent", "child", "axis", *bounded))
+    turning = [joint for joint in joints if joint.get("type") in _TURNING]
+    remarks = [
+        f"Joint {joint.get('name')} follows {mimic.get('joint')} (mimic): it is a hinge of its own in the draft."
+        for joint in turning
+        if (mimic := joint.find("mimic")) is not None
+    ]
+    remarks += afloat
+    remarks.append("A URDF holds no cables, springs, rotor inertia or gains: what the draft has of them is a guess.")
+    drives = {str(joint.get("name")): _drive(joint) for joint in turning}
+    if drives and all(drive.torque == 0.0 for drive in drives.values()):
+        drives = {name: Drive(torque=None, speed=drive.speed, passive=False) for name, drive in drives.items()}
+    return made, drives, tuple(remarks)
+
+
+def _freed(
+    links: list[ElementTree.Element], joints: list[ElementTree.Element]
+) -> tuple[list[ElementTree.Element], list[ElementTree.Element], list[str]]:
+    """Return links and joints without a floating joint between the world and the robot, whose root is free anyway."""
+    children = {_linked(joint, "child") for joint in joints}
+    floating = [j for j in joints if j.get("type") == "floating" and _linked(j, "parent") not in children]
+    if len(floating) != 1:
+        return links, joints, []
+    robot = {_linked(floating[0], "child")}
+    carried: list[ElementTree.Element] = []
+    while found := [j for j in joints if _linked(j, "parent") in robot and j not in carried]:
+        carried += found
+        robot |= {_linked(joint, "child") for joint in found}
+    left = [link for link in links if link.get("name") not in robot]
+    solid = [str(link.get("name")) for link in left if len(link)]
+    told = [f"Beside the robot the file holds {', '.join(solid[:4])}, which was not taken."] if solid else []
+    return [link for link in links if link not in left], carried, told
+
+
+def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
+    for joint in joints:
+        kind, name = joint.get("type", ""), joint.get("name", "")
+        if kind in _OTHER:
+            raise UnreadableFile(
+                f"joint {name!r} is {kind}; suchus takes hinges (revolute, continuous) and fixed joints: make it one "
+                "of these, or remove what it carries. A floating joint may carry the whole robot, and nothing else."
+            )
+        if kind not in (*_TURNING, "fixed"):
+            raise UnreadableFile(f"joint {name!r} is of type {kind!r}; revolute, continuous and fixed are allowed.")
+
+
+def _refuse_loops(links: list[ElementTree.Element], joints: list[ElementTree.Element]) -> None:
+    """Refuse what is no tree: a link with two parents, or links that carry each other."""
+    names = {link.get("name") for link in links}
+    parent: dict[str, str] = {}
+    counted = Counter(_linked(joint, "child") for joint in joints)
+    for joint in joints:
+        child, above = _linked(joint, "child"), _linked(joint, "parent")
+        for name in (child, above):
+            if name not in names:
+                raise UnreadableFile(f"joint {joint.get('name')!r} names link {name!r}, which is not there.")
+        if counted[child] > 1:
+            raise UnreadableFile(
+                f"link {child!r} hangs on {counted[child]} joints, which makes a loop; suchus takes trees: open the "
+                "loop at one of them."
+            )
+        parent[child] = above
+    for link in parent:
+        seen, now = {link}, link
+        while now in parent:
+            now = parent[now]
+            if now in seen:
+                raise UnreadableFile(f"link {link!r} carries itself, a loop of joints; suchus takes trees: open it.")
+            seen.add(now)
+    roots = [name for name in names if name not in parent]
+    if len(roots) > 1:
+        raise UnreadableFile(
+            f"{len(roots)} links hang on no joint ({', '.join(sorted(map(str, roots))[:4])}); one root is needed: join "
+            "them, or remove the others."
+        )
+
+
+def _linked(joint: ElementTree.Element, which: str) -> str:
+    element = joint.find(which)
+    return "" if element is None else element.get("link", "")
+
+
+def _add_link(made: ElementTree.Element, link: ElementTree.Element, meshes: Meshes) -> None:
+    copy = ElementTree.SubElement(made, "link", name=link.get("name", ""))
+    copy.extend(e for e in link if e.tag == "inertial")
+    lost = ""
+    for shape in link.findall("collision") or link.findall("visual"):
+        geometry = shape.find("geometry")
+        named = None if geometry is None else geometry.find("mesh")
+        if geometry is None or not len(geometry):
+            continue
+        if named is not None:
+            given = meshes.given(named.get("filename", ""))
+            if given is None:
+                lost = named.get("filename", "")
+                continue
+            named.set("filename", given)
+        part = ElementTree.SubElement(copy, "collision")
+        part.extend(e for e in shape if e.tag in ("origin", "geometry"))
+    if lost and copy.find("collision") is None:
+        meshes.bare[f"link {link.get('name', '')}"] = lost
+
+
+def _drive(joint: ElementTree.Element) -> Drive:
+    limit = joint.find("limit")
+    torque, speed = (_number(limit, key) for key in ("effort", "velocity"))
+    return Drive(torque=torque, speed=speed, passive=torque == 0.0)
+
+
+def _number(element: ElementTree.Element | None, key: str) -> float | None:
+    if element is None or element.get(key) is None:
+        return None
+    try:
+        value = float(element.get(key, ""))
+    except ValueError:
+        raise UnreadableFile(f"<limit {key}={element.get(key, '')[:40]!r}> is no number.") from None
+    if not isfinite(value) or value < 0:
+        raise UnreadableFile(f'<limit {key}="{value:g}"> makes no sense; a number from 0 on is allowed.')
+    return value
+
+
+_BODIES = ("replicate", "composite", "flexcomp", "attach")
+_KEPT = ("body", "joint", "freejoint", "geom", "inertial", "site", "frame")
+_COMPILER = ("angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "inertiagrouprange", "settotalmass")
+_UNTOLD = ("compiler", "option", "size", "visual", "statistic", "default", "asset", "worldbody", "actuator", "equality")
+_FILES = 50  # included ones at most
+
+
+def with_includes(root: ElementTree.Element, path: Path) -> ElementTree.Element:
+    """Put what an MJCF includes in its place; only files in its own folder are opened, each once.
+
+    Raises:
+        UnreadableFile: an included file lies elsewhere, is included twice, or cannot be read, or all together nest too
+            deeply.
+    """
+    home, seen = path.resolve().parent, [path.resolve()]
+
+    def expand(element: ElementTree.Element, depth: int) -> None:
+        if depth > _DEEPEST:
+            raise UnreadableFile(f"{path.name} and what it includes nest more than {_DEEPEST} elements.")
+        for place, child in reversed(list(enumerate(element))):
+            if child.tag != "include":
+                expand(child, depth + 1)
+                continue
+            where = inside(home, child.get("file", ""))
+            if where is None:
+                raise UnreadableFile(
+                    f"the MJCF includes {child.get('file', '')[:100]!r}, which lies outside its folder and is not "
+                    "read; put it beside the file."
+                )
+            if where in seen or len(seen) > _FILES:
+                raise UnreadableFile(f"the MJCF includes {where.name!r} twice, or includes too many files.")
+            seen.append(where)
+            part = parse(where)
+            expand(part, depth)
+            element[place : place + 1] = list(part)
+
+    expand(root, 1)
+    return root
+
+
+def clean_mjcf(
+    root: ElementTree.Element, meshes: Meshes
+) -> tuple[ElementTree.Element, dict[str, Drive], tuple[str, ...]]:
+    """Return an MJCF of bodies, joints and shapes alone, what drives each hinge, and sentences on what was left out.
+
+    Raises:
+        UnreadableFile: it has loops, makes bodies by rule, or has no bodies.
+    """
+    remarks = _equalities(root)
+    drives, of_tendons = _actuators(root)
+    remarks += of_tendons
+    made = ElementTree.Element("mujoco", model="imported")
+    compiler = {k: v for e in root.findall("compiler") for k, v in e.attrib.items() if k in _COMPILER}
+    bounds = {key: MUJOCO[key] for key in ("boundmass", "boundinertia")}
+    ElementTree.SubElement(made, "compiler", {**compiler, **bounds})
+    for element in root.findall("default"):
+        made.append(_cleaned(element, (*_KEPT, "mesh", "default"), None))
+    lost = _meshes(root, made, meshes)
+    worlds = root.findall("worldbody")
+    if not any(world.find(".//body") is not None for world in worlds):
+        raise UnreadableFile("the MJCF has no <body>; a robot needs some.")
+    for world in worlds:
+        for element in world.iter():
+            if element.tag in _BODIES:
+                raise UnreadableFile(
+                    f"the MJCF makes bodies with <{element.tag}>; write them out first, as with mujoco.mj_saveLastXML."
+                )
+        made.append(_cleaned(world, _KEPT, lost))
+        meshes.bare |= _bare(world, lost)
+    left = sorted({element.tag for element in root if element.tag not in _UNTOLD})
+    if left:
+        remarks += (f"Of the MJCF these are not part of a body and were not read: {', '.join(left)}.",)
+    return made, drives, remarks
+
+
+def _cleaned(
+    element: ElementTree.Element, tags: tuple[str, ...], lost: Mapping[str, str] | None
+) -> ElementTree.Element:
+    """Return a copy with these tags alone, without materials, and without geoms whose mesh or field is not read."""
+    copy = ElementTree.Element(element.tag, {k: v for k, v in element.attrib.items() if k not in ("material", "mocap")})
+    for child in element:
+        gone = child.tag == "geom" and (child.get("type") in ("hfield", "sdf") or child.get("mesh") in (lost or ()))
+        if child.tag in tags and not gone:
+            copy.append(_cleaned(child, tags, lost))
+    return copy
+
+
+def _bare(world: ElementTree.Element, lost: Mapping[str, str]) -> dict[str, str]:
+    """Return the mesh that was not read of each body that has no other shape."""
+    shapes = {f"body {body.get('name', '')}": [geom.get("mesh") for geom in body.findall("geom")]
+              for body in world.iter("body")}  # fmt: skip
+    return {
+        body: lost[str(meshes[0])] for body, meshes in shapes.items() if meshes and all(one in lost for one in meshes)
+    }
+
+
+def _meshes(root: ElementTree.Element, made: ElementTree.Element, meshes: Meshes) -> dict[str, str]:
+    """Add the meshes that are read as assets; return the files of the others by name."""
+    asset, lost = ElementTree.SubElement(made, "asset"), {}
+    folder = next((v for e in root.findall("compiler") for k in ("meshdir", "assetdir") if (v := e.get(k))), "")
+    for element in (e for part in root.findall("asset") for e in part.findall("mesh")):
+        own = element.get("file", "")
+        file = f"{folder.rstrip('/')}/{own}" if folder and own else own
+        name = element.get("name") or Path(own).stem
+        attributes = {k: v for k, v in element.attrib.items() if k in ("class", "scale", "refpos", "refquat", "vertex")}
+        if own or "vertex" not in attributes:
+            given = meshes.given(file)
+            if given is None:
+                lost[name] = file
+                continue
+            attributes["file"] = given
+        ElementTree.SubElement(asset, "mesh", {"name": name, **attributes})
+    return lost
+
+
+def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
+    remarks = []
+    for element in (e for part in root.findall("equality") for e in part):
+        if element.get("active") == "false":
+            continue
+        if element.tag in ("connect", "weld"):
+            ends = [element.get(key) for key in ("body1", "body2", "site1", "site2") if element.get(key)]
+            raise UnreadableFile(
+                f"a <{element.tag}> of {' and '.join(map(str, ends)) or 'two bodies'} closes a loop; suchus takes "
+                "trees: remove it, or make it inactive."
+            )
+        remarks.append(f"An equality <{element.tag}> was not taken: the joints that it ties are hinges of their own.")
+    return tuple(remarks)
+
+
+def _actuators(root: ElementTree.Element) -> tuple[dict[str, Drive], tuple[str, ...]]:
+    """Return the drive of each hinge; where a file drives some hinges, the others are passive."""
+    defaults = dict(_defaults(root))
+    driven: dict[str, Drive] = {}
+    remarks = []
+    tendons = {e.get("name"): e for part in root.findall("tendon") for e in part}
+    for element in (e for part in root.findall("actuator") for e in part):
+        joint = element.get("joint") or element.get("jointinparent")
+        given = {**defaults.get((element.get("class", "main"), element.tag), {}), **element.attrib}
+        if joint:
+            driven[joint] = Drive(torque=_torque(given), speed=None, passive=False)
+        elif element.get("tendon") in tendons:
+            over = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
+            remarks.append(
+                f"Actuator {element.get('name', element.tag)} pulls a tendon over {', '.join(over) or 'sites'}; this "
+                "drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord spacing "
+                "and pulley, or give them servos."
+            )
+        else:
+            remarks.append(f"Actuator {element.get('name', element.tag)} drives no joint and was not taken.")
+    if not driven:
+        return {}, tuple(remarks)
+    others = {e.get("name", ""): Drive(torque=None, speed=None, passive=True) for e in root.iter("joint")}
+    return {**others, **driven}, tuple(remarks)
+
+
+def _defaults(root: ElementTree.Element) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
+    """Yield the default attributes of each class and tag, those of the classes above it included."""
+
+    def walk(
+        element: ElementTree.Element, above: Mapping[str, Mapping[str, str]], name: str
+    ) -> Iterator[tuple[tuple[str, str], Mapping[str, str]]]:
+        own = {e.tag: {**above.get(e.tag, {}), **e.attrib} for e in element if e.tag != "default"}
+        here = {**above, **own}
+        for tag, attributes in here.items():
+            yield (name, tag), attributes
+        for child in element.findall("default"):
+            yield from walk(child, here, child.get("class", ""))
+
+    for element in root.findall("default"):
+        yield from walk(element, {}, element.get("class", "main"))
+
+
+def _torque(given: Mapping[str, str]) -> float | None:
+    """Return the greatest torque that an actuator may give; None if the file does not say."""
+    try:
+        ends = [abs(float(word)) for word in given.get("forcerange", "").split()]
+    except ValueError:
+        raise UnreadableFile(f'forcerange="{given["forcerange"][:60]}" is not two numbers.') from None
+    return max(ends) if len(ends) == 2 and 0 < max(ends) < float("inf") else None

@@ -1,0 +1,141 @@
+"""A file of another tool, loaded by MuJoCo with all its joints at zero."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+
+from suchus.core.errors import SuchusError, UnreadableFile
+from suchus.sim.model.importing.cleaning import Drive, clean_mjcf, clean_urdf, parse, with_includes
+from suchus.sim.model.importing.meshes import Meshes
+
+Format = Literal["URDF", "MJCF"]
+_BODIES = 1000  # at most; MuJoCo walks down a chain by recursion
+_NAMES = ("name", "class", "childclass", "link", "joint", "file", "filename", "mesh", "type")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loaded:
+    """A model that MuJoCo made of a file, and what the file says beside it."""
+
+    kind: Format
+    """Format of the file."""
+    model: Any
+    """The ``mujoco.MjModel``: bodies, hinges and shapes."""
+    drives: dict[str, Drive]
+    """What drives each hinge; empty where the file says nothing of drives."""
+    remarks: tuple[str, ...]
+    """Notes on what was not taken over, a sentence each."""
+
+
+def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: bool = False) -> Loaded:
+    """Load a URDF or an MJCF. No file outside its folder and those of packages is read, nothing in it is executed.
+
+    Args:
+        path: the file.
+        packages: folders in which packages lie that meshes name by ``package://``.
+        without_meshes: whether a body whose mesh is not read does without.
+
+    Raises:
+        UnreadableFile: it cannot be read, is no tree of hinges, or the shape of a body is a mesh that is not read.
+    """
+    root = parse(path)
+    meshes = Meshes(path.resolve().parent, packages)
+    try:
+        if root.tag == "robot":
+            kind: Format = "URDF"
+            clean, drives, remarks = clean_urdf(root, meshes)
+        elif root.tag == "mujoco":
+            kind = "MJCF"
+            clean, drives, remarks = clean_mjcf(with_includes(root, path), meshes)
+        else:
+            raise UnreadableFile(
+                f"it begins with <{root.tag[:40]}>; a URDF begins with <robot>, an MJCF with <mujoco>."
+            )
+        if not without_meshes:
+            meshes.check()
+        model, mended = _compiled(clean, meshes)
+    except SuchusError as error:
+        raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
+    if meshes.lost:
+        remarks += (f"{len(meshes.lost)} meshes were not read: {'; '.join(list(meshes.lost.values())[:3])}.",)
+    return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *mended))
+
+
+def _check_numbers(clean: ElementTree.Element) -> None:
+    """Refuse numbers that are none and masses that cannot be; MuJoCo would mend or log them."""
+    for element in clean.iter():
+        for key, text in element.attrib.items():
+            if key in _NAMES:
+                continue
+            odd = next((word for word in text.split() if word.strip("+-").lower() in ("nan", "inf", "infinity")), "")
+            mass = key in ("mass", "density") or (element.tag == "mass" and key == "value")
+            if odd or (mass and not _is_mass(text)):
+                raise UnreadableFile(
+                    f"<{element.tag} {key}={(odd or text)[:40]!r}> is not allowed; "
+                    + ("a finite number from 0 on is needed." if mass else "finite numbers are needed.")
+                )
+
+
+def _is_mass(text: str) -> bool:
+    try:
+        return float(text) >= 0.0
+    except ValueError:
+        return False
+
+
+def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[str, ...]]:
+    """Return the model, and sentences on inertias that had to be mended or guessed."""
+    _check_numbers(clean)
+    if sum(1 for e in clean.iter() if e.tag in ("body", "link")) > _BODIES:
+        raise UnreadableFile(f"it has more than {_BODIES} bodies.")
+    text = ElementTree.tostring(clean, encoding="unicode")
+    try:
+        spec = mujoco.MjSpec.from_string(text, assets=meshes.assets)
+        for mesh in spec.meshes:
+            exact = mesh.file not in meshes.open
+            mesh.inertia = getattr(mujoco.mjtMeshInertia, f"mjMESH_INERTIA_{'EXACT' if exact else 'CONVEX'}")
+        model, mended = _balanced(spec)
+    except (ValueError, mujoco.FatalError) as error:
+        said = " ".join(str(error).split())
+        raise UnreadableFile(f"MuJoCo says: {said[:240].rstrip('.')}.") from error
+    if meshes.open:
+        mended += (
+            f"{len(meshes.open)} meshes are no closed surfaces: where a body has no <inertial>, its mass is that of "
+            "the convex hull.",
+        )
+    for name in ("body_pos", "body_quat", "body_mass", "body_ipos", "jnt_axis", "jnt_pos", "jnt_range", "geom_size"):
+        if not np.isfinite(getattr(model, name)).all():
+            raise UnreadableFile(f"a number of its {name.replace('_', ' ')} is not finite.")
+    for joint in range(model.njnt):
+        kind = mujoco.mjtJoint(int(model.jnt_type[joint]))
+        if kind in (mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_BALL):
+            word = "slides (prismatic)" if kind == mujoco.mjtJoint.mjJNT_SLIDE else "is a ball joint"
+            raise UnreadableFile(
+                f"joint {model.joint(joint).name!r} {word}; suchus takes hinges: remove it"
+                f"{', or give the root a <freejoint/>' if model.jnt_bodyid[joint] == 1 else ''}."
+            )
+    if not (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE).any():
+        raise UnreadableFile("it has no hinge; a robot needs some.")
+    return model, mended
+
+
+def _balanced(spec: Any) -> tuple[Any, tuple[str, ...]]:
+    """Return a compiled model; where a body's inertia is none that a body can have, MuJoCo makes its moments equal."""
+    spec.compiler.balanceinertia = False
+    try:
+        return spec.compile(), ()
+    except ValueError as error:
+        spec.compiler.balanceinertia = True
+        model = spec.compile()
+        body = re.search(r"Element name '([^']*)'", str(error))
+        which = f"of {body[1]}" if body else "of a body"
+        return model, (
+            f"The inertia {which} is none that a body can have, one principal moment being greater than the sum of the "
+            "others; MuJoCo gives all such bodies three equal moments of the same sum.",
+        )

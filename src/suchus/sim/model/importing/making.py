@@ -1,0 +1,278 @@
+"""What is gathered while a robot is drafted from a body plan: its hinges, remarks, and guesses with their reasons."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import degrees, pi
+
+import numpy as np
+
+from suchus.robot.design import Crank, Hinge, Inertia, Servo, Spring
+from suchus.robot.design.hinge import Turn
+from suchus.robot.design.layout import LIMB_AXES
+from suchus.robot.design.scale import servo_for, spring_for
+from suchus.robot.design.segment import Point, together
+from suchus.core.errors import UnreadableFile
+from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between
+from suchus.sim.model.importing.tree import Joint, TreePart
+
+SKEW = 5.0
+"""Degrees by which a hinge may miss the robot's axes."""
+_EXACT = 0.06  # degrees; less is not worth a word
+_WIDEST = 3.1416  # rad; of a range in a robot's file
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Match:
+    """A hinge of the robot and the one of the file that it was read from."""
+
+    ours: str
+    """Name in the robot's layout."""
+    theirs: str
+    """Name in the file."""
+    sign: float
+    """1 where positive angles turn the same way, else -1 [-]."""
+    zero: float
+    """Angle of the file's hinge at our zero [rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Size:
+    """Mass and length, from which servos and springs follow."""
+
+    mass: float
+    """Mass of the robot [kg]."""
+    length: float
+    """Length of the robot [m]."""
+
+
+def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
+    """Return what a hinge turns, and 1 where its axis points along x, y or z of the robot, else -1.
+
+    Args:
+        joint: the hinge.
+        axis: its axis in the robot's frame.
+        remarks: takes a sentence where the axis is rounded.
+
+    Raises:
+        UnreadableFile: it is skew.
+    """
+    along = int(np.argmax(np.abs(axis)))
+    off = degrees(np.arccos(min(abs(axis[along]), 1.0)))
+    if off > SKEW:
+        raise UnreadableFile(
+            f"hinge {joint.name} turns about ({', '.join(f'{v:.2f}' for v in axis)}), {off:.0f} degrees off "
+            "the robot's axes (forward, left, up) at zero posture; suchus takes hinges along them: draw its limb so."
+        )
+    if off > _EXACT:
+        remarks.append(f"Hinge {joint.name} is {off:.1f} degrees skew; the draft has it along an axis of the robot.")
+    turn: Turn = ("roll", "pitch", "yaw")[along]
+    return turn, float(np.sign(axis[along]))
+
+
+def limb_turn(joint: Joint, axis: np.ndarray, side: float, remarks: list[str]) -> tuple[Turn, float]:
+    """Return what a hinge of a limb turns, and 1 where it turns as ours does, else -1."""
+    along, sense = turn_of(joint, axis, remarks)
+    turn: Turn = {"roll": "pitch", "pitch": "roll", "yaw": "yaw"}[along]  # type: ignore[assignment]
+    ours = LIMB_AXES[turn][("roll", "pitch", "yaw").index(along)]
+    return turn, sense * ours * (side if turn != "roll" else 1.0)
+
+
+def axial_sign(turn: Turn, sense: float, *, ahead: bool, onward: bool) -> float:
+    """Return 1 where a hinge of the axis turns as ours does, else -1.
+
+    Args:
+        turn: what it turns.
+        sense: whether its axis points along that of the robot's frame.
+        ahead: whether it lies ahead of the root.
+        onward: whether a positive angle of the file moves the part farther from our root.
+    """
+    ours = 1.0 if ahead or turn == "yaw" else -1.0
+    return sense * ours * (1.0 if onward else -1.0)
+
+
+def hinge_of(name: str, turn: Turn, sign: float, joint: Joint, size: Size, share: float, *, lone: bool) -> Hinge:
+    """Return a hinge of the robot.
+
+    Args:
+        name: of it.
+        turn: what it turns.
+        sign: of its angles against those of the file.
+        joint: of the file.
+        size: of the robot.
+        share: mass of what it carries over that of the heaviest part, for a spring.
+        lone: whether it is the only hinge of a limb, which may turn all round.
+    """
+    servo = _servo(joint, size)
+    if joint.range is None and lone and servo is not None:
+        return Hinge(name=name, turn=turn, drive=Crank(servo=servo))
+    low, high = sorted(sign * end for end in joint.range or (-pi, pi))
+    low, high = max(low, -_WIDEST), min(high, _WIDEST)
+    if not low < high:
+        raise UnreadableFile(
+            f"hinge {joint.name} has a range of {low:g} to {high:g} rad; give it one that is not empty."
+        )
+    return Hinge(name=name, turn=turn, drive=servo or _spring(joint, size, share), range=(low, high))
+
+
+def axis_names(turns: Sequence[tuple[Turn, str, str]]) -> list[str]:
+    """Return names for hinges of the axis: those of the file where they follow the rule, else made ones.
+
+    Args:
+        turns: what each turns, its part of the body (``spine``, ``neck`` or ``tail``), its name in the file; of each
+            part of the body from the root on.
+    """
+    theirs = [name for _, _, name in turns]
+    rule = all((turn == "yaw" and part == "spine") == name.startswith("spine_yaw_") for turn, part, name in turns)
+    if rule and len(set(theirs)) == len(theirs):
+        return theirs
+    count: dict[tuple[str, str], int] = {}
+    names = []
+    for turn, part, _ in turns:
+        count[part, turn] = count.get((part, turn), 0) + 1
+        names.append(f"{part}_{turn}_{count[part, turn]}")
+    return names
+
+
+def limb_names(left: Sequence[str], right: Sequence[str], girdle: str) -> list[str] | None:
+    """Return what follows the limb's name in names as ``LF_yaw`` and ``RF_yaw``; None if they are not such."""
+    heads = f"L{girdle}_", f"R{girdle}_"
+    alike = all(
+        one.startswith(heads[0]) and two.startswith(heads[1]) and one[len(heads[0]) :] == two[len(heads[1]) :]
+        for one, two in zip(left, right, strict=True)
+    )
+    suffixes = [name.removeprefix(heads[0]) for name in left]
+    return suffixes if alike and all(suffixes) and len(set(suffixes)) == len(suffixes) else None
+
+
+def numbered(turns: Sequence[str]) -> list[str]:
+    """Return a name for each hinge of a limb: what it turns, with a number from the second one on."""
+    names: list[str] = []
+    for i, turn in enumerate(turns):
+        before = list(turns[:i]).count(turn)
+        names.append(turn if not before else f"{turn}_{before + 1}")
+    return names
+
+
+def _servo(joint: Joint, size: Size) -> Servo | None:
+    if joint.drive is not None and joint.drive.passive:
+        return None
+    servo = servo_for(size.mass, size.length)
+    if joint.drive is None:
+        return servo
+    return replace(
+        servo,
+        torque=min(max(joint.drive.torque or servo.torque, 1e-9), 1e6),
+        speed=min(max(joint.drive.speed or servo.speed, 0.01), 1e4),
+    )
+
+
+def _spring(joint: Joint, size: Size, share: float) -> Spring:
+    spring = spring_for(size.mass, size.length, share)
+    if joint.stiffness > 0:
+        return replace(spring, stiffness=joint.stiffness, damping=joint.damping)
+    return spring
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class Making:
+    """A draft in the making, its frame forward, left, up with the origin on the axis."""
+
+    plan: BodyPlan
+    """Axis and limbs."""
+    words: Words
+    """The options that the user gave."""
+    level: float
+    """Height of the axis above the point of the mirror plane [m]."""
+    size: Size
+    """Mass and length, from which servos and springs follow."""
+    heaviest: float
+    """Mass of the heaviest part [kg]."""
+    matches: list[Match] = field(default_factory=list)
+    """Hinges so far."""
+    remarks: list[str] = field(default_factory=list)
+    """What was guessed and what was not taken, in sentences."""
+    notes: dict[str, str] = field(default_factory=dict)
+    """Guesses by the place of the number in the robot's file."""
+
+    def into(self, points: np.ndarray) -> np.ndarray:
+        """Return points of the file in the robot's frame, shape (..., 3) [m]."""
+        return np.asarray(self.plan.plane.into(points) - np.array([0.0, 0.0, self.level]))
+
+    def turned(self, axis: np.ndarray) -> np.ndarray:
+        """Return a direction of the file in the robot's frame, shape (3,) [-]."""
+        return np.asarray(self.plan.plane.turn @ axis)
+
+    def inertia(self, place: str, parts: Sequence[TreePart], origin: np.ndarray) -> Inertia | None:
+        """Return where the mass of parts that move as one lies, in a frame like the robot's.
+
+        Args:
+            place: of the segment or link in the robot's file.
+            parts: the parts.
+            origin: of the frame, in that of the robot [m].
+
+        Returns:
+            None where the file does not say.
+        """
+        if not parts or not all(np.any(part.tensor) for part in parts):
+            return None
+        _, com, tensor = together([(part.mass, part.com, part.tensor) for part in parts])
+        turned = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T
+        self.notes[f"{place}.inertia.moments"] = "of the file, as its centre and its products"
+        return Inertia(
+            centre=point(self.into(com) - origin),
+            moments=point(np.diag(turned)),
+            products=point(turned[[0, 0, 1], [1, 2, 2]]),
+        )
+
+    def hip(self, chain: LimbChain) -> np.ndarray:
+        """Return where a limb begins in the frame of the file, shape (3,) [m]."""
+        return self.plan.part(chain.parts[0]).joints[0].anchor
+
+    def note_hinge(self, place: str, hinge: Hinge, joint: Joint, sign: float) -> None:
+        """Say beside a hinge which one of the file it is, and what of it is guessed."""
+        turned = "" if sign > 0 else ", turning the other way"
+        drawn = "" if joint.zero == 0.0 else f", which calls this zero {joint.zero:.6g}"
+        self.notes[f"{place}.name"] = f"the file's {joint.name}{turned}{drawn}"
+        if joint.range is None and hinge.range is not None:
+            self.notes[f"{place}.range"] = "guess: the file gives no limits"
+        if isinstance(hinge.drive, Spring):
+            known = "the file's stiffness and damping" if joint.stiffness > 0 else "guess: from the size"
+            self.notes[f"{place}.drive.stiffness"] = known
+            return
+        drive = f"{place}.drive" if hinge.range is not None else f"{place}.drive.servo"
+        self.notes[f"{drive}.kp"] = "guess: from the size, as all of this servo that has no note (design.servo_for)"
+        for name in ("torque", "speed"):
+            if joint.drive is not None and getattr(joint.drive, name):
+                self.notes[f"{drive}.{name}"] = "of the file"
+
+
+def making_of(plan: BodyPlan, words: Words) -> Making:
+    """Return a draft that has not begun."""
+    corners = plan.plane.into(np.concatenate([plan.part(i).corners for i in plan.axis]))
+    length = max(float(np.ptp(corners[:, 0])), 0.2 * plan.tree.size)
+    return Making(
+        plan=plan,
+        words=words,
+        level=_level(plan),
+        size=Size(mass=plan.tree.mass, length=length),
+        heaviest=max(part.mass for part in plan.tree.parts),
+    )
+
+
+def point(values: np.ndarray) -> Point:
+    """Return three numbers as a design has them."""
+    return float(values[0]), float(values[1]), float(values[2])
+
+
+def _level(plan: BodyPlan) -> float:
+    """Return the height of the axis: that of its pitch and roll hinges in the middle, else of the root's origin [m]."""
+    heights = [
+        float(plan.plane.into(joint.anchor)[2])
+        for near, far in zip(plan.axis[:-1], plan.axis[1:], strict=True)
+        for joint, _ in links_between(plan, near, far)
+        if abs((plan.plane.turn @ joint.axis)[2]) < 0.5
+    ]
+    if heights:
+        return sorted(heights)[len(heights) // 2]
+    place = 0 if 0 in plan.axis else plan.axis[0]
+    return float(plan.plane.into(plan.part(place).origin)[2])

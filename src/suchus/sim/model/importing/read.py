@@ -1,0 +1,126 @@
+"""From a file to a draft; limbs that are drawn askew get another zero posture, so that hinges lie along the axes."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from suchus.core.checks import require
+from suchus.core.errors import UnreadableFile
+from suchus.sim.model.importing.draft import Draft, draft_of
+from suchus.sim.model.importing.loading import load
+from suchus.sim.model.importing.making import SKEW
+from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, plan_of
+from suchus.sim.model.importing.tree import Joint, ShapePiece, TreePart, tree_of
+
+_NEAR = np.radians(10.0)  # two turns that differ by less are alike: the one that points the limb sideways is taken
+
+
+def straightened(plan: BodyPlan) -> BodyPlan:
+    """Return a plan whose limbs are turned at their hinges until those that follow lie along the robot's axes.
+
+    The leg of a hexapod that points forward and out by 45 degrees is turned at its yaw hinge until it points straight
+    out. A hinge turned so calls our zero another angle. A limb of which that does not make anything straight stays.
+    """
+    parts, remarks = list(plan.tree.parts), list(plan.remarks)
+    for pair in plan.pairs:
+        for chain in pair:
+            _straighten(plan, parts, chain, remarks)
+    return replace(plan, tree=replace(plan.tree, parts=tuple(parts)), remarks=tuple(remarks))
+
+
+def _straighten(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, remarks: list[str]) -> None:
+    order = [(i, k) for i in chain.parts for k in range(len(parts[i].joints))]
+    for number, (i, k) in enumerate(order[1:], 1):
+        axis = plan.plane.turn @ parts[i].joints[k].axis
+        if np.degrees(np.arccos(min(np.abs(axis).max(), 1.0))) <= SKEW:
+            continue
+        before, which = order[number - 1]
+        pivot = parts[before].joints[which]
+        angle = _angle(plan, parts, chain, pivot, axis)
+        if angle is None:
+            return
+        _turn(parts, plan, before, which, angle)
+        remarks.append(
+            f"The limb behind {pivot.name} is drawn askew: the draft's zero of this hinge is the file's "
+            f"{parts[before].joints[which].zero:.4g} rad, where the next hinge lies along the robot's axes."
+        )
+
+
+def _angle(plan: BodyPlan, parts: list[TreePart], chain: LimbChain, pivot: Joint, axis: np.ndarray) -> float | None:
+    """Return how far to turn at a hinge so that the next one's axis lies along one of the robot's [rad]."""
+    about = plan.plane.turn @ pivot.axis
+    along = int(np.argmax(np.abs(about)))
+    if abs(axis @ about) > np.sin(np.radians(SKEW)) or np.abs(about)[along] < np.cos(np.radians(SKEW)):
+        return None
+    flat = axis - (axis @ about) * about
+    tried = []
+    tip = parts[chain.parts[-1]].com - pivot.anchor
+    for goal in (g * s for g in np.eye(3) for s in (1.0, -1.0)):
+        if abs(goal[along]) < 0.5:
+            angle = float(np.arctan2(np.cross(flat, goal) @ about, flat @ goal))
+            aside = abs((Rotation.from_rotvec(angle * about).apply(plan.plane.turn @ tip))[1])
+            tried.append((abs(angle), -aside, angle))
+    least = min(tried)[0]
+    return min((one for one in tried if one[0] < least + _NEAR), key=lambda one: one[1:])[2]
+
+
+def _turn(parts: list[TreePart], plan: BodyPlan, place: int, which: int, angle: float) -> None:
+    """Turn all that a hinge carries, its own part included, and give the hinge its new zero."""
+    pivot = parts[place].joints[which]
+    rotation = Rotation.from_rotvec(angle * pivot.axis)
+
+    def moved(points: np.ndarray) -> np.ndarray:
+        return np.asarray(pivot.anchor + rotation.apply(points - pivot.anchor))
+
+    limits = None if pivot.range is None else (pivot.range[0] - angle, pivot.range[1] - angle)
+    for i in plan.tree.below(place):
+        joints = list(parts[i].joints)
+        for k, joint in enumerate(joints):
+            if i != place or k > which:
+                joints[k] = replace(joint, axis=rotation.apply(joint.axis), anchor=moved(joint.anchor))
+        if i == place:
+            joints[which] = replace(pivot, zero=pivot.zero + angle, range=limits)
+        parts[i] = replace(
+            parts[i],
+            joints=tuple(joints),
+            com=moved(parts[i].com),
+            tensor=rotation.as_matrix() @ parts[i].tensor @ rotation.as_matrix().T,
+            origin=moved(parts[i].origin),
+            points=moved(parts[i].points),
+            pieces=tuple(_moved(piece, moved, rotation) for piece in parts[i].pieces),
+        )
+
+
+def _moved(piece: ShapePiece, moved: Callable[[np.ndarray], np.ndarray], rotation: Rotation) -> ShapePiece:
+    half = piece.half if np.ptp(piece.half) == 0 else np.abs(rotation.as_matrix()) @ piece.half
+    return ShapePiece(ends=moved(piece.ends), half=half)
+
+
+def import_robot(path: str | Path, *, name: str, words: Words | None = None) -> Draft:
+    """Read a robot from a URDF or an MJCF: axis, girdles and limbs by geometry, drives and contact by its size.
+
+    Nothing in the file is executed, and no file outside its folder and those of packages is read.
+
+    Args:
+        path: the file.
+        name: of the robot.
+        words: answers to what geometry cannot say.
+
+    Raises:
+        UnreadableFile: it cannot be read, or is no tree of hinges with a mirror plane.
+        UnknownName: a body that the words name is not there.
+    """
+    path = Path(path)
+    words = words or Words()
+    if words.foot_radius is not None:
+        require("import", "foot_radius", words.foot_radius, 1e-5, 10.0, "m")
+    if words.heading is not None:
+        require("import", "heading", words.heading, -360.0, 360.0, "degree")
+    loaded = load(path, packages=words.packages, without_meshes=words.without_meshes)
+    try:
+        return draft_of(straightened(plan_of(tree_of(loaded), words)), name, words)
+    except UnreadableFile as error:
+        raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error

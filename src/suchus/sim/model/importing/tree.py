@@ -1,0 +1,345 @@
+"""The tree of stiff parts and hinges of a loaded model, all joints at zero, in the frame of its file.
+
+Its shapes are those that suchus has: rods with round ends and ellipsoids.
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import pi
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from suchus.core.checks import require
+from suchus.robot.design.segment import together
+from suchus.core.errors import UnreadableFile
+from suchus.sim.model.importing.cleaning import Drive
+from suchus.sim.model.importing.loading import Loaded
+
+_NEAR = 1e-6  # of a rod's size; a ball so near to its end is its round end
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ShapePiece:
+    """A rod, or an ellipsoid whose half axes are those of the frame; a ball has equal ones."""
+
+    ends: np.ndarray
+    """Middles of a rod's ends, shape (2, 3), or the centre of an ellipsoid, shape (1, 3) [m]."""
+    half: np.ndarray
+    """Radius of a rod three times, or half length, width and height, shape (3,) [m]."""
+
+    @property
+    def ball(self) -> bool:
+        """Whether it is a ball."""
+        return len(self.ends) == 1 and bool(np.ptp(self.half) <= 1e-9 * self.half.max())
+
+    @property
+    def centre(self) -> np.ndarray:
+        """Its middle, shape (3,) [m]."""
+        return np.asarray(self.ends.mean(axis=0))
+
+    @property
+    def volume(self) -> float:
+        """[m3]."""
+        round_ends = 4.0 / 3.0 * pi * float(np.prod(self.half))
+        length = float(np.linalg.norm(self.ends[-1] - self.ends[0]))
+        return round_ends + pi * float(self.half[0]) ** 2 * length
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Corners of the boxes around its ends, shape (n, 3) [m]."""
+        signs = np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T
+        return np.concatenate([end + signs * self.half for end in self.ends])
+
+
+def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
+    """Return the shapes of a body, those that touch others if there are any; a rod's round ends are its own."""
+    first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
+    geoms = list(range(first, first + count))
+    touching = [g for g in geoms if model.geom_contype[g] or model.geom_conaffinity[g]]
+    kinds = mujoco.mjtGeom
+    plain = (int(kinds.mjGEOM_PLANE), int(kinds.mjGEOM_HFIELD))
+    used = [g for g in touching or geoms if model.geom_type[g] not in plain]
+    pieces = [_piece(model, data, g) for g in used]
+    rods = [
+        _shortened(piece, pieces) if model.geom_type[g] == int(kinds.mjGEOM_CYLINDER) else piece
+        for g, piece in zip(used, pieces, strict=True)
+        if len(piece.ends) == 2
+    ]
+    return (*rods, *(piece for piece in pieces if len(piece.ends) == 1 and not _is_cap(piece, rods)))
+
+
+def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
+    place, turn = data.geom_xpos[geom], data.geom_xmat[geom].reshape(3, 3)
+    size, kind = model.geom_size[geom], mujoco.mjtGeom(int(model.geom_type[geom]))
+    kinds = mujoco.mjtGeom
+    if kind in (kinds.mjGEOM_CAPSULE, kinds.mjGEOM_CYLINDER) and size[1] > size[0]:
+        along = size[1] * turn[:, 2]
+        return ShapePiece(ends=np.array([place - along, place + along]), half=np.full(3, size[0]))
+    if kind == kinds.mjGEOM_SPHERE:
+        return ShapePiece(ends=place[None].copy(), half=np.full(3, size[0]))
+    if kind == kinds.mjGEOM_ELLIPSOID:
+        return ShapePiece(ends=place[None].copy(), half=np.sqrt((turn * size) ** 2 @ np.ones(3)))
+    middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    return ShapePiece(ends=(place + turn @ middle)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
+
+
+def _shortened(rod: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
+    """Return a cylinder as a rod whose round ends stay inside it; one that ends in balls is a rod already."""
+    if sum(_is_cap(piece, [rod]) for piece in pieces) >= 2:
+        return rod
+    length = float(np.linalg.norm(rod.ends[1] - rod.ends[0]))
+    inward = (rod.ends[1] - rod.ends[0]) * min(rod.half[0] / length, 0.45)
+    return ShapePiece(ends=np.array([rod.ends[0] + inward, rod.ends[1] - inward]), half=rod.half)
+
+
+def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
+    """Return whether a ball is the round end of a rod."""
+    return ball.ball and any(
+        bool(ball.half[0] <= rod.half[0] * (1 + 1e-9))
+        and bool(np.linalg.norm(rod.ends - ball.centre, axis=1).min() <= _NEAR * max(rod.half[0], 1e-9))
+        for rod in rods
+    )
+
+
+NOTHING = 1e-9
+"""Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
+JOINED = 1e-6
+"""Hinges nearer than this share of a robot's size sit in one point [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Joint:
+    """A hinge as its file has it."""
+
+    name: str
+    """Name in the file."""
+    axis: np.ndarray
+    """Unit vector about which the child turns, shape (3,) [-]."""
+    anchor: np.ndarray
+    """A point of the axis, shape (3,) [m]."""
+    zero: float
+    """What the file calls the angle of the posture in which it is drawn [rad]."""
+    range: tuple[float, float] | None
+    """Limits from that posture [rad]; None if it turns all round."""
+    drive: Drive | None
+    """What moves it; None if the file says nothing of drives."""
+    stiffness: float
+    """[N m/rad]."""
+    damping: float
+    """[N m s/rad]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TreePart:
+    """What moves as one: bodies without hinges between them."""
+
+    name: str
+    """Name of its first body."""
+    parent: int
+    """Place of the part that carries it; -1 for the root."""
+    joints: tuple[Joint, ...]
+    """Between its parent and it, from the parent on."""
+    mass: float
+    """[kg]."""
+    com: np.ndarray
+    """Centre of mass, shape (3,) [m]."""
+    tensor: np.ndarray
+    """Tensor of inertia about the centre of mass, shape (3, 3); nothing but zeros where the file has none [kg m2]."""
+    origin: np.ndarray
+    """Origin of its first body, shape (3,) [m]."""
+    pieces: tuple[ShapePiece, ...]
+    """Its shapes."""
+    points: np.ndarray
+    """Origins of its bodies and sites, shape (n, 3) [m]."""
+    names: tuple[str, ...]
+    """Names of its bodies."""
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Points between which it lies: its anchors, its points, the corners of its shapes, shape (n, 3) [m]."""
+        ends = [np.array([[*joint.anchor] for joint in self.joints]).reshape(-1, 3), self.points]
+        return np.concatenate([*ends, *(piece.corners for piece in self.pieces)])
+
+
+@lru_cache(maxsize=4)
+def _extent(tree: "Tree") -> float:
+    """Return the size of a tree, which is asked for at every plane and limb."""
+    corners = np.concatenate([part.corners for part in tree.parts])
+    return float(np.ptp(corners, axis=0).max())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tree:
+    """Parts, a parent before its children."""
+
+    parts: tuple[TreePart, ...]
+    """The first one is the root."""
+    remarks: tuple[str, ...]
+    """Notes on what was not taken over, a sentence each."""
+
+    @property
+    def size(self) -> float:
+        """Greatest extent along an axis [m]."""
+        return _extent(self)
+
+    @property
+    def mass(self) -> float:
+        """Mass of all parts [kg]."""
+        return sum(part.mass for part in self.parts)
+
+    @property
+    def com(self) -> np.ndarray:
+        """Centre of mass, shape (3,) [m]."""
+        return np.sum([part.mass * part.com for part in self.parts], axis=0) / self.mass
+
+    def children(self, place: int) -> list[int]:
+        """Return the places of the parts that a part carries."""
+        return [i for i, part in enumerate(self.parts) if part.parent == place]
+
+    def below(self, place: int) -> list[int]:
+        """Return the places of a part and of all that hangs on it, parents first."""
+        below = [place]
+        for i in range(place + 1, len(self.parts)):
+            if self.parts[i].parent in below:
+                below.append(i)
+        return below
+
+
+def tree_of(loaded: Loaded) -> Tree:
+    """Return the parts and hinges of what was loaded.
+
+    Raises:
+        UnreadableFile: masses are missing or absurd.
+    """
+    model = loaded.model
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    root, remarks = _root(model)
+    parts: list[TreePart] = []
+    part_of: dict[int, int] = {}
+    for body in range(root, model.nbody):
+        above = int(model.body_parentid[body])
+        if body != root and above not in part_of:
+            continue
+        here = _body(model, data, body, loaded, root=body == root)
+        if body == root or here.joints:
+            part_of[body] = len(parts)
+            parts.append(replace(here, parent=-1 if body == root else part_of[above]))
+        else:
+            part_of[body] = part_of[above]
+            parts[part_of[above]] = _fused(parts[part_of[above]], here)
+    tree = Tree(parts=tuple(_joined(parts)), remarks=(*loaded.remarks, *remarks))
+    return _weighed(tree)
+
+
+def _root(model: Any) -> tuple[int, tuple[str, ...]]:
+    """Return the body of the world that carries most hinges, and what else stands there."""
+    hinge = int(mujoco.mjtJoint.mjJNT_HINGE)
+    count = np.zeros(model.nbody, dtype=int)
+    for joint in range(model.njnt):
+        count[model.body_rootid[model.jnt_bodyid[joint]]] += model.jnt_type[joint] == hinge
+    count[0] = -1
+    root = int(np.argmax(count))
+    others = [
+        model.body(b).name or f"body {b}" for b in range(1, model.nbody) if model.body_parentid[b] == 0 and b != root
+    ]
+    remarks: list[str] = []
+    if others:
+        remarks.append(f"Beside the robot the file holds {', '.join(others[:4])}, which was not taken.")
+    held = [
+        model.joint(j).name for j in range(model.njnt) if model.jnt_bodyid[j] == root and model.jnt_type[j] == hinge
+    ]
+    if held:
+        remarks.append(
+            f"{', '.join(held)} hinges the root to the world and was not taken: in suchus the root is a free body."
+        )
+    return root, tuple(remarks)
+
+
+def _body(model: Any, data: Any, body: int, loaded: Loaded, *, root: bool) -> TreePart:
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    joints = () if root else tuple(_joint(model, data, j, loaded) for j in range(first, first + count))
+    sites = [data.site_xpos[s] for s in range(model.nsite) if model.site_bodyid[s] == body]
+    name = model.body(body).name or f"body_{body}"
+    turn, weighs = data.ximat[body].reshape(3, 3), bool(model.body_mass[body] > NOTHING)
+    return TreePart(
+        name=name,
+        parent=-1,
+        joints=joints,
+        mass=float(model.body_mass[body]) if weighs else 0.0,
+        com=data.xipos[body].copy(),
+        tensor=turn @ np.diag(model.body_inertia[body]) @ turn.T * weighs,
+        origin=data.xpos[body].copy(),
+        pieces=of_body(model, data, body),
+        points=np.array([data.xpos[body], *sites]),
+        names=(name,),
+    )
+
+
+def _joint(model: Any, data: Any, joint: int, loaded: Loaded) -> Joint:
+    name = model.joint(joint).name or f"joint_{joint}"
+    zero = float(model.qpos0[model.jnt_qposadr[joint]])
+    low, high = model.jnt_range[joint] - zero
+    dof = int(model.jnt_dofadr[joint])
+    return Joint(
+        name=name,
+        axis=data.xaxis[joint].copy(),
+        anchor=data.xanchor[joint].copy(),
+        zero=zero,
+        range=(float(low), float(high)) if model.jnt_limited[joint] else None,
+        drive=loaded.drives.get(name),
+        stiffness=float(np.ravel(model.jnt_stiffness[joint])[0]),
+        damping=float(np.ravel(model.dof_damping[dof])[0]),
+    )
+
+
+def _fused(one: TreePart, two: TreePart) -> TreePart:
+    """Return two parts that move as one."""
+    mass, com, tensor = together([(part.mass, part.com, part.tensor) for part in (one, two)])
+    return replace(
+        one,
+        mass=mass,
+        com=com,
+        tensor=tensor,
+        pieces=one.pieces + two.pieces,
+        points=np.concatenate([one.points, two.points]),
+        names=one.names + two.names,
+    )
+
+
+def _joined(parts: list[TreePart]) -> list[TreePart]:
+    """Put hinges in one point into one joint: of the parts between them nothing is left but those with mass."""
+    size = max(float(np.ptp(np.concatenate([part.corners for part in parts]), axis=0).max()), 1e-9)
+    kept: dict[int, int] = {}
+    found: list[TreePart] = []
+    waiting: dict[int, tuple[int, tuple[Joint, ...]]] = {}
+    for place, part in enumerate(parts):
+        above, before = waiting.get(part.parent, (part.parent, ()))
+        joints = before + part.joints
+        children = [other for other in parts if other.parent == place]
+        empty = part.mass == 0.0 and len(children) == 1 and place > 0
+        if empty and np.linalg.norm(children[0].joints[0].anchor - joints[-1].anchor) < JOINED * size:
+            waiting[place] = (above, joints)
+            continue
+        kept[place] = len(found)
+        found.append(replace(part, joints=joints, parent=kept.get(above, -1)))
+    return found
+
+
+def _weighed(tree: Tree) -> Tree:
+    """Refuse masses that are missing or absurd; a few missing ones become a thousandth of the whole."""
+    names = [part.name for part in tree.parts if part.mass == 0.0]
+    if tree.mass == 0.0 or 2 * len(names) > len(tree.parts):
+        raise UnreadableFile(
+            f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no "
+            "shape that is read, as where there are only meshes; give each an <inertial>."
+        )
+    require("the imported robot", "mass", tree.mass, 1e-6, 1e5, "kg")
+    require("the imported robot", "size", tree.size, 1e-3, 100.0, "m")
+    if not names:
+        return tree
+    mended = tuple(replace(part, mass=part.mass or 1e-3 * tree.mass) for part in tree.parts)
+    remarks = f"{', '.join(names[:6])} had no mass; the draft gives each a thousandth of the robot's."
+    return Tree(parts=mended, remarks=(*tree.remarks, remarks))

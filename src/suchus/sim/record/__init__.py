@@ -1,0 +1,27 @@
+"""The schema of a record: the variables of a run, their dimensions and units."""
+
+from suchus.sim.record.schema import (
+    COUPLED,
+    DRIVEN,
+    HEAT,
+    PER_RUN,
+    VARIABLES,
+    WATER,
+    check_land,
+    dataset,
+    ground_of,
+    ground_text,
+)
+
+__all__ = [
+    "COUPLED",
+    "DRIVEN",
+    "HEAT",
+    "PER_RUN",
+    "VARIABLES",
+    "WATER",
+    "check_land",
+    "dataset",
+    "ground_of",
+    "ground_text",
+]

@@ -1,0 +1,276 @@
+"""The schema of a run on land: dimensions, variables and units of its ``xarray.Dataset``, and its ground as text."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design.ground import Bumps, Ground, Step, Stone
+from suchus.robot.design.layout import LEGS
+from suchus.core.errors import IncompatibleRecord, SuchusError
+
+_LARGEST, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
+XYZ = ("x", "y", "z")
+WXYZ = ("w", "x", "y", "z")
+
+VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "position": (("time", "xyz"), "m", "pelvis in the world"),
+    "orientation": (("time", "wxyz"), "1", "pelvis in the world, unit quaternion"),
+    "centre_of_mass": (("time", "xyz"), "m", "of the whole robot in the world"),
+    "angular_momentum": (("time", "xyz"), "kg m2/s", "of the whole robot about its centre of mass, in the world"),
+    "snout": (("time", "xyz"), "m", "tip of the snout in the world"),
+    "tail_tip": (("time", "xyz"), "m", "tip of the tail in the world"),
+    "foot_position": (("time", "leg", "xyz"), "m", "centre of each foot in the world"),
+    "foot_force": (("time", "leg", "xyz"), "N", "of the ground on each foot, in the world"),
+    "belly_force": (("time", "segment", "xyz"), "N", "of the ground on each body of the trunk, in the world"),
+    "tail_force": (("time", "xyz"), "N", "of the ground on the tail, in the world"),
+    "joint_angle": (("time", "joint"), "rad", "every hinge"),
+    "servo_angle": (("time", "servo"), "rad", "at the servo's shaft"),
+    "servo_velocity": (("time", "servo"), "rad/s", "at the servo's shaft"),
+    "servo_torque": (("time", "servo"), "N m", "at the servo's shaft"),
+    "servo_target": (("time", "servo"), "rad", "commanded angle"),
+    "limb_phase": (("time", "leg"), "1", "phase of each limb, not wrapped [cycle]"),
+    "angular_velocity": (("time", "xyz"), "rad/s", "of the pelvis, in its own frame"),
+    "acceleration": (("time", "xyz"), "m/s2", "of the pelvis with gravity, in its own frame"),
+}
+"""Name of each variable: its dimensions after ``run``, its unit, what it is."""
+
+WATER: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "water_level": (("time",), "m", "of the surface above the world's origin, against gravity"),
+    "air_fraction": (("time",), "1", "share of the hull's air that is kept"),
+    "air_fraction_front": (("time",), "1", "share of the air of the hull's front chambers that is kept"),
+    "share_under": (("time",), "1", "volume under water over the whole volume, foam included"),
+    "water_force": (("time", "xyz"), "N", "of the water on the robot, in the world"),
+    "water_power": (("time",), "W", "of the water on the robot"),
+    "servo_power": (("time",), "W", "of all servos on the joints"),
+    "feet_share": (("time",), "1", "of the weight that the feet carry"),
+}
+"""Further variables of runs in water, as in ``VARIABLES``.
+
+Force and powers are means over the control period; they hold what the added mass took by the accelerations of the
+physics step before.
+"""
+
+HEAT: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "servo_temperature": (("time", "servo"), "degC", "of the winding; NaN where it does not warm up"),
+}
+"""Further variables of runs whose robots have servos that warm up, as in ``VARIABLES``."""
+
+COUPLED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "link_force": (
+        ("time", "link", "xyz"),
+        "N",
+        "of the water on each link between two lateral joints, or each moving piece, in the world",
+    ),
+    "link_torque": (
+        ("time", "link"),
+        "N m",
+        "of the water on each link about the vertical through its middle",
+    ),
+    "joint_water_torque": (("time", "joint"), "N m", "of the water on each joint that it feels, NaN for the others"),
+    "coupling_residual": (("time",), "1", "force left over by the step, over the greatest so far"),
+    "coupling_first": (("time",), "1", "the same before the step was corrected"),
+    "coupling_iterations": (("time",), "1", "corrections of the step"),
+    "energy_error": (("time",), "1", "what is missing in the robot's balance of energy so far, over its servos' work"),
+    "power_error": (("time",), "1", "work of the water by force and way, less that by the flow's own account, over it"),
+}
+"""Further variables of runs whose water is a flow that is solved together with the robot, as in ``VARIABLES``.
+
+Forces and torques are means over the control period before each sample; the rest is of the step that holds the sample.
+"""
+
+DRIVEN: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "tick_began": (("time",), "s", "delay of the tick against its plan"),
+    "tick_took": (("time",), "s", "from the beginning of the tick until its goals were sent"),
+    "servo_asked": (("time", "servo"), "rad", "angle that the controller asked for, before limits and steps"),
+    "servo_heard": (
+        ("time", "servo"),
+        "1",
+        "1 where the servo answered in the tick, 0 where its last reading stays",
+    ),
+    "reading_age": (("time", "servo"), "s", "age of the reading that was used"),
+    "servo_current": (("time", "servo"), "A", "of the servo, in the sense of its torque"),
+    "servo_voltage": (("time", "servo"), "V", "at the servo's plug"),
+    "servo_error": (("time", "servo"), "1", "bits of the servo's alert; 0 for none"),
+    **HEAT,
+}
+"""Further variables of runs of servos over a bus, as in ``VARIABLES``; what nobody measured is NaN there."""
+
+PER_RUN: Mapping[str, tuple[str, str]] = {
+    "mass": ("kg", "of the robot"),
+    "period": ("s", "of the gait"),
+    "duty_factor": ("1", "of the gait"),
+    "ended": ("s", "time of the last valid sample"),
+    "cause": ("1", "why the run ended early; empty if it did not"),
+    "stands_on": ("1", "the ground as JSON, slopes [rad], lengths [m]; empty if the robot floats; see ``ground_of``"),
+}
+
+_INDEXED = ("run", "time", "leg", "segment", "joint", "servo")
+
+
+def dataset(
+    arrays: Mapping[str, np.ndarray],
+    per_run: Mapping[str, np.ndarray],
+    coordinates: Mapping[str, Sequence[object] | np.ndarray],
+) -> xr.Dataset:
+    """Put arrays into the schema.
+
+    Args:
+        arrays: one per name of ``VARIABLES``, each ``(run, *dimensions)``.
+        per_run: one per name of ``PER_RUN``, each ``(run,)``.
+        coordinates: labels of the dimensions ``run``, ``time``, ``leg``, ``segment``, ``joint``, ``servo``; further
+            ones belong to ``run``.
+
+    Raises:
+        IncompatibleRecord: a variable is missing.
+    """
+    missing = [name for name in VARIABLES if name not in arrays] + [name for name in PER_RUN if name not in per_run]
+    if missing:
+        raise IncompatibleRecord(f"a record needs {', '.join(missing)} too.")
+    along = {name: name if name in _INDEXED else "run" for name in coordinates}
+    data = xr.Dataset(
+        coords={
+            "xyz": list(XYZ),
+            "wxyz": list(WXYZ),
+            **{name: (along[name], np.asarray(labels)) for name, labels in coordinates.items()},
+        },
+        attrs={"schema": "suchus land record 1"},
+    )
+    data.coords["time"].attrs["units"] = "s"
+    sampled = {
+        name: (("run", *dims), arrays[name], {"units": unit, "long_name": what})
+        for name, (dims, unit, what) in VARIABLES.items()
+    }
+    of_runs = {name: ("run", per_run[name], {"units": u, "long_name": what}) for name, (u, what) in PER_RUN.items()}
+    # all at once: one at a time each copies and aligns what is there, a twentieth of the time of a run alone
+    return data.assign(sampled | of_runs)
+
+
+def check_land(record: xr.Dataset, names: Sequence[str], where: str) -> None:
+    """Refuse what is no record of runs on land, however it came to be.
+
+    Args:
+        record: any.
+        names: which of ``VARIABLES`` are going to be looked at.
+        where: what it is called in messages.
+
+    Raises:
+        IncompatibleRecord: a variable is missing, or has other dimensions, labels or numbers than the schema says.
+    """
+    missing = [name for name in names if name not in record]
+    if missing or "time" not in record.coords:
+        raise IncompatibleRecord(f"{where} is no record of a run on land: it lacks {', '.join(missing) or 'time'}.")
+    if not record.time.size:
+        raise IncompatibleRecord(f"{where} has no frame; run for longer than one sample.")
+    if others := list(filter(None, (_other_meaning(record, name) for name in ("time", *names)))):
+        raise IncompatibleRecord(f"{where} holds {'; '.join(others)}: records are in SI units, as suchus writes them.")
+    wrong = [name for name in names if not _as_said(record, name)]
+    wrong += [name for name in ("label", "gait", "robot", *PER_RUN) if name in record and not _per_run(record[name])]
+    if wrong:
+        raise IncompatibleRecord(f"{where} holds {', '.join(wrong)} otherwise than records of runs on land do.")
+    time = record.time
+    if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
+        raise IncompatibleRecord(f"{where} has times that do not rise.")
+    legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
+    if not _in_pairs(legs):
+        seen = ", ".join(legs[:8])
+        raise IncompatibleRecord(f"{where} has the legs {seen}, not pairs of left and right, as {', '.join(LEGS)}.")
+
+
+def _other_meaning(record: xr.Dataset, name: str) -> str:
+    """Return in words what a variable says of itself that the schema does not: another unit, or to be another variable.
+
+    Nothing where it says the same or nothing of itself.
+    """
+    variable, unit = record[name], VARIABLES[name][1] if name in VARIABLES else "s"
+    if (said := variable.attrs.get("units", unit)) != unit:
+        return f"{name} in {str(said)[:20]!r} instead of {unit}"
+    what = variable.attrs.get("long_name")
+    other = next((one for one, (_, _, meaning) in VARIABLES.items() if one != name and meaning == what), None)
+    return f"{other} under the name of {name}" if other else ""
+
+
+def _as_said(record: xr.Dataset, name: str) -> bool:
+    variable, dims = record[name], VARIABLES[name][0]
+    if variable.dims not in (dims, ("run", *dims)) or variable.dtype.kind not in "fiu":
+        return False
+    if not all(_in_order(record, dim, order) for dim, order in (("xyz", XYZ), ("wxyz", WXYZ)) if dim in dims):
+        return False
+    if not all(size for dim, size in variable.sizes.items() if dim != "leg"):  # a swimmer may have no limbs
+        return False
+    labels = all(record[dim].dims == (dim,) for dim in dims if dim in record.coords)
+    named = all(dim in record.coords for dim in dims if dim in ("leg", "joint", "servo", "segment"))
+    sizes = all(variable.sizes[dim] == size for dim, size in (("xyz", 3), ("wxyz", 4)) if dim in dims)
+    numbers = np.asarray(variable.values, dtype=float)
+    numbers = numbers[np.isfinite(numbers)]
+    if not (labels and named and sizes) or (numbers.size and np.abs(numbers).max() > _LARGEST):
+        return False
+    if name == "orientation":
+        length = np.sqrt((np.asarray(variable, dtype=float) ** 2).sum(axis=variable.dims.index("wxyz")))
+        return bool((np.abs(length[np.isfinite(length)] - 1.0) < _UNIT).all())
+    return True
+
+
+def _in_order(record: xr.Dataset, dim: str, order: Sequence[str]) -> bool:
+    """Return whether axes are labelled as the schema has them, if they are."""
+    return dim not in record.coords or tuple(map(str, record[dim].values.ravel())) == tuple(order)
+
+
+def _per_run(variable: xr.DataArray) -> bool:
+    return variable.dims in ((), ("run",)) and variable.size > 0
+
+
+def _in_pairs(legs: Sequence[str]) -> bool:
+    """Return whether each left limb is followed by the right one of its girdle, and none stands twice."""
+    pairs = zip(legs[::2], legs[1::2], strict=False)
+    paired = all(a[:1] == "L" and b[:1] == "R" and a[1:] == b[1:] for a, b in pairs)
+    return len(legs) % 2 == 0 and len(set(legs)) == len(legs) and paired
+
+
+def _rising(values: np.ndarray) -> bool:
+    return bool(np.isfinite(values).all() and (np.diff(values) > 0).all())
+
+
+GROUND = "stands_on"
+"""Name of the variable along ``run`` that holds the ground, as JSON text, since every kind of relief has numbers of its
+own; empty where a run floats."""
+_GROUND_KEYS = {"friction_scale": "grip"}
+"""Keys of records whose names are not those of the fields: files of earlier releases have them too."""
+_RELIEFS = {"step": Step, "stone": Stone, "bumps": Bumps}
+
+
+def ground_text(ground: Ground | None) -> str:
+    """Return a ground as text; the empty one stands for none."""
+    if ground is None:
+        return ""
+    text = {_GROUND_KEYS.get(name, name): value for name, value in asdict(ground).items()}
+    if ground.relief is not None:
+        fields = asdict(ground.relief)
+        if fields.get("scale") == 1.0:  # as it was written before bumps had a scale
+            del fields["scale"]
+        text["relief"] = {"kind": type(ground.relief).__name__.lower(), **fields}
+    return json.dumps(text, sort_keys=True)
+
+
+def ground_of(record: xr.Dataset) -> Ground | None:
+    """Return what a run stood on; None where it floats, or where the record is of before grounds were kept.
+
+    Args:
+        record: of one run, with or without the dimension ``run``.
+
+    Raises:
+        IncompatibleRecord: what the record says is no ground.
+    """
+    text = str(record[GROUND].values.ravel()[0]) if GROUND in record else ""
+    if not text:
+        return None
+    try:
+        names = {key: name for name, key in _GROUND_KEYS.items()}
+        fields: dict[str, Any] = {names.get(key, key): value for key, value in json.loads(text).items()}
+        relief = fields.pop("relief")
+        return Ground(**fields, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
+    except (ValueError, KeyError, TypeError, AttributeError, SuchusError) as error:
+        raise IncompatibleRecord(f"the record holds no ground that this suchus knows: {text[:120]!r}.") from error

@@ -1,0 +1,209 @@
+"""A robot as links, each with its own pose: limbs that paddle, bodies that leave the plane.
+
+Coordinates are all of the robot's own (``land.stepper``): six rates of the root, then every hinge. The flow sees the
+robot turned by half a turn, as it sees a midline: its head at the origin, its tail towards +x.
+"""
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from suchus import flow
+from suchus.core import rotation
+from suchus.swim.coupling.chain import RECENT, ChainState, Way
+from suchus.robot.design import Robot
+from suchus.robot.design.profile import stations
+from suchus.flow.linked import between, onward
+from suchus.flow.twist import Twists
+from suchus.sim.land.links import LinkShape, RobotLinks
+
+_HALF_TURN = np.diag([-1.0, -1.0, 1.0])
+_ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where the rod's z was, up to a sign
+
+
+class LinkChain:
+    """A robot's links over all of its coordinates; see ``chain.MidlineChain``, which has the same methods.
+
+    Args:
+        robot: which.
+        links: of its model.
+        start: place of the root at the beginning [m].
+    """
+
+    axes = 3
+    """Axes in which it moves [-]."""
+
+    def __init__(self, robot: Robot, links: RobotLinks, start: Float[np.ndarray, "3"]) -> None:
+        self.joints, self.names, self._links = links.joints, links.names, links
+        number = [segment.name for segment in robot.axis].index(robot.root)
+        ahead = stations(robot)[number][0] + robot.axis[number].front
+        self._corner = np.array([ahead, 0.0, 0.0]) - _HALF_TURN @ start
+        self.pieces = tuple(_piece(shape) for shape in links.shapes)
+        volume = np.zeros(len(self.names))
+        for piece in self.pieces:
+            volume[piece.link] += piece.shape.volume(0.0)
+        self._weights = volume / volume.sum()
+        self._recent: dict[bytes, tuple[flow.LinkStates, np.ndarray]] = {}
+
+    @property
+    def size(self) -> int:
+        """Coordinates [-]."""
+        return 6 + len(self.joints)
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Their names."""
+        return "root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw", *self.joints
+
+    def seen(self, place: np.ndarray, rate: np.ndarray) -> ChainState:
+        """Return a state of the robot, whose coordinates are the chain's own."""
+        return ChainState(place, rate)
+
+    def of_robot(self, values: np.ndarray) -> np.ndarray:
+        """Return a generalised force or an added mass along the robot's coordinates, which are the chain's own."""
+        return values
+
+    def _known(self, place: np.ndarray) -> np.ndarray:
+        """Return the Jacobian of the links in a posture, in the frame of the flow; worked out once."""
+        unit = place.copy()
+        unit[3:7] /= np.linalg.norm(unit[3:7])
+        key = unit.tobytes()
+        if key not in self._recent:
+            if len(self._recent) == RECENT:
+                del self._recent[next(iter(self._recent))]
+            rest = self._links.motion(unit, np.zeros(self.size))
+            jacobian = self._links.jacobian(unit)
+            turned = np.concatenate([_HALF_TURN @ jacobian[:, :3], _HALF_TURN @ jacobian[:, 3:]], axis=1)
+            where = rest.position @ _HALF_TURN + self._corner
+            none = np.zeros_like(where)
+            self._recent[key] = flow.LinkStates(where, _HALF_TURN @ rest.matrix, none, none), turned
+        return self._recent[key][1]
+
+    def states(self, posture: ChainState) -> flow.LinkStates:
+        """Return the links in the frame of the flow."""
+        jacobian = self._known(posture.place)
+        unit = posture.place.copy()
+        unit[3:7] /= np.linalg.norm(unit[3:7])
+        rate = jacobian @ posture.rate
+        return self._recent[unit.tobytes()][0]._replace(velocity=rate[:, :3], spin=rate[:, 3:])
+
+    def way(self, time: float, posture: ChainState) -> "LinkWay":
+        """Return a way that begins at a posture."""
+        return LinkWay(self, time, posture)
+
+    def turned(self, place: np.ndarray, other: np.ndarray) -> float:
+        """Return the greatest angle by which root and joints of two postures differ [rad]."""
+        root = 2.0 * np.arccos(np.clip(abs(place[3:7] @ other[3:7]), 0.0, 1.0))
+        return float(max(root, np.abs(place[7:] - other[7:]).max(initial=0.0)))
+
+    def force(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, " coordinate"]:
+        """Return the generalised force of what acts on the links [N, N m].
+
+        Args:
+            place: posture; with that in the middle of the step, force times velocity is the power to second order.
+            loads: on the links; torques about ``loads.about``.
+            origin: of the grid's frame in the world of the flow [m].
+        """
+        jacobian = self._known(place)
+        force, own = self._wrenches(place, loads, origin)
+        return np.asarray(np.einsum("lck,lc->k", jacobian, np.concatenate([force, own], axis=1)))
+
+    def _wrenches(
+        self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray
+    ) -> tuple[Float[np.ndarray, "link 3"], Float[np.ndarray, "link 3"]]:
+        """Return forces on the links and torques about their origins, in the frame of the flow."""
+        at = self.states(ChainState(place, np.zeros(self.size))).position - origin - loads.about
+        return loads.parts.force, loads.parts.moment - np.cross(at, loads.parts.force)
+
+    def felt(self, place: np.ndarray, loads: flow.FlowLoads, origin: np.ndarray) -> Float[np.ndarray, "link 4"]:
+        """Return what acts on each link, in the world: force, and torque about the vertical through its origin."""
+        force, own = self._wrenches(place, loads, origin)
+        return np.column_stack([force @ _HALF_TURN, own[:, 2]])
+
+    def unpressed(self, place: np.ndarray, pressed: np.ndarray, about: np.ndarray) -> np.ndarray:  # noqa: ARG002
+        """Return what takes away what links do to each other: nothing, since they are rigid between their joints."""
+        return np.zeros((*pressed.shape[:-2], self.size))
+
+    def twists(self, place: np.ndarray, rate: np.ndarray, origin: np.ndarray, axes: int) -> Twists:  # noqa: ARG002
+        """Return the motion of the links at rates of the coordinates.
+
+        Args:
+            place: posture.
+            rate: of the coordinates [m/s, rad/s].
+            origin: of the grid's frame in the world of the flow [m].
+            axes: of the flow, 3 [-].
+        """
+        now = self.states(ChainState(place, rate))
+        return Twists(about=now.position - origin, linear=now.velocity, angular=now.spin)
+
+    def modes(self, place: np.ndarray, origin: np.ndarray, axes: int) -> list[Twists]:
+        """Return the motions of the links for a unit rate of each coordinate; see ``twists``."""
+        return [self.twists(place, unit, origin, axes) for unit in np.eye(self.size)]
+
+    def centre(self, states: flow.LinkStates) -> tuple[np.ndarray, np.ndarray]:
+        """Return the point that the grid follows, the mean of the links by their volumes, and its velocity."""
+        return self._weights @ states.position, self._weights @ states.velocity
+
+    def body(self, path: "LinkWay") -> flow.Linked:
+        """Return the robot as a body of the flow that goes along a path, about its centre."""
+
+        def motion(time: float) -> flow.LinkStates:
+            states = path.links(time)
+            centre, drift = self.centre(states)
+            return states._replace(position=states.position - centre, velocity=states.velocity - drift)
+
+        return flow.Linked(pieces=self.pieces, motion=motion)
+
+    def motion(self, path: "LinkWay") -> Callable[[float], flow.Pose]:
+        """Return where the centre of the same body is along a path."""
+
+        def pose(time: float) -> flow.Pose:
+            (x, y, z), (u, v, w) = (part.tolist() for part in self.centre(path.links(time)))
+            return flow.Pose(position=(x, y, z), velocity=(u, v, w))
+
+        return pose
+
+
+class LinkWay(Way):
+    """A robot's way through one step: each link goes along a cubic that has its places and rates at both ends."""
+
+    def __init__(self, chain: LinkChain, time: float, posture: ChainState) -> None:
+        super().__init__(time, posture)
+        self._chain = chain
+        self._states = (chain.states(posture),) * 2
+        self._seen_links: dict[float, flow.LinkStates] = {}
+
+    def go(self, time: float, posture: ChainState, end: float, then: ChainState) -> None:
+        """Go from a posture at a time to another [s]."""
+        super().go(time, posture, end, then)
+        self._states = self._chain.states(posture), self._chain.states(then)
+        self._seen_links.clear()
+
+    def at(self, time: float) -> ChainState:
+        """Return the posture at the end of the path that is nearer to a time [s]; between them there are only links."""
+        first, last = self._times
+        return self._start if abs(time - first) < abs(time - last) else self._end
+
+    def links(self, time: float) -> flow.LinkStates:
+        """Return the links at a time [s], in the frame of the flow; beyond the ends they go on at their rates."""
+        if time not in self._seen_links:
+            (first, last), (start, end) = self._times, self._states
+            span = last - first
+            found = between(start, end, span, (time - first) / span) if span else onward(end, time - last)
+            self._seen_links[time] = found
+        return self._seen_links[time]
+
+
+def _piece(shape: LinkShape) -> flow.LinkPiece:
+    """Return a shape of a robot as a piece of a body of the flow."""
+    if shape.kind == "ellipsoid":
+        long, wide, high = (2 * half for half in shape.size)
+        whole: flow.Ellipsoid | flow.Spherocylinder = flow.Ellipsoid(length=long, width=wide, height=high)
+        return flow.LinkPiece(link=shape.link, shape=whole, at=shape.at, turn=shape.turn)
+    long = 2 * shape.size[1] if shape.kind == "rod" else 0.0
+    w, x, y, z = rotation.multiply(np.array(shape.turn), _ALONG_X).tolist()
+    return flow.LinkPiece(
+        link=shape.link, shape=flow.Spherocylinder(length=long, radius=shape.size[0]), at=shape.at, turn=(w, x, y, z)
+    )

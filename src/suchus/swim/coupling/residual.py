@@ -1,0 +1,210 @@
+"""How far the section model is from the flow, link by link and joint by joint, along the motion that the robot took.
+
+The section model says of the recorded motion what it would have done; no second run is made. Its force is a part by
+the acceleration and a part by the speed, and the two factors with which they come nearest to the flow's are fitted on
+some cycles and judged on the others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Bool, Float
+from scipy.signal import savgol_filter
+
+from suchus.core import rotation
+from suchus.robot.design import Robot, with_values
+from suchus.robot.design.water import Water
+from suchus.sim.land import Lake
+from suchus.sim.land.prescribed import SectionLoads, link_bodies, sections_along
+
+DRAWS = 400
+"""Draws of the bootstrap, blocks of half a cycle [-]."""
+BLOCKS = 3
+"""Blocks without which no interval is given [-]: the draws of fewer say nothing of how cycles differ."""
+COVERED = 0.95
+"""Share of the draws that lies in an interval [-]."""
+_SMOOTHED, _ORDER = 9, 4
+"""Samples and order of the polynomials by which places become rates and accelerations [-]."""
+
+
+class RecordedMotion(NamedTuple):
+    """Root and lateral joints along a record."""
+
+    place: Float[np.ndarray, "sample coordinate"]
+    """[m, rad]."""
+    rate: Float[np.ndarray, "sample coordinate"]
+    """[m/s, rad/s]."""
+    push: Float[np.ndarray, "sample coordinate"]
+    """[m/s2, rad/s2]."""
+
+
+def motion_of(record: xr.Dataset, joints: Sequence[str]) -> RecordedMotion:
+    """Return the motion in a record of one run, differentiated by local polynomials."""
+    yaw = np.unwrap(rotation.yaw(record.orientation.values))
+    bends = record.joint_angle.sel(joint=list(joints)).transpose("time", "joint").values
+    place = np.column_stack([record.position.values[:, :2], yaw, bends])
+    step = float(record.time[1] - record.time[0])
+    rate, push = (savgol_filter(place, _SMOOTHED, _ORDER, deriv=order, delta=step, axis=0) for order in (1, 2))
+    return RecordedMotion(place, rate, push)
+
+
+def residual_table(
+    robot: Robot, record: xr.Dataset, *, period: float, first: float, viscosity: float
+) -> xr.Dataset:  # fmt: skip
+    """Return how far the section model is from the flow that a record holds.
+
+    Args:
+        robot: that swam.
+        record: of one run in a flow, see ``record.COUPLED``.
+        period: of a cycle [s].
+        first: time from which samples count [s].
+        viscosity: kinematic, of the flow's water [m2/s].
+
+    Returns:
+        Along ``part``, the links by the force across them and the joints by their moments: ``rms`` of the flow's and of
+        the section model's, ``r2`` as the model is shipped, factors ``added`` and ``drag`` on its two parts that are
+        fitted to the first half of the cycles, with their intervals, and ``r2_held_out`` of the fit in the second half.
+    """
+    parts = sections_beside(robot, record, first=first, viscosity=viscosity)
+    halves = (
+        parts.keep & (parts.time < 0.5 * (first + parts.time[-1])),
+        parts.keep & (parts.time >= 0.5 * (first + parts.time[-1])),
+    )
+    rows = [
+        _row(parts.flow[:, k], parts.added[:, k], parts.drag[:, k], parts.keep, halves, period / parts.step)
+        for k in range(len(parts.names))
+    ]
+    names = (
+        "rms", "rms_sections", "r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_fitted",
+        "r2_held_out",
+    )  # fmt: skip
+    data = {f"residual_{name}": ("part", [row[k] for row in rows]) for k, name in enumerate(names)}
+    kind = ["link"] * parts.links + ["joint"] * (len(parts.names) - parts.links)
+    return xr.Dataset({**data, "part_kind": ("part", kind)}, coords={"part": parts.names})
+
+
+class SectionsBeside(NamedTuple):
+    """What a flow did to links and joints along a record, and the two parts of what sections say of the same motion."""
+
+    names: list[str]
+    """Links from the head on, then joints."""
+    links: int
+    """How many of them are links [-]."""
+    time: Float[np.ndarray, " sample"]
+    """[s]."""
+    keep: Bool[np.ndarray, " sample"]
+    """Whether each sample counts [-]."""
+    flow: Float[np.ndarray, "sample part"]
+    """Force of the flow across each link, moment at each joint [N, N m]."""
+    added: Float[np.ndarray, "sample part"]
+    """The sections' part by the acceleration, with what is shed."""
+    drag: Float[np.ndarray, "sample part"]
+    """Their part by the speed."""
+    joints: list[str]
+    """Lateral joints [-]."""
+
+    @property
+    def step(self) -> float:
+        """From sample to sample [s]."""
+        return float(self.time[1] - self.time[0])
+
+
+def sections_beside(robot: Robot, record: xr.Dataset, *, first: float, viscosity: float) -> SectionsBeside:
+    """Return what the flow of a record did, and beside it the section model; see ``residual_table``."""
+    lateral = {hinge.name for hinge in robot.axis_hinges if hinge.turn == "yaw"}
+    felt = [str(name) for name in record.joint.values if np.isfinite(record.joint_water_torque.sel(joint=name)).all()]
+    joints = [name for name in felt if name in lateral]
+    record = _between_joints(robot, record, joints)
+    motion = motion_of(record, joints)
+    bare = with_values(robot, {"hull": None})
+    lake = Lake(level=0.0, water=replace(Water(), viscosity=viscosity))
+    still = replace(lake, added_mass=0.0)
+    whole, dragged = (_across(sections_along(bare, joints, *motion, one), motion) for one in (lake, still))
+    time = record.time.values
+    keep = (time >= first) & (time <= time[-1] - _SMOOTHED * (time[1] - time[0]))
+    names = [str(name) for name in record.link.values] + joints
+    flow = _across(_flow_loads(record, joints), motion)
+    return SectionsBeside(names, record.sizes["link"], time, keep, flow, whole - dragged, dragged, joints)
+
+
+def _between_joints(robot: Robot, record: xr.Dataset, joints: Sequence[str]) -> xr.Dataset:
+    """Return a record whose links lie between lateral joints: of one that has each body for itself, their sums.
+
+    Limbs are left out, as sections leave them out.
+    """
+    groups, there = link_bodies(robot, joints), {str(name) for name in record.link.values}
+    if not any(body in there for group in groups for body in group):
+        return record
+    names = [f"link_{k + 1}" for k in range(len(groups))]
+    loads = {
+        name: xr.concat(
+            [record[name].sel(link=[body for body in group if body in there]).sum("link") for group in groups], "link"
+        ).transpose("time", "link", ...)
+        for name in ("link_force", "link_torque")
+    }
+    return record.drop_dims("link").assign(loads).assign_coords(link=names)
+
+
+def _flow_loads(record: xr.Dataset, joints: Sequence[str]) -> SectionLoads:
+    """Return what the flow did, at the samples: means over the control period before each, half a period late."""
+    links = np.concatenate([record.link_force.values[..., :2], record.link_torque.values[..., None]], axis=2)
+    moments = record.joint_water_torque.sel(joint=list(joints)).transpose("time", "joint").values
+
+    def centred(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([0.5 * (values[1:] + values[:-1]), values[-1:]])
+
+    return SectionLoads(centred(links), centred(moments))
+
+
+def _across(loads: SectionLoads, motion: RecordedMotion) -> np.ndarray:
+    """Return the force across each link, to the left of the root's heading, and the moments, shape (sample, part)."""
+    yaw = motion.place[:, 2, None]
+    aside = -np.sin(yaw) * loads.links[:, :, 0] + np.cos(yaw) * loads.links[:, :, 1]
+    return np.column_stack([aside, loads.joints])
+
+
+def r2(values: np.ndarray, model: np.ndarray) -> float:
+    """Return the share of the variance of values that a model explains; below 0 it is worse than their mean [-]."""
+    spread = float(((values - values.mean()) ** 2).sum())
+    return float(1.0 - ((values - model) ** 2).sum() / spread) if spread > 0 else float("nan")
+
+
+def fitted(values: np.ndarray, added: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    """Return the factors on two parts with which their sum comes nearest to values, shape (2,) [-]."""
+    found, *_ = np.linalg.lstsq(np.column_stack([added, drag]), values, rcond=None)
+    return np.asarray(found)
+
+
+def _row(
+    values: np.ndarray, added: np.ndarray, drag: np.ndarray, keep: np.ndarray, halves: tuple[np.ndarray, np.ndarray],
+    cycle: float,
+) -> list[float]:  # fmt: skip
+    one, other = halves
+    factors = fitted(values[one], added[one], drag[one])
+    draws = drawn(values[one], added[one], drag[one], max(round(0.5 * cycle), 2))
+    low, high = np.quantile(draws, [(1 - COVERED) / 2, (1 + COVERED) / 2], axis=0)
+
+    def fit(where: np.ndarray) -> float:
+        return r2(values[where], factors[0] * added[where] + factors[1] * drag[where])
+
+    return [
+        float(np.sqrt((values[keep] ** 2).mean())), float(np.sqrt(((added + drag)[keep] ** 2).mean())),
+        r2(values[keep], (added + drag)[keep]), factors[0], low[0], high[0], factors[1], low[1], high[1], fit(one),
+        fit(other),
+    ]  # fmt: skip
+
+
+def drawn(values: np.ndarray, added: np.ndarray, drag: np.ndarray, block: int) -> np.ndarray:
+    """Return the factors of fits to blocks that are drawn with replacement, shape (draw, 2); NaN of too few blocks."""
+    if len(values) < BLOCKS * block:
+        return np.full((DRAWS, 2), np.nan)
+    rng, count = np.random.default_rng(len(values)), max(len(values) // block, 1)
+    out = np.empty((DRAWS, 2))
+    for k in range(DRAWS):
+        start = rng.integers(len(values), size=count)
+        index = ((start[:, None] + np.arange(block)) % len(values)).ravel()  # each sample is drawn as often
+        out[k] = fitted(values[index], added[index], drag[index])
+    return out

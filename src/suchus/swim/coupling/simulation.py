@@ -1,0 +1,80 @@
+"""Simulate runs on any rung of the ladder: on land, in forces section by section, or with a flow around the robot."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from suchus.sim import land
+from suchus.swim.coupling.swim import Swim
+from suchus.core.errors import Diverged, InvalidDesign
+from suchus.core.fingerprint import fingerprint
+from suchus.sim.land.readings import with_equal_variables
+from suchus.sim.land.run import Run
+from suchus.core.progress import Progress, portion, silent
+from suchus.swim.water.samples import check_kept
+
+
+def simulate(
+    runs: Sequence[Run],
+    *,
+    duration: float = 9.0,
+    timestep: float | None = None,
+    every: int = 1,
+    keep: Path | str | None = None,
+    progress: Progress = silent,
+) -> xr.Dataset:
+    """Simulate runs whatever their water is, each as ``land.simulate`` does or with the flow around it.
+
+    The runs without a flow go together, as a batch; those in a flow one after the other. The same runs give the same
+    bytes, whatever the number of threads.
+
+    Args:
+        runs: at least one; see ``land.simulate``.
+        duration: [s].
+        timestep: of the physics [s]; that of the robots' size, and in a flow of its steps, if None.
+        every: keep one sample of so many control periods.
+        keep: folder in which each run in a flow, robot and water, is kept as far as it has come, in a file named after
+            the run; where it holds one, the run goes on from there, to the same bytes. None keeps nothing.
+        progress: told the share that is done.
+
+    Returns:
+        A record with the dimensions ``run`` and ``time`` (see ``record.schema``). Where a run has a flow, all have the
+        variables of ``record.COUPLED``, NaN for the others. A run that diverges ends there, as on land.
+
+    Raises:
+        InvalidDesign: see ``land.simulate`` and ``Swim``.
+        OutsideLimits: a gait that a robot's joints cannot follow, or water too fast for the timestep.
+        UnreadableFile: what is kept of a run is damaged.
+        Unwritable: a run cannot be kept.
+    """
+    runs = tuple(runs)
+    solved = [i for i, run in enumerate(runs) if run.solved is not None]
+    if not solved:
+        return land.simulate(runs, duration=duration, timestep=timestep, every=every, progress=progress)
+    check_kept("" if keep is None else str(keep))
+    swims = [Swim(runs[i], duration, timestep=timestep) for i in solved]  # refused before any is computed
+    periods = {swim.stepper.period for swim in swims}
+    if len(periods) > 1:
+        raise InvalidDesign("the robots have different control periods; simulate them one after another.")
+    others = [i for i in range(len(runs)) if i not in solved]
+    parts, order, count = [], [], len(solved) + bool(others)
+    if others:
+        part = portion(progress, 0, count)
+        rest = [runs[i] for i in others]
+        parts.append(land.simulate(rest, duration=duration, timestep=timestep, every=every, progress=part))
+        order += others
+    for number, (i, swim) in enumerate(zip(solved, swims, strict=True), start=count - len(solved)):
+        with suppress(Diverged):  # its record says when and why
+            kept = None if keep is None else Path(keep) / f"{fingerprint(swim.setup)[:16]}.kept-swim"
+            part = portion(progress, number, count)
+            swim.go(swim.ticks * swim.stepper.period, progress=part, checkpoint=kept)
+        parts.append(swim.record().isel(time=slice(None, None, every)))
+        order.append(i)
+    alike = with_equal_variables(parts)
+    record = alike[0] if len(alike) == 1 else xr.concat(alike, "run", join="outer", data_vars="all")
+    record = record.isel(run=np.argsort(order)).assign_coords(run=np.arange(len(runs)))
+    record.attrs.update(timestep=swims[0].timestep, control_period=periods.pop())
+    return record

@@ -1,0 +1,669 @@
+"""Robot and flow solved together, step by step.
+
+In each step of the flow the robot goes first, under the force of the last step and the added mass; the flow follows;
+then the robot goes through the same time again under the force that the flow found, and the water gets what that
+changes by one solve of the pressure equation (``flow.twist``). With F the generalised force of the water, A the added
+mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
+were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
+lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
+momentum is the impulse of the water. A is one that answers as the water was seen to answer in each correction, and is
+computed anew as the body bends.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
+from math import gcd, isfinite, prod
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+from scipy.linalg import eigh
+
+from suchus import flow
+from suchus.robot.control import Controller
+from suchus.swim.coupling.chain import ChainState, MidlineChain
+from suchus.swim.coupling.linked import LinkChain, LinkWay
+from suchus.swim.coupling.recorded import Series, recorded
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period, physics_step
+from suchus.robot.design.water import Water
+from suchus.core.errors import Diverged, Doubtful, InvalidDesign, NotConverged, OutsideLimits
+from suchus.sim.fault import check_faults
+from suchus.flow import checkpoint as store
+from suchus.flow.progress import Bar
+from suchus.flow.simulation import LANDING
+from suchus.sim.land.afloat import check_floats
+from suchus.sim.land.batch import Beginning
+from suchus.sim.land.lake import Lake
+from suchus.sim.land.run import Run, check_pushes
+from suchus.sim.land.stepper import CoordinateState, Stepper, Stretch
+from suchus.sim.land.waters import Slice, Space
+from suchus.robot.motion import check_limits, cycle_targets
+from suchus.core.progress import Progress
+from suchus.swim.water import Outline, cycle, displaced, recoil
+from suchus.swim.water.immersed import folded, half_heights
+from suchus.swim.water.samples import Samples
+from suchus.swim.water.setting import DENSITY, SwimSetting
+
+OFF_PLANE = 0.12
+"""Angle by which a joint may leave the plane that the flow takes the body to stay in [rad]."""
+LOST = 1.0
+"""Residual from which a step counts as one that does not converge [-]: the force that is left over is as large as the
+greatest so far."""
+PATIENCE = 5
+"""Steps in a row that may do so [-]: at the start there is hardly any force to compare with."""
+LONGEST = 1.25
+"""Step of the flow over the time in which a cycle's waves go on by a cell, at most [-]: at rest it has no bound of its
+own, and while the robot swims it takes some 0.9."""
+STEPS = 100
+"""Steps of the flow in a cycle, at least, where limbs stroke [-]: forces and velocities are means over a step, whose
+product misses the power by a share of the second order; with 42 it is up to 0.5 % off, with 100 0.1 %."""
+FINER = 5
+"""Physics steps in a step of the flow, at least: with 1, 5 and 10 the energy closes to 1e-2, 2e-3 and 8e-4 [-]."""
+LEAST = 0.1
+"""Share of the inertia of robot and water along a correction, at least, that the water's answer to it may leave [-].
+Chosen: with less, the next guess of the acceleration would be more than ten times as large."""
+_ROUNDS, _SETTLED = 10, 1e-4
+"""Rounds in which the robot and the part of the added mass that its own matrix has no room for come to terms, at most;
+and the change of the acceleration, over its size, at which they have [-]."""
+_CHANGING = (
+    "force",
+    "push",
+    "owed",
+    "strayed",
+    "added",
+    "kept",
+    "computed",
+    "greatest",
+    "greatest_momentum",
+    "strikes",
+    "effort",
+    "start_added",
+)
+"""What a swim changes of its own."""
+_WIDER = 1.25
+"""Swing that the box has room for, over that of the commanded midline [-]."""
+
+
+def check_swim(run: Run, duration: float) -> None:
+    """Refuse a run whose gait, faults, control or body a flow around it cannot have, before the flow is set up.
+
+    Args:
+        run: with a ``Slice`` or a ``Space``.
+        duration: [s].
+
+    Raises:
+        InvalidDesign, OutsideLimits: see ``Swim``.
+    """
+    check_limits(run.robot, run.gait)
+    check_faults(run.faults, run.robot, duration)
+    check_pushes(run.pushes, run.robot, duration)
+    linked = isinstance(run.solved, Space) and run.solved.linked
+    if not linked and not any(hinge.turn == "yaw" for hinge in run.robot.axis_hinges):
+        raise InvalidDesign(
+            f"robot {run.robot.name!r} has no joint that bends its axis sideways, and the flow is around a body "
+            'that does; take water="sections".'
+        )
+    if not linked:
+        _check_plane(run)
+    check_floats(run.robot, Lake(level=run.robot.length))
+    for name in ("depth", "pitch"):
+        if getattr(run.control, name, None) is not None:
+            raise InvalidDesign(
+                f"the control holds the {name}, and in a {type(run.solved).__name__.lower()} the body stays in its "
+                f'plane: leave out {name}, or take water="sections".'
+            )
+
+
+def _check_plane(run: Run) -> None:
+    """Refuse a gait that strokes with limbs, which the flow does not see move, or bends the axis out of its plane.
+
+    Raises:
+        InvalidDesign: naming the servo.
+    """
+    robot, gait, place = run.robot, run.gait, layout(run.robot)
+    angles = cycle_targets(robot, gait, np.linspace(0.0, 1.0, 24, endpoint=False))
+    lateral = {servo.name for servo in Outline(robot, 33).servos}
+    axis = {hinge.name for hinge in robot.axis_hinges} | {cable.name for cable in robot.cables}
+    for number, name in enumerate(place.servos):
+        swing, far = float(np.ptp(angles[:, number])), float(np.abs(angles[:, number]).max())
+        if name not in lateral and (swing > OFF_PLANE or (name in axis and far > OFF_PLANE)):
+            what = "bends the axis out of the plane" if name in axis else "strokes with a limb"
+            raise InvalidDesign(
+                f"gait {gait.name!r} {what}: servo {name} swings by {swing:.3g} rad about angles up to {far:.3g} "
+                "rad. The flow is around a body that bends in its plane, its limbs at rest: take a gait that "
+                "does, say motion.swimming_gait, or water=Space(linked=True), where each piece moves as its joints do, "
+                'or water="sections".'
+            )
+
+
+def never_negative(
+    added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"]
+) -> Float[np.ndarray, "coordinate coordinate"]:
+    """Return an added mass that no motion makes negative: the same, or without what it takes from the robot's own mass.
+
+    Coarse cells may find less than none for the bend of a thin tail, once the pressure inside the body is taken away. A
+    robot that is lighter than that there would be thrown about.
+    """
+    values, shapes = eigh(added, mass)
+    if values[0] >= 0.0:
+        return added
+    pulled = mass @ shapes
+    return added - (pulled * np.minimum(values, 0.0)) @ pulled.T
+
+
+def learned(
+    added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
+    push: Float[np.ndarray, " coordinate"], answered: Float[np.ndarray, " coordinate"],
+) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
+    """Return an added mass near another one that answers an acceleration as the water was seen to: Broyden's update.
+
+    What would leave less than ``LEAST`` of the inertia along the push, the robot's own with it, is not believed. It
+    need not stay symmetric, since what a step answers is not: a symmetric update (Broyden, Fletcher, Goldfarb and
+    Shanno) ended a swim of the floating caiman in a slice of 48 cells.
+
+    Args:
+        added: an added mass.
+        mass: the robot's own.
+        push: acceleration more.
+        answered: force of the water against it.
+    """
+    before, after = float(push @ (mass + added) @ push), float(push @ (mass @ push + answered))
+    if not after > LEAST * before > 0.0:
+        return added
+    weighted = np.diag(mass + added) * push
+    return np.asarray(added + np.outer(answered - added @ push, weighted / float(weighted @ push)))
+
+
+def out_of_step(most: int, period: int) -> int:
+    """Return how many physics steps a step of the flow has, at most so many, so that it ends at other phases each time.
+
+    Servos are commanded anew at the beginning of each control period, and light limbs follow so fast that their speed
+    changes by a tenth within it. Steps of the flow that end at one phase would all see the speed at that one.
+
+    Args:
+        most: physics steps [-].
+        period: physics steps in a control period [-].
+    """
+    fair = [n for n in range(max(most - 3, 1), most + 1) if gcd(n, period) == 1]
+    fast = [n for n in fair if most > period and 1 < n % period < period - 1]
+    return max(fast or fair or [most])
+
+
+class Swim:
+    """One run whose water is a flow, from rest.
+
+    Args:
+        run: with a ``Slice`` or a ``Space``.
+        duration: [s]; infinity keeps no samples of the robot.
+        timestep: of the physics [s]; None for the largest that the robot's size and ``FINER`` allow.
+        thread_count: of the flow.
+        controller: what decides instead of the run's; None for that one.
+        begin: state of the robot at the beginning; None for the controller's first posture.
+
+    Raises:
+        InvalidDesign: a gait or a controller that leaves the plane, a robot that sinks, or a grid that cannot carry it.
+        OutsideLimits: a gait that the robot's joints cannot follow.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        duration: float,
+        *,
+        timestep: float | None = None,
+        thread_count: int | None = None,
+        controller: Controller | None = None,
+        begin: Beginning | None = None,
+    ) -> None:
+        water = run.solved
+        assert water is not None
+        self.run, self.water = run, water
+        check_swim(run, duration)
+        self.outline = Outline(run.robot, water.cells + 1)
+        self._axes = 2 if isinstance(water, Slice) else 3
+        self._times = self.depth if isinstance(water, Slice) else 1.0
+        self._swing = self._expected_swing()
+        self.timestep = self._physics_step() if timestep is None else timestep
+        self.ticks = round(duration / control_period(run.robot)) if isfinite(duration) else 0
+        self.stepper = Stepper(
+            run, None if self._linked else self.outline.joints, self.timestep, self.ticks, controller=controller,
+            begin=begin,
+        )  # fmt: skip
+        start = self.stepper.now.place
+        self.chain: MidlineChain | LinkChain = (
+            LinkChain(run.robot, self.stepper.links, start[:3])
+            if self._linked
+            else MidlineChain(self.outline, water.parts, (float(start[0]), float(start[1])))
+        )
+        self.path = self.chain.way(0.0, self._seen(self.stepper.now))
+        self.sim = flow.Simulation(self._setup(), thread_count=thread_count)
+        self.series = Series()
+        self._effort = 0.0
+        self._force = np.zeros(self.chain.size)
+        self._push = np.zeros(self.chain.size)
+        self._owed = np.zeros(self.chain.size)  # impulse of the water that the robot has not been given yet
+        self._strayed = np.zeros(self.stepper.axes)  # see ``Stretch.strayed``; of the last step
+        self._added = np.zeros((self.chain.size, self.chain.size))
+        self._kept = self._added
+        self._computed: np.ndarray | None = None
+        self._greatest, self._strikes = 0.0, 0
+        self._greatest_momentum = 0.0
+        self._stopped: set[str] = set()
+        self._placed = self.path.at(0.0)  # posture for which the water was told last where the body is
+        self.samples = Samples()
+        """What a ``watch`` of ``go`` keeps; a checkpoint holds it too."""
+        self._renew()
+        self._start_added = self._added
+
+    # --- what is set up ----------------------------------------------------------------------------------------
+
+    @property
+    def depth(self) -> float:
+        """Depth of the water of a slice [m]."""
+        given = getattr(self.water, "depth", None)
+        if given is not None:
+            return float(given)
+        wide, _ = self.outline.silhouette
+        return displaced(self.outline, 1.0) / float(np.trapezoid(2 * wide, self.outline.s))
+
+    @property
+    def viscosity(self) -> float:
+        """Kinematic viscosity of the water [m2/s]."""
+        return self.run.robot.length**2 / (self.run.gait.period * self.water.reynolds)
+
+    def _expected_swing(self) -> float:
+        """Return how far the commanded midline swings to a side [m]."""
+        outline = Outline(self.run.robot, 65)
+        return float(np.abs(cycle(outline, self.run.gait, *recoil(outline, self.run.gait, 0.0, Water())).y).max())
+
+    def _physics_step(self) -> float:
+        """Return the largest step of the physics that divides a control period often enough [s]."""
+        period, cell = control_period(self.run.robot), self.run.robot.length / self.water.cells
+        aside, below = self._strokes if self._linked else (0.0, 0.0)
+        fastest = 2 * np.pi / self.run.gait.period * max(self._swing, aside, below, cell)
+        most = min(physics_step(self.run.robot), 0.8 * cell / (1.5 * fastest) / FINER)
+        return float(period / np.ceil(period / most * (1 - 1e-9)))
+
+    @cached_property
+    def half_height(self) -> Float[np.ndarray, " station"]:
+        """Half of the body's height at the stations [m]."""
+        return half_heights(self.outline, self.water.tail_height)
+
+    @property
+    def _least(self) -> float:
+        blunt = self.water.blunt if isinstance(self.water, Slice) else 0.0
+        return blunt * self.run.robot.length / self.water.cells
+
+    @property
+    def _linked(self) -> bool:
+        """Whether each link has its own pose, and the root moves in space."""
+        return isinstance(self.water, Space) and self.water.linked
+
+    @cached_property
+    def _strokes(self) -> tuple[float, float]:
+        """Return how far the gait swings limbs about their hips, and an end of the axis up or down, to a side [m]."""
+        robot, names = self.run.robot, layout(self.run.robot).servos
+        angles = cycle_targets(robot, self.run.gait, np.linspace(0.0, 1.0, 24, endpoint=False))
+        swings = dict(zip(names, 0.5 * np.ptp(angles, axis=0), strict=True))
+        raised, lateral = 0.0, {servo.name for servo in self.outline.servos}
+        starts, hinges = 0.0, dict[str, float]()
+        for segment in robot.axis:
+            starts += segment.front + segment.rear
+            hinges |= {hinge.name: min(starts, robot.length - starts) for hinge in segment.hinges}
+        for name, far in hinges.items():
+            raised += swings.get(name, 0.0) * far * (name not in lateral)
+        limbs = [
+            limb.girdle.limb.reach * sum(swings.get(name, 0.0) for name in names[limb.servos])
+            for limb in layout(robot).limbs
+        ]  # fmt: skip
+        return max(limbs, default=0.0), raised
+
+    def _setup(self) -> flow.Setup:
+        robot, axes = self.run.robot, self._axes
+        setting = SwimSetting(axes=axes, cells=self.water.cells, viscosity=self.viscosity, cycles=1)
+        if self.water.beside is not None:
+            setting = replace(setting, beside=self.water.beside)
+        swing = _WIDER * self._swing
+        if isinstance(self.chain, LinkChain):
+            assert isinstance(self.path, LinkWay)
+            stretched = [girdle.aside + girdle.limb.reach + girdle.limb.foot.radius for girdle in robot.girdles]
+            far = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
+            grid = setting.grid_around(robot.length, far)
+            shape: flow.SpaceShape | flow.Midline = self.chain.body(self.path)
+            motion = self.chain.motion(self.path)
+        else:
+            grid = setting.grid(robot.length, swing, float(self.half_height.max()))
+            bare = self.chain.body(self.path, axes, self._least, self.half_height)
+            motion, shape = self.chain.motion(self.path, axes, self._least), bare
+            if self.water.limbs:
+                assert isinstance(bare, flow.Trunk)
+                shape = flow.Limbed(
+                    spine=bare.spine, half_height=bare.half_height, cuts=bare.cuts, limbs=folded(robot)
+                )  # fmt: skip
+        setting.check_thickness(robot, shape)
+        body = flow.Body(shape=shape, motion=motion, name=robot.name)
+        sides = flow.Sides(low=flow.Mirror()) if axes == 3 and not self._linked else flow.Sides()
+        return flow.Setup(
+            grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
+            follow_axes=(True,) * 3 if self._linked else (True, True), tolerance=setting.largest_divergence(),
+        )  # fmt: skip
+
+    # --- between the robot's world and the flow's --------------------------------------------------------------
+
+    def _seen(self, state: CoordinateState) -> ChainState:
+        """Return a state of the robot in the frame of the flow."""
+        return self.chain.seen(state.place, state.rate)
+
+    @property
+    def _origin(self) -> np.ndarray:
+        return np.array(self.sim.frame[0, : self.chain.axes])
+
+    def _found(self, began: ChainState, posture: ChainState) -> np.ndarray:
+        """Return the generalised force of the water in the last step, along the robot's own coordinates."""
+        loads, place = self.sim.last(self.run.robot.name), 0.5 * (began.place + posture.place)
+        return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
+
+    # --- going on ----------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """How far it has come [s]."""
+        return self.stepper.time
+
+    @property
+    def effort(self) -> float:
+        """Work of the servos so far, braking counted as much as driving [J]."""
+        return self._effort
+
+    def _renew(self, *, anew: bool = False) -> None:
+        """Compute the added mass anew if the body has turned or bent enough, and when the wall first has its skin.
+
+        Corrections that do not come to an end (``anew``) say that it does not fit any more.
+        """
+        posture = self.path.at(self.time)
+        settled = len(self.series.time) == 1
+        known = None if settled or anew else self._computed
+        if known is not None and self.chain.turned(posture.place, known) < self.water.renewed:
+            return
+        self._computed = posture.place
+        before = self._added
+        modes = self.chain.modes(posture.place, self._origin, self._axes)
+        found = self.sim.added_mass(self.run.robot.name, modes)
+        inside = self.chain.unpressed(posture.place, found.pressed, self._origin)
+        own = found.matrix - 0.5 * (inside + inside.T)
+        self._added = never_negative(self._times * self.chain.of_robot(own), self.stepper.mass())
+        if len(self.series.time):
+            inertia = self.stepper.mass() + before
+            apart = np.linalg.eigvals(np.linalg.solve(inertia, self._added - before))
+            self.series.radius.append((self.time, float(np.abs(apart).max())))
+        self._kept = self.stepper.burden(self._added)
+
+    def _newton(self) -> np.ndarray:
+        """Return how the acceleration that is missing changes with one that is guessed, but for what servos do."""
+        inertia = self.stepper.mass() + self._kept
+        return np.asarray(np.eye(self.chain.size) + np.linalg.solve(inertia, self._added - self._kept))
+
+    def _gone(
+        self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
+    ) -> tuple[CoordinateState, np.ndarray]:  # fmt: skip
+        """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
+
+        Returns where it comes to, and its mean acceleration on the way, ``guess`` at first. Broyden's updates of
+        ``newton`` are kept in it.
+        """
+        h, before = count * self.timestep, self.stepper.at_begin.rate
+        left = self._added - self._kept
+        missing = change = np.zeros_like(push)
+        for round_ in range(_ROUNDS):
+            end = self.stepper.go(count, force + self._added @ push - left @ guess)
+            found = (end.rate - before) / h
+            last, missing = missing, found - guess
+            if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
+                break
+            if round_:
+                newton += np.outer(last - missing - newton @ change, change) / (change @ change)
+            change = np.linalg.solve(newton, missing)
+            guess = guess + change
+        return end, found
+
+    def _size(self, force: np.ndarray) -> float:
+        """Return the size of a generalised force, each coordinate's over the root of its inertia."""
+        return float(np.sqrt((force**2 / np.diag(self.stepper.mass() + self._added)).sum()))
+
+    def _learn(self, push: np.ndarray, answered: np.ndarray) -> np.ndarray:
+        """Let the added mass be one that answers an acceleration as the water was seen to; return what it gains.
+
+        Args:
+            push: acceleration more.
+            answered: force of the water against it.
+        """
+        before = self._added
+        self._added = learned(before, self.stepper.mass(), push, answered)
+        return self._added - before
+
+    def _adrift(self, owed: np.ndarray) -> float:
+        """Return the size of an impulse on the whole robot over the greatest momentum that it has had [-]."""
+        greatest = self._greatest_momentum
+        return float(np.linalg.norm(owed[: self.stepper.axes])) / greatest if greatest > 0.0 else 0.0
+
+    def step(self, until: float) -> None:
+        """Take one step of the flow and of the robot that does not go beyond a time [s].
+
+        Raises:
+            Diverged: robot or flow did, or the two do not come to terms; with the record so far.
+            OutsideLimits: the water is so fast that the flow's step falls below the physics'.
+            InvalidDesign: the robot leaves the plane, or the box.
+        """
+        stepper, sim, name = self.stepper, self.sim, self.run.robot.name
+        allowed = sim.next_step()
+        if allowed < self.timestep:
+            raise OutsideLimits(
+                f"at t = {self.time:.4g} s the flow allows a step of {allowed:.3g} s, less than the "
+                f"{self.timestep:.3g} s of the robot's physics; take a timestep of at most {0.5 * allowed:.2g} s, or "
+                "coarser cells."
+            )
+        period = self.run.gait.period
+        allowed = min(allowed, LONGEST * period / self.water.cells)
+        if self._linked:
+            allowed = min(allowed, period / STEPS)
+        most = max(int(allowed / self.timestep), 1)
+        if self._linked:
+            most = out_of_step(most, round(stepper.period / self.timestep))
+        count = stepper.until(until, most, LANDING)
+        h, start, began = count * self.timestep, self.time, self._seen(stepper.now)
+        stepper.begin()
+        newton = self._newton()
+        foreseen = self._strayed
+        end, push = self._gone(count, self._force + _lessened(self._owed, foreseen) / h, self._push, self._push, newton)
+        told = self._force - self._added @ (push - self._push)
+        if not np.isfinite(end.rate).all():
+            raise Diverged(
+                f"at t = {self.time:.4g} s the physics of robot {self.run.robot.name!r} no longer has finite numbers "
+                f"under the water's force; take a shorter timestep than {self.timestep:.3g} s, or more cells.",
+                time=start,
+            )
+        posture = self._seen(end)
+        self.path.go(start, began, start + h, posture)
+        sim.advance(h)
+        self._placed = posture
+        found = self._found(began, posture)
+        self._greatest = max(self._greatest, self._size(found))
+        left = first = self._size(found - told) / max(self._greatest, 1e-300)
+        stretch, made, mass = stepper.account(), 0, stepper.mass()
+        missed = _lessened(h * (found - told), stretch.strayed - foreseen)
+        while made < self.water.corrections and max(left, self._adrift(missed)) > self.water.tolerance:
+            foreseen = stretch.strayed
+            asked, at = found, push
+            likely = push + np.linalg.solve(mass + self._added, found - told)
+            end, push = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
+            told = asked - self._added @ (push - at)
+            other = self._seen(end)
+            more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
+            posture = other
+            self.path.go(start, began, start + h, posture)
+            sim.accelerate({name: more})
+            found = self._found(began, posture)
+            newton += np.linalg.solve(mass + self._kept, self._learn(push - at, asked - found))
+            left, made = self._size(found - told) / self._greatest, made + 1
+            stretch = stepper.account()
+            missed = _lessened(h * (found - told), stretch.strayed - foreseen)
+        self._effort += stretch.effort
+        self._note(stretch, found, self._stirred(stretch, push, h), posture, (first, left), made)
+        self._greatest_momentum = max(self._greatest_momentum, float(np.linalg.norm(stretch.momentum)))
+        self._force, self._push, self._owed, self._strayed = found, push, missed, stretch.strayed
+        self._watch(left)
+        self._renew(anew=made > 0 and left > self.water.tolerance)
+
+    def _stirred(self, stretch: Stretch, push: np.ndarray, h: float) -> float:
+        """Return the water's work in a step beyond that of its mean force [J].
+
+        The part of it that answers accelerations changes with these within a step, as servos are commanded anew.
+        """
+        mean = 0.5 * h * (self.stepper.at_begin.rate + self.stepper.now.rate)
+        return float((self._kept @ push) @ (stretch.way - mean))
+
+    def _note(
+        self, stretch: Stretch, found: np.ndarray, stirred: float, posture: ChainState,
+        residual: tuple[float, float], made: int,
+    ) -> None:  # fmt: skip
+        series = self.series
+        loads = self.sim.last(self.run.robot.name)
+        h = self.time - (series.time[-1] if series.time else 0.0)
+        power = self._times * float(loads.whole.power - loads.whole.force @ self._drift())
+        series.time.append(self.time)
+        series.force.append(found)
+        series.links.append(self._times * self.chain.felt(posture.place, loads, self._origin))
+        series.residual.append(residual)
+        series.corrections.append(made)
+        series.worked.append((stretch.worked, stretch.yielded, float(found @ stretch.way) + stirred, -power * h))
+        series.energy.append(stretch.energy)
+
+    def _drift(self) -> np.ndarray:
+        return np.asarray(self.sim.drift)
+
+    def _watch(self, left: float) -> None:
+        """Refuse what has left the plane, or does not converge; say which joints come to the end of their range."""
+        name, bend = self.stepper.off_plane
+        if abs(bend) > OFF_PLANE:
+            raise InvalidDesign(
+                f"at t = {self.time:.4g} s joint {name} is bent by {bend:.3g} rad out of the plane that the flow takes "
+                f"the body to stay in, more than {OFF_PLANE:g} rad; take a gait that stays in it, "
+                'water=Space(linked=True), or water="sections".'
+            )
+        for joint, angle in self.stepper.at_stops.items():
+            if joint not in self._stopped:
+                self._stopped.add(joint)
+                warnings.warn(
+                    f"at t = {self.time:.4g} s joint {joint} of robot {self.run.robot.name!r} is driven to the end of "
+                    f"its range, {angle:.3g} rad: from then on its stop bears what servo, spring and water do not; a "
+                    "stiffer spring or a slower gait keeps it free.", Doubtful, stacklevel=3,
+                )  # fmt: skip
+        self._strikes = self._strikes + 1 if left > LOST or not np.isfinite(left) else 0
+        if self._strikes >= PATIENCE or not np.isfinite(left):
+            raise Diverged(
+                f"at t = {self.time:.4g} s robot and flow do not come to terms: a force of {left:.3g} times the "
+                f"greatest so far is left over after {self.water.corrections} corrections; allow more corrections "
+                f"(now {self.water.corrections}), or take more cells.", time=self.time,
+            )  # fmt: skip
+
+    def go(
+        self,
+        until: float,
+        *,
+        progress: Progress | None = None,
+        watch: Callable[["Swim"], None] | None = None,
+        checkpoint: str | Path | None = None,
+        checkpoint_every: float = 15.0,
+    ) -> None:
+        """Go on until a time, a whole number of control periods [s]; the same bytes, stopped and gone on or not.
+
+        Args:
+            until: time to reach [s].
+            progress: told the share that is done; None shows a progress bar.
+            watch: called after every step; what it keeps belongs into ``samples``.
+            checkpoint: file in which robot, flow and samples are kept; if it exists, the swim goes on from there.
+            checkpoint_every: wall-clock seconds between two savings [s].
+
+        Raises:
+            Diverged: whatever ends a ``step``, with the record so far.
+            UnreadableFile: the checkpoint is broken or belongs to another run.
+            Unwritable: the checkpoint cannot be written.
+        """
+        checkpoint = None if checkpoint is None else Path(checkpoint)
+        if checkpoint is not None and checkpoint.exists():
+            store.load(self, checkpoint)
+        saver = store.Saver(checkpoint, checkpoint_every)
+        cells = prod(self.sim.setup.grid.cells)
+        with Bar(self.time, until, cells, show=progress is None) as bar:
+            while self.time < until - 0.5 * self.timestep:
+                try:
+                    self.step(until)
+                except (Diverged, InvalidDesign, NotConverged, OutsideLimits) as error:
+                    reached = self.series.time[-1] if self.series.time else 0.0
+                    self.stepper.end(reached, str(error))
+                    raise Diverged(str(error), time=reached, record=self.record()) from error
+                if watch is not None:
+                    watch(self)
+                saver.save(self)
+                bar.move(self.time)
+                if progress is not None:
+                    progress("swimming", self.time / until)
+        saver.save(self, now=True)
+        self.stepper.finish()
+
+    # --- stopped and gone on -----------------------------------------------------------------------------------
+
+    @property
+    def setup(self) -> object:
+        """What is simulated, and for how long; who has the same can go on from the other's state."""
+        return self.run, self.timestep, self.ticks, self.water
+
+    def state(self) -> store.State:
+        """Return all that changes, of the flow and of the robot, between two steps."""
+        now = self.path.at(self.time)
+        postures = {
+            f"{which}.{name}": getattr(posture, name)
+            for which, posture in (("posture", now), ("placed", self._placed))
+            for name in ChainState._fields
+        }
+        parts = {
+            "flow": self.sim.state(), "robot": self.stepper.state(), "series": self.series.state(),
+            "samples": self.samples.state(),
+        }  # fmt: skip
+        own = {name: getattr(self, f"_{name}") for name in _CHANGING}
+        return {
+            **postures, **{f"own.{name}": np.array(value) for name, value in own.items() if value is not None},
+            **{f"{part}.{name}": value for part, one in parts.items() for name, value in one.items()},
+        }  # fmt: skip
+
+    def resume(self, state: store.State) -> None:
+        """Go on from the state of a swim of the same run; to be asked of a fresh one."""
+
+        def part(name: str) -> store.State:
+            start = f"{name}."
+            return {key.removeprefix(start): value for key, value in state.items() if key.startswith(start)}
+
+        self.stepper.resume(part("robot"))
+        self._placed, posture = (ChainState(**part(name)) for name in ("placed", "posture"))
+        self.path.go(self.time, self._placed, self.time, self._placed)
+        self.sim.resume(part("flow"))
+        self.path.go(self.time, posture, self.time, posture)
+        self.sim.forget()
+        for name, value in part("own").items():
+            setattr(self, f"_{name}", value if value.ndim else value.item())
+        self.series, self.samples = Series.of(part("series")), Samples.of(part("samples"))
+
+    # --- what is kept ------------------------------------------------------------------------------------------
+
+    def record(self) -> xr.Dataset:
+        """Return the record so far, in the schema of a run with ``record.WATER`` and ``record.COUPLED``; NaN beyond."""
+        return recorded(self.run, self.chain, self.series, self.stepper.record(), self._start_added)
+
+
+def _lessened(impulse: np.ndarray, momentum: np.ndarray) -> np.ndarray:
+    """Return an impulse along the coordinates less a momentum of the whole robot."""
+    return np.concatenate([impulse[: momentum.size] - momentum, impulse[momentum.size :]])

@@ -1,0 +1,61 @@
+"""The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with.
+
+Swims by CFD stand in ``suchus.swim.water.resolved``, which loads the flow solver.
+"""
+
+from suchus.robot.design.water import Water
+from suchus.swim.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
+from suchus.swim.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
+from suchus.swim.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
+from suchus.swim.water.passive import sprung
+from suchus.swim.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
+from suchus.swim.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
+from suchus.swim.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
+from suchus.swim.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
+
+__all__ = [
+    "MODELS",
+    "Attempt",
+    "BodySilhouette",
+    "BodyWave",
+    "Cruise",
+    "EelWave",
+    "Effort",
+    "ExactWave",
+    "FilmedWave",
+    "Fit",
+    "MidlineCurve",
+    "Motion",
+    "Outline",
+    "PrintedWave",
+    "Quarters",
+    "Sway",
+    "Swum",
+    "Undulation",
+    "Water",
+    "attempts",
+    "convex_higher",
+    "cruise",
+    "cycle",
+    "displaced",
+    "efficiency",
+    "fit",
+    "greatest",
+    "level",
+    "printed_wave",
+    "reactive",
+    "readings_table",
+    "recoil",
+    "resistive",
+    "silhouette",
+    "sprung",
+    "survey",
+    "swim",
+    "swim_of",
+    "swing",
+    "taken",
+    "undulation",
+    "unevenness",
+    "wave_form",
+    "wave_speed",
+]

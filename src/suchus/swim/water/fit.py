@@ -1,0 +1,209 @@
+"""Waves that the joints are asked to make: the motion that comes nearest to them.
+
+The article commands a continuous wave; a robot has a few lateral servos, the article's three yaw joints and one cable.
+So the wave's tangent angles are fitted by least squares, and what remains is reported.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from suchus.robot.design import Robot, check_needs, with_values
+from suchus.robot.design.scale import control_period
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.robot.kinematics.wave import READINGS
+from suchus.robot.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
+from suchus.swim.water.outline import Outline
+from suchus.swim.water.undulation import undulation
+from suchus.swim.water.waves import BodyWave, along, printed_wave
+
+_TIMES = 48
+"""Instants of a cycle at which wave and joints are compared [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """A swimming gait that comes nearest to a wave."""
+
+    gait: Gait
+    """The gait."""
+    head: complex
+    """Harmonic of the head's direction: its angle is ``Re(head exp(2 pi i f t))`` [rad]."""
+    misfit: float
+    """Rms distance of the joints' midline from the wave's, over the greatest swing of the wave's tail [-]."""
+    asked: tuple[float, ...]
+    """Greatest bend that the wave asks of each joint where it stands, in the order of ``Outline.joints`` [rad]."""
+
+
+def fit(
+    robot: Robot,
+    wave: BodyWave,
+    *,
+    name: str = "wave",
+    most: float = 0.25,
+    limbs: tuple[float, float] = LIMBS_BACK,
+) -> Fit:
+    """Return the gait of the lateral servos that comes nearest to a wave, least squares on tangent angles.
+
+    Angles are compared at equal arc lengths over one cycle, their first harmonic in time; the head's direction is
+    free, the passive end straight.
+
+    Args:
+        robot: whose joints.
+        wave: to be made.
+        name: of the motion.
+        most: greatest misfit that still counts as the same wave, see ``Fit.misfit`` [-].
+        limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
+
+    Raises:
+        OutsideLimits: the joints cannot make the wave; the message names the joint and by how much.
+        InvalidDesign: the wave's period is not positive.
+        UnsuitedRobot: no servo bends the robot sideways.
+    """
+    if not (np.isfinite(wave.period) and wave.period > 0):
+        raise InvalidDesign(f"the wave's period is {wave.period} s; a positive one is needed.")
+    servos = lateral_servos(robot)
+    if not servos:
+        raise UnsuitedRobot(f"robot {robot.name!r} has no servo that bends it sideways: choose another robot.")
+    outline = Outline(robot)
+    time = wave.period * np.arange(_TIMES) / _TIMES
+    heading, x, y = along(wave, outline.s, time)
+    turning = np.exp(-2j * np.pi * time / wave.period)
+    harmonic = 2.0 * turning @ heading / _TIMES
+    basis = np.column_stack([np.ones_like(outline.s), outline.bending_at(outline.s)])
+    head, *bends = np.linalg.lstsq(basis.astype(complex), harmonic, rcond=None)[0].tolist()
+    amplitudes = [abs(bend) for bend in bends]
+    _check_amplitudes(robot, name, amplitudes)
+    lags = [round(-float(np.angle(bend)) / (2 * np.pi), 12) for bend in bends]
+    # a servo behind the root turns the tip right where its angle is positive, and a gait's bends are to the left
+    left = [
+        lag if servo.ahead else lag - 0.5 if lag > 0.0 else lag + 0.5
+        for servo, lag in zip(outline.servos, lags, strict=True)
+    ]
+    gait = swimming_gait(robot, name=name, frequency=1.0 / wave.period, amplitude=amplitudes, lag=left, limbs=limbs)
+    misfit, asked = _misfit(outline, gait, head, time, x, y), _asked(outline, heading)
+    if not misfit <= most:
+        limits = _limits(outline)
+        worst = int(np.argmax(asked / limits))
+        raise OutsideLimits(
+            f"the joints of robot {robot.name!r} cannot make {name!r}: the nearest motion is off by {100 * misfit:.0f} "
+            f"% of the tail's swing, and {100 * most:.0f} % is allowed. Where {outline.joints[worst]} stands the wave "
+            f"bends by {asked[worst]:.2f} rad and the joint by {limits[worst]:.2f} rad at most: take a longer "
+            "or a flatter wave."
+        )
+    return Fit(gait=gait, head=head, misfit=misfit, asked=tuple(asked.tolist()))
+
+
+def _misfit(outline: Outline, gait: Gait, head: complex, time: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
+    """Return the rms distance over the tail's swing; at every instant the curves lie over each other on the average."""
+    curve = undulation(outline, gait).held(turn=head).curve(time)
+    apart = [a - b - (a - b).mean(axis=-1, keepdims=True) for a, b in ((curve.x, x), (curve.y, y))]
+    swing = float(np.abs(y[:, -1]).max())
+    return float(np.sqrt(np.mean(apart[0] ** 2 + apart[1] ** 2)) / swing) if swing > 0 else 0.0
+
+
+def _asked(outline: Outline, heading: np.ndarray) -> np.ndarray:
+    """Return the greatest bend of a wave over the length that each joint stands for [rad]."""
+    half = 0.5 * outline.spacings
+    ends = [np.array([np.interp(outline.places + side * half, outline.s, now) for now in heading]) for side in (-1, 1)]
+    return np.asarray(np.abs(ends[1] - ends[0]).max(axis=0))
+
+
+def _limits(outline: Outline) -> np.ndarray:
+    """Return how far each joint bends to either side, those of a cable an even share of what it allows [rad]."""
+    robot = outline.robot
+    limits = {hinge.name: hinge.range or (-np.pi, np.pi) for hinge in robot.axis_hinges}
+    limits |= {name: (0.0, cable.bend_limit / cable.joints) for cable in robot.cables for name in cable.hinges}
+    return np.array([_either_side(*limits[name]) for name in outline.joints])
+
+
+def _either_side(low: float, high: float) -> float:
+    return min(-low, high) if low < 0.0 else high
+
+
+def _check_amplitudes(robot: Robot, name: str, amplitudes: Sequence[float]) -> None:
+    limits = {hinge.name: _either_side(*(hinge.range or (-np.pi, np.pi))) for hinge in robot.axis_hinges}
+    limits |= {cable.name: cable.bend_limit for cable in robot.cables}
+    for servo, amplitude in zip(lateral_servos(robot), amplitudes, strict=True):
+        if amplitude > limits[servo]:
+            raise OutsideLimits(
+                f"the joints of robot {robot.name!r} cannot make {name!r}: it asks {servo} for {amplitude:.2f} rad to "
+                f"either side, {amplitude - limits[servo]:.2f} rad more than the {limits[servo]:.2f} rad it has: take "
+                "a longer or a flatter wave."
+            )
+
+
+_FREQUENCY, _PERIOD = 1.0, 0.01  # [Hz]; of the wave of a robot whose control period is the second [s]
+
+
+@lru_cache(maxsize=16)
+def swim_of(
+    robot: Robot,
+    *,
+    frequency: float | None = None,
+    reading: str = "I",
+    limbs: tuple[float, float] = LIMBS_BACK,
+) -> Gait:
+    """Return the gait in which a robot swims unless another one is asked for: the wave of (20) on its joints.
+
+    Args:
+        robot: any robot whose axis bends sideways; its hull makes no difference.
+        frequency: of the wave [Hz]; by default 1 Hz for bodies of 0.4 to 1.6 m, and as many control periods a cycle for
+            others.
+        reading: letter of the reading of (20), see ``kinematics.wave.READINGS``.
+        limbs: yaw and pitch at which limbs are held, see ``motion.swimming_gait`` [rad].
+
+    Raises:
+        UnsuitedRobot: no servo bends the robot sideways.
+        OutsideLimits: its joints cannot make the wave.
+    """
+    bare = with_values(check_needs(robot, ["axis"], "a swim"), {"hull": None})
+    cycles = frequency or _FREQUENCY * _PERIOD / control_period(robot)
+    return fit(bare, printed_wave(bare, reading, frequency=cycles, sign=-1), limbs=limbs).gait
+
+
+class Attempt(NamedTuple):
+    """A reading that was tried."""
+
+    letter: str
+    """Letter of ``kinematics.wave.READINGS``."""
+    fitted: Fit | None
+    """The nearest motion of the joints, None if they cannot make the wave."""
+    refusal: str
+    """Why not: the joint and by how much."""
+
+
+def attempts(robot: Robot, *, frequency: float, sign: int = -1) -> list[Attempt]:
+    """Return what a robot's joints make of (20) in each of its readings.
+
+    Args:
+        robot: whose joints.
+        frequency: which the article does not give [Hz].
+        sign: -1 runs from head to tail; 1 as printed.
+    """
+    found = []
+    for letter in READINGS:
+        wave = printed_wave(robot, letter, frequency=frequency, sign=sign)
+        try:
+            found.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+        except OutsideLimits as refused:
+            found.append(Attempt(letter, None, str(refused)))
+    return found
+
+
+def readings_table(tried: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+    """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
+
+    Args:
+        tried: the readings.
+        thrust: what was measured of some of them, by letter.
+    """
+    lines = ["| reading of (20) | units | misfit | joints | thrust |", "|---|---|---|---|---|"]
+    for letter, fitted, refusal in tried:
+        misfit = "" if fitted is None else f"{100 * fitted.misfit:.1f} %"
+        joints = refusal or READINGS[letter].verdict
+        lines.append(f"| {letter} | {READINGS[letter].meaning} | {misfit} | {joints} | {thrust.get(letter, '')} |")
+    return "\n".join(lines) + "\n"

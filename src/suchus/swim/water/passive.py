@@ -1,0 +1,83 @@
+"""The passive end of the tail, bent by the water against its springs."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from suchus.robot.design import Spring
+from suchus.robot.design.water import Water
+from suchus.swim.water.outline import Outline, summed
+from suchus.swim.water.slender import recoil
+from suchus.swim.water.undulation import Motion, Undulation, undulation
+
+_ROUNDS = 12
+"""Rounds in which drag, recoil and bends are brought to agree; the last changes the bends by less than 1e-4 [-]."""
+
+
+def sprung(outline: Outline, motion: Motion, speed: float, water: Water | None = None) -> Undulation:
+    """Return a motion whose passive end gives way to the water, for a body that nothing holds.
+
+    Each passive joint balances its spring and damper against the moment about it of Lighthill's reaction of the water
+    beyond it, of the drag across the body (linearised so that it takes the same work from a sine), and of the mass of
+    the end itself, as heavy as its water. First harmonic, small bends: a model of the round body, which knows no wake.
+
+    Args:
+        outline: of the robot.
+        motion: of the joints that are driven.
+        speed: forward [m/s].
+        water: fresh water if None.
+    """
+    still, driven = water or Water(), undulation(outline, motion)
+    middle = 0.5 * (outline.s[1:] + outline.s[:-1])
+    middles, stations = outline.passive_at(middle), outline.passive_at(outline.s)
+    step = outline.s[1] - outline.s[0]
+    shapes = np.stack([summed(np.zeros(()), step * column) for column in middles.T])
+    bends = np.zeros(len(shapes), complex)
+    for _ in range(_ROUNDS):
+        limber = _bent(driven, middles @ bends, stations @ bends)
+        sway, turn = recoil(outline, limber, speed, still)
+        slope = limber.stations[1] + turn
+        y = summed(limber.sway[1] + sway, step * (limber.middles[1] + turn))
+        load = _Load(outline, driven.frequency, speed, still, y, slope)
+        own = np.array([load.moments(shape, column) for shape, column in zip(shapes, stations.T, strict=True)]).T
+        rest = load.moments(y - shapes.T @ bends, slope - stations @ bends)
+        bends = np.linalg.solve(np.diag(_springs(outline, driven.frequency)) - own, rest)
+    return _bent(driven, middles @ bends, stations @ bends)
+
+
+def _bent(driven: Undulation, middles: np.ndarray, stations: np.ndarray) -> Undulation:
+    """Return a motion with a first harmonic added to its headings."""
+    more_middles, more_stations = np.zeros_like(driven.middles), np.zeros_like(driven.stations)
+    more_middles[1], more_stations[1] = middles, stations
+    return replace(driven, middles=driven.middles + more_middles, stations=driven.stations + more_stations)
+
+
+def _springs(outline: Outline, frequency: float) -> np.ndarray:
+    """Return spring and damper of each passive joint at a frequency, as the model has them [N m/rad]."""
+    drives = {hinge.name: hinge.drive for hinge in outline.robot.axis_hinges}
+    springs = [drives[outline.joints[i]] for i in outline.passive]
+    return np.array([s.stiffness + 2j * np.pi * frequency * s.damping for s in springs if isinstance(s, Spring)])
+
+
+class _Load:
+    """What the water does to a section that moves sideways, linear in that motion."""
+
+    def __init__(
+        self, outline: Outline, frequency: float, speed: float, water: Water, y: np.ndarray, slope: np.ndarray
+    ) -> None:
+        self._s, self._speed, self._rate = outline.s, speed, 2j * np.pi * frequency
+        wide, high = outline.silhouette
+        self._added = water.density * np.pi * high**2
+        self._mass = water.density * np.pi * wide * high
+        across = np.abs(self._rate * y + speed * slope)
+        self._drag = water.density * water.cross_drag * high * 8.0 / (3.0 * np.pi) * across
+        self._joints = outline.places[list(outline.passive)]
+
+    def moments(self, y: np.ndarray, slope: np.ndarray) -> np.ndarray:
+        """Return the moments about the passive joints of what the water does beyond them in a sideways motion [N m]."""
+        across = self._rate * y + self._speed * slope
+        given = self._added * across
+        force = -(self._rate * given + self._speed * np.gradient(given, self._s))
+        force = force - self._drag * across - self._rate**2 * self._mass * y
+        arms = np.maximum(self._s - self._joints[:, None], 0.0)
+        return np.asarray(np.trapezoid(force * arms, self._s, axis=-1))

@@ -1,0 +1,180 @@
+"""How a swim is resolved by the flow solver: in the plane or in space, tethered or free, how finely, how long."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from suchus import flow
+from suchus.robot.design import WATER_DENSITY, Robot
+from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign
+from suchus.flow.immerse import THINNEST
+
+DENSITY = WATER_DENSITY
+"""Of the water [kg/m3]."""
+GROWS = 0.5
+"""Part of the first cycle in which the motion grows from nothing [cycle]."""
+FREE, ON_THE_SPOT, TETHERED = (True, True, True), (False, True, True), (False, False, False)
+"""A body that nothing holds; one that is kept from moving on; one whose motion is given."""
+TETHERED_BOX, FREE_BOX = (2.75, 1.5), (3.5, 2.0)
+"""Length and width of the box of a slice, where a setting gives none [body length]."""
+AHEAD, BEHIND, BESIDE, ABOVE = 0.15, 0.35, 0.2, 0.15
+"""In space: water ahead of the snout, behind the tail, beside the widest swing and above the back [body length]."""
+FINEST = {2: 4096, 3: 1024}
+"""Most cells per body length, by the number of axes [-]."""
+_TOLERANCES = {2: 1e-5, 3: 1e-4}
+_SHORTEST, _NARROWEST = 1.75, 1.0
+"""Least length and width of a slice's box that leaves some water on every side of a swimming body [body length]."""
+_MARGIN = 8.0
+"""Cells between the body's widest reach and the sides that the solver needs, its half-width included [-]."""
+_DRAWN = 0.05
+"""Swing to a side that the box leaves to a body that draws to the side and turns, beside its own [body length]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwimSetting:
+    """How a swim is resolved: grid, water, time, and what moves the body.
+
+    In the plane it is a slice through the body, as deep as the water is, and forces are per metre of depth. In space it
+    is the body itself: the half above its plane of symmetry is computed, and beyond the plane lies its image.
+    """
+
+    axes: int = 2
+    """Axes of the grid, 2 or 3 [-]."""
+    cells: int
+    """Cells per body length [-]."""
+    viscosity: float
+    """Kinematic viscosity of the water [m2/s]."""
+    cycles: int
+    """Number of cycles that are simulated; the last is measured [-]."""
+    free: tuple[bool, bool, bool] = FREE
+    """Whether the water moves the body along its course, to the side, and in yaw; what is not free keeps its place. All
+    False is a tethered body, whose head may be given a motion."""
+    frames: int = 0
+    """Instants of the last cycle at which the fields of a free body are kept, for films [-]."""
+    box: tuple[float, float] | None = None
+    """In the plane: length and width of the box [body length]; None gives a tethered body 2.75 by 1.5, a free one
+    3.5 by 2."""
+    blunt: float = 0.0
+    """In the plane: least half-width; where the body is thinner it is thickened, its ends made round [cell]. With 1.75
+    cells the force has the least noise; with 0 the body stays as it is."""
+    beside: float = BESIDE
+    """In space: water beside the widest swing, to each side [body length]."""
+    tail_height: float = 0.0
+    """In space: height of the last third of the body, as a fin as thick as the tail is; 0 leaves it as it is [m]."""
+    limbs: bool = False
+    """In space: whether the limbs are in the water, folded straight back along the body."""
+    tolerance: float | None = None
+    """Mean divergence left over, in fastest speed per cell; None is 1e-5 in the plane and 1e-4 in space [-]."""
+
+    def __post_init__(self) -> None:
+        with Checks("setting", self) as check:
+            check.that(self.axes in FINEST, f"setting.axes is {self.axes!r}; 2 is a slice and 3 the body in space")
+            check.whole("cells", 32, FINEST.get(self.axes, FINEST[3]))
+            check.whole("cycles", 1, 1000)
+            check.whole("frames", 0, 1000)
+            check.number("viscosity", 1e-7, 10.0, "m2/s")
+            check.number("blunt", 0.0, 5.0, "cells")
+            check.number("beside", 0.0, 3.0, "body lengths")
+            check.number("tail_height", 0.0, 1.0, "m")
+            if self.tolerance is not None:
+                check.number("tolerance", 5e-7, 1e-2, "")
+            others = ("box", "blunt") if self.axes == 3 else ("beside", "tail_height", "limbs")
+            given = [name for name in others if getattr(self, name) != _default(name)]
+            kind = "a slice" if self.in_space else "a body in space"
+            check.that(
+                not given,
+                f"setting.{', '.join(given)} is for {kind}, and setting.axes is {self.axes}: leave it out",
+            )
+        for value, least, what in zip(self.box or (), (_SHORTEST, _NARROWEST), ("long", "wide"), strict=False):
+            if not (np.isfinite(value) and value >= least):
+                raise InvalidDesign(
+                    f"setting.box is {value} body lengths {what}; the body itself is 1 long and swings to both sides: "
+                    f"give at least {least}."
+                )
+
+    @property
+    def tethered(self) -> bool:
+        """Whether the body's whole motion is given."""
+        return not any(self.free)
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the body itself is resolved, and not a slice of it."""
+        return self.axes == 3
+
+    def least_half_width(self, length: float) -> float:
+        """Return the half-width below which a body of a length [m] is thickened [m]."""
+        return self.blunt * length / self.cells
+
+    def largest_divergence(self) -> float:
+        """Return ``tolerance``, or what stands for None [-]."""
+        return _TOLERANCES[self.axes] if self.tolerance is None else self.tolerance
+
+    def grid(self, length: float, swing: float = 0.0, height: float = 0.0) -> flow.Grid:
+        """Return the cells around a body whose snout is near the origin, most of the water behind it.
+
+        Args:
+            length: of the body [m].
+            swing: greatest displacement to a side, which widens the box in space [m].
+            height: greatest half-height of the body, over which the water in space stands [m].
+        """
+        if self.in_space:
+            return self._grid_in_space(length, swing, height)
+        long, wide = self.box or (TETHERED_BOX if self.tethered else FREE_BOX)
+        ahead = (long - 0.5) / 3.0
+        return flow.Grid.covering(
+            (-ahead * length, (long - ahead) * length),
+            (-0.5 * wide * length, 0.5 * wide * length),
+            cell=length / self.cells,
+        )
+
+    def grid_around(self, length: float, far: float) -> flow.Grid:
+        """Return the cells all around a body in space that reaches so far from its axis to any side [m]."""
+        aside = far + (_DRAWN + self.beside) * length
+        return flow.Grid.covering(
+            (-AHEAD * length, (1.0 + BEHIND) * length), (-aside, aside), (-aside, aside), cell=length / self.cells
+        )
+
+    def _grid_in_space(self, length: float, swing: float, height: float) -> flow.Grid:
+        """Return the cells around the upper half of a body."""
+        aside, above = swing / length + _DRAWN, height / length + ABOVE
+        grid = flow.Grid.covering(
+            (-AHEAD * length, (1.0 + BEHIND) * length),
+            (-(aside + self.beside) * length, (aside + self.beside) * length),
+            (0.0, above * length),
+            cell=length / self.cells,
+        )
+        return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
+
+    def check_thickness(self, robot: Robot, shape: flow.Shape | flow.SpaceShape) -> None:
+        """Refuse cells in space so coarse that a robot is nowhere thick enough for them.
+
+        Raises:
+            InvalidDesign: with the cells that would do.
+        """
+        most, cell = float(shape.thickness(0.0)[1].max()), robot.length / self.cells
+        if self.in_space and most < THINNEST * cell:
+            needed = int(np.ceil(THINNEST * robot.length / most))
+            raise InvalidDesign(
+                f"robot {robot.name!r} is {most:.3g} m thick at most, and with {self.cells} cells a length a cell is "
+                f"{cell:.3g} m: a flow in space needs {THINNEST:.2f} cells across. Take at least {needed} cells, or a "
+                "slice."
+            )
+
+    def check_margin(self) -> None:
+        """Refuse a box in space so narrow that the body would leave it.
+
+        Raises:
+            InvalidDesign: with what is left beside the body, and what would do.
+        """
+        least = _MARGIN / self.cells
+        if self.in_space and self.beside + _DRAWN < least:
+            raise InvalidDesign(
+                f"the box leaves {self.beside:.3g} body lengths of water beside the widest swing, and the body would "
+                f"leave it: give at least {least - _DRAWN:.2g}, better {BESIDE}."
+            )
+
+
+def _default(name: str) -> object:
+    return SwimSetting.__dataclass_fields__[name].default

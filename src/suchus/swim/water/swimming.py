@@ -1,0 +1,207 @@
+"""How a robot swims by the models that cost nothing: one motion in full, or many in a few numbers each."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from suchus.robot.design import GRAVITY, WATER_DENSITY, Robot
+from suchus.robot.design.water import Water
+from suchus.core.errors import OutsideLimits
+from suchus.sim.metrics import SIMILARITY, swim_numbers
+from suchus.robot.motion import Gait, check_limits, check_speeds
+from suchus.robot.robots import ROBOTS
+from suchus.swim.water.measures import efficiency
+from suchus.swim.water.outline import MidlineCurve, Outline
+from suchus.swim.water.slender import Model, cruise, cycle, reactive, recoil, resistive
+from suchus.swim.water.undulation import Motion, still, undulation
+
+MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
+"""The models by name."""
+VALUES = {"speed": "m/s", "efficiency": "1", "cost_of_transport": "1", "strouhal": "1", "slip": "1"}
+"""Quantities that are computed for each motion, with units."""
+
+
+def swim(robot: Robot | str, motion: Motion, *, water: Water | None = None, stations: int = 257) -> xr.Dataset:
+    """Return how a robot swims by the resistive and the reactive model.
+
+    ``thrust_held`` is the mean force on a body that is kept from moving on but free to sway and turn; everything else
+    belongs to free swimming at the speed where the mean force vanishes. The passive end of the tail is straight, the
+    body as heavy as the water it displaces; limbs do nothing.
+
+    Args:
+        robot: who swims, or its name on the shelf.
+        motion: a gait; or a wave that the midline follows exactly, joints or not.
+        water: density, viscosity and coefficients; fresh water if None.
+        stations: points along the midline.
+
+    Returns:
+        A record with the dimensions ``model``, ``time`` (one cycle) and ``station``; x runs from the snout to the tail,
+        y to the right, in a frame that travels with the body.
+
+    Raises:
+        OutsideLimits: the joints or servos cannot follow the motion.
+        NotConverged: thrust and drag never balance.
+    """
+    swimmer, around = ROBOTS.resolve(robot), water or Water()
+    if isinstance(motion, Gait):
+        check_limits(swimmer, motion)
+        check_speeds(swimmer, motion)
+    outline = Outline(swimmer, stations)
+    bent = undulation(outline, motion)
+    held = cycle(outline, bent, *recoil(outline, bent, 0.0, around))
+    per_model: dict[str, list[float]] = {name: [] for name in _PER_MODEL}
+    curves = []
+    for model in MODELS.values():
+        free = cruise(outline, bent, model, around)
+        curve = cycle(outline, bent, free.sway, free.turn)
+        curves.append(curve)
+        values = _numbers(swimmer, motion, outline, curve, free.speed, free.power, around)
+        for name, value in {"thrust_held": model(outline, held, 0.0, around).thrust, **values}.items():
+            per_model[name].append(value)
+    return _record(outline, motion, around, curves, per_model)
+
+
+_PER_MODEL = {
+    "thrust_held": ("N", "mean force forward, kept from moving on"),
+    "speed": ("m/s", "free swimming, forward"),
+    "speed_lengths": ("1/s", "free swimming, in body lengths"),
+    "power": ("W", "of the joints on the water"),
+    "slip": ("1", "speed over that of the body wave"),
+    "strouhal": ("1", SIMILARITY["strouhal"]),
+    "cost_of_transport": ("1", "power over displaced weight and speed"),
+    "head_yaw": ("rad", "amplitude of the head's direction"),
+    **{name: ("1", SIMILARITY[name]) for name in ("reynolds", "froude", "swimming_number")},
+}
+
+
+def _numbers(
+    robot: Robot, motion: Motion, outline: Outline, curve: MidlineCurve, speed: float, power: float, water: Water
+) -> dict[str, float]:
+    swing = float(np.ptp(curve.y[:, -1]))
+    weight = GRAVITY * displaced(outline)
+    moving = speed != 0.0
+    return {
+        "speed": speed,
+        "speed_lengths": speed / robot.length,
+        "power": power,
+        "slip": speed / wave_speed(outline, motion, curve),
+        **swim_numbers(
+            speed=speed, length=robot.length, frequency=motion.frequency, swing=swing, viscosity=water.viscosity
+        )._asdict(),
+        "cost_of_transport": power / (weight * abs(speed)) if moving else float("nan"),
+        "head_yaw": float(np.ptp(curve.heading[:, 0])) / 2,
+    }
+
+
+def displaced(outline: Outline, density: float = WATER_DENSITY) -> float:
+    """Return the mass of the water that the body displaces, its sections taken as ellipses [kg]."""
+    wide, high = outline.silhouette
+    return float(density * np.pi * np.trapezoid(wide * high, outline.s))
+
+
+def wave_speed(outline: Outline, motion: Motion, curve: MidlineCurve) -> float:
+    """Return the speed of the body wave towards the tail, negative if it runs to the head [m/s].
+
+    The phase of the sideways motion along the body is fitted with a straight line, each place weighted with the square
+    of its amplitude.
+    """
+    count = len(curve.y)
+    turning = np.exp(-2j * np.pi * np.arange(count) / count)
+    harmonic = (turning[:, None] * curve.y).sum(axis=0)  # a product of matrices has other digits on more threads
+    weight = np.abs(harmonic) ** 2
+    if weight.sum() == 0.0:
+        return float("inf")
+    lag = -np.unwrap(np.angle(harmonic))
+    s = outline.s - np.average(outline.s, weights=weight)
+    k = float(np.sum(weight * s * lag) / np.sum(weight * s**2))
+    return 2 * np.pi * motion.frequency / k if k else float("inf")
+
+
+def _record(
+    outline: Outline, motion: Motion, water: Water, curves: list[MidlineCurve], per_model: dict[str, list[float]]
+) -> xr.Dataset:
+    count = len(curves[0].x)
+    data = xr.Dataset(
+        coords={
+            "model": list(MODELS),
+            "time": ("time", np.arange(count) / count / motion.frequency, {"units": "s"}),
+            "station": ("station", outline.s, {"units": "m", "long_name": "along the midline from the snout"}),
+        }
+    )
+    for name, (unit, what) in _PER_MODEL.items():
+        data[name] = ("model", per_model[name], {"units": unit, "long_name": what})
+    for field, unit in (("x", "m"), ("y", "m"), ("heading", "rad"), ("x_rate", "m/s"), ("y_rate", "m/s")):
+        values = np.stack([getattr(curve, field) for curve in curves])
+        data[field] = (("model", "time", "station"), values, {"units": unit})
+    for name, values in outline.silhouette._asdict().items():
+        data[name] = ("station", values, {"units": "m"})
+    data["displaced_mass"] = ((), displaced(outline, water.density), {"units": "kg"})
+    data.attrs.update(schema="suchus swim record 1", robot=outline.robot.name, motion=motion.name)
+    return data
+
+
+def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None, stations: int = 65) -> xr.Dataset:
+    """Return what both slender-body models say of motions, and which of them the robot can follow.
+
+    Args:
+        robot: who swims.
+        motions: how.
+        water: fresh water if None.
+        stations: points along the midline; 65 change the speed by less than 1 % from 257.
+
+    Returns:
+        ``VALUES`` along ``model`` and ``motion``, and ``possible`` along ``motion``: joints and servos can follow it.
+    """
+    outline, around = Outline(robot, stations), water or Water()
+    found = np.array([[_one(outline, motion, model, around) for motion in motions] for model in MODELS.values()])
+    data = {name: (("model", "motion"), found[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
+    possible = [_possible(robot, motion) for motion in motions]
+    return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
+
+
+def greatest(robot: Robot, motion: Gait, *, most: float = 4.0) -> float:
+    """Return the greatest factor of every angle at which joints and servos still follow a motion, to 1e-4 [-].
+
+    Args:
+        robot: who swims.
+        motion: how.
+        most: factor that is not gone beyond [-].
+    """
+    low, high = 0.0, most
+    if _possible(robot, motion.bent(high)):
+        return high
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        if _possible(robot, motion.bent(middle)):
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _one(outline: Outline, motion: Gait, model: Model, water: Water) -> tuple[float, ...]:
+    """Return ``VALUES`` of one motion by one model."""
+    free = cruise(outline, motion, model, water)
+    if free.speed == 0.0:
+        return 0.0, 0.0, float("nan"), float("nan"), 0.0
+    curve = cycle(outline, motion, free.sway, free.turn)
+    straight = still(outline, motion.frequency)
+    drag = -model(outline, cycle(outline, straight), free.speed, water).thrust * float(np.sign(free.speed))
+    swing = float(np.ptp(curve.y[:, -1]))
+    return (
+        free.speed,
+        efficiency(drag, free.speed, free.power),
+        free.power / (GRAVITY * displaced(outline, water.density) * abs(free.speed)),
+        motion.frequency * swing / abs(free.speed),
+        free.speed / wave_speed(outline, motion, curve),
+    )
+
+
+def _possible(robot: Robot, motion: Gait) -> bool:
+    try:
+        check_limits(robot, motion)
+        check_speeds(robot, motion)
+    except OutsideLimits:
+        return False
+    return True

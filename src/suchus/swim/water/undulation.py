@@ -1,0 +1,233 @@
+"""How a midline bends over time: as its joints bend it, or exactly as a wave prescribes.
+
+Both are the same thing to the flow and to the models: tangent angles along the body, each a sum of harmonics in time.
+Places and velocities follow by summing tangents from the snout, so that the midline keeps its length whatever the wave,
+and velocities are exact derivatives.
+
+A cable fixes the sum of its joints only, and a passive end bends as the water lets it; a gait commands them and cannot
+see that. So a motion can also be taken from the angles of every lateral joint of a run (``taken``).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Complex, Float
+
+from suchus.robot.design import layout
+from suchus.core.errors import InvalidDesign
+from suchus.robot.kinematics import tail as tail_kinematics
+from suchus.robot.motion import Gait, cycle_targets, movement
+from suchus.swim.water.outline import MidlineCurve, Outline, summed
+from suchus.swim.water.waves import BodyWave, along
+
+_INSTANTS = 96
+"""Instants of a cycle from which a wave's harmonics are found [-]; the last harmonic of (20) is 1e-9 of the first."""
+HARMONICS = 4
+"""Harmonics that are kept, the mean among them [-]; a mean bend would steer, and is left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExactWave:
+    """A wave that the midline follows exactly, joints or not: a body that bends anywhere."""
+
+    name: str
+    """Name, as messages, tables and files show it."""
+    wave: BodyWave
+    """Wave that the midline follows."""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.wave.period) and self.wave.period > 0):
+            raise InvalidDesign(f"the period of {self.name!r} is {self.wave.period} s; a positive one is needed.")
+
+    @property
+    def frequency(self) -> float:
+        """Of the wave [Hz]."""
+        return 1.0 / self.wave.period
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Undulation:
+    """A periodic midline. Harmonic k of a value is ``Re(h[k] exp(2 pi i k f t))``, k from 0 on."""
+
+    name: str
+    """Name, as messages, tables and files show it."""
+    frequency: float
+    """f [Hz]."""
+    outline: Outline
+    """Outline of the body whose midline it is."""
+    middles: Complex[np.ndarray, "harmonic middle"]
+    """Tangent angle halfway between the stations [rad]."""
+    stations: Complex[np.ndarray, "harmonic station"]
+    """Tangent angle at the stations [rad]."""
+    sway: Complex[np.ndarray, " harmonic"]
+    """Way of the snout to the right [m]."""
+
+    def held(self, sway: complex = 0j, turn: complex = 0j) -> "Undulation":
+        """Return the same with a first harmonic added to snout's displacement [m] and head's direction [rad]."""
+        middles, stations, snout = self.middles.copy(), self.stations.copy(), self.sway.copy()
+        middles[1] += turn
+        stations[1] += turn
+        snout[1] += sway
+        return replace(self, middles=middles, stations=stations, sway=snout)
+
+    def curve(self, time: Float[np.ndarray, "*b"], grown: float = 1.0, growing: float = 0.0) -> MidlineCurve:
+        """Return the midline at times.
+
+        Args:
+            time: [s].
+            grown: share of the motion that has grown [-].
+            growing: rate of that share [1/s].
+        """
+        turning, spinning = self._phases(time)
+        mixed = grown * spinning + growing * turning
+        turning = grown * turning
+
+        def at(harmonics: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return (turning @ harmonics).real, (mixed @ harmonics).real
+
+        (middle, spin), (heading, rate), (y, y_rate) = at(self.middles), at(self.stations), at(self.sway[:, None])
+        step = self.outline.robot.length / (self.outline.stations - 1)
+        zero = np.zeros_like(y[..., 0])
+        return MidlineCurve(
+            summed(zero, step * np.cos(middle)),
+            summed(y[..., 0], step * np.sin(middle)),
+            heading,
+            summed(zero, -step * np.sin(middle) * spin),
+            summed(y_rate[..., 0], step * np.cos(middle) * spin),
+            rate,
+        )
+
+    def _phases(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        rates = 2j * np.pi * self.frequency * np.arange(len(self.sway))
+        turning = np.exp(np.asarray(time)[..., None] * rates)
+        return turning, turning * rates
+
+
+Motion = Gait | ExactWave | Undulation
+"""What a body can be asked to do: bend its joints, follow a wave, or bend as was worked out before."""
+
+
+def undulation(outline: Outline, motion: Motion) -> Undulation:
+    """Return how the midline bends in a motion; in a gait the snout stays in place and the head straight.
+
+    Args:
+        outline: of the robot.
+        motion: a gait, or a wave that is followed exactly, or a bend that was worked out before.
+
+    Raises:
+        InvalidDesign: a bend that was worked out for other stations.
+        OutsideLimits: a gait for other limbs.
+    """
+    if isinstance(motion, Undulation):
+        if motion.outline.stations != outline.stations:
+            raise InvalidDesign(
+                f"the motion {motion.name!r} has {motion.outline.stations} stations along the midline, and "
+                f"{outline.stations} are asked for, in a flow one more than its cells per body length: work it out for "
+                "an Outline with so many."
+            )
+        return motion
+    if isinstance(motion, ExactWave):
+        return _of_wave(outline, motion)
+    return _of_joints(outline, motion.name, motion.frequency, _commanded(outline, motion))
+
+
+def still(outline: Outline, frequency: float = 1.0) -> Undulation:
+    """Return the motion that is none."""
+    return _of_joints(outline, "still", frequency, np.zeros((2, len(outline.joints)), complex))
+
+
+def _of_joints(outline: Outline, name: str, frequency: float, harmonics: np.ndarray) -> Undulation:
+    """Return the motion of a midline whose joints have such harmonics, shape (harmonic, joint) [rad]."""
+    middle = 0.5 * (outline.s[1:] + outline.s[:-1])
+    return Undulation(
+        name=name,
+        frequency=frequency,
+        outline=outline,
+        middles=harmonics @ outline.joints_at(middle).T,
+        stations=harmonics @ outline.joints_at(outline.s).T,
+        sway=np.zeros(len(harmonics), complex),
+    )
+
+
+def _commanded(outline: Outline, gait: Gait) -> Complex[np.ndarray, "harmonic joint"]:
+    """Return the harmonics of the joints in a gait, a cable's bend shared evenly, without their means [rad]."""
+    here, place = movement(outline.robot, gait), layout(outline.robot)
+    harmonics = np.zeros((HARMONICS if gait.curves else 2, len(outline.joints)), complex)
+    if gait.curves:
+        angles = cycle_targets(outline.robot, gait, np.arange(_INSTANTS) / _INSTANTS)
+        for servo in outline.servos:
+            number = place.servos.index(servo.name)
+            bend = angles[:, number]
+            if number in place.cables:
+                bend = tail_kinematics.bend_of_servo(place.cable(number), bend) / len(servo.joints)
+            harmonics[1:, list(servo.joints)] = _harmonics(bend)[1:HARMONICS, None]
+        return harmonics
+    hinges = here.yaw.hinges
+    order = [outline.joints.index(name) for name in hinges.names]
+    harmonics[1, order] = np.array(hinges.signs) * here.harmonics()[0]
+    return harmonics
+
+
+def _of_wave(outline: Outline, motion: ExactWave) -> Undulation:
+    time = motion.wave.period * np.arange(_INSTANTS) / _INSTANTS
+    both = np.sort(np.concatenate([outline.s, 0.5 * (outline.s[1:] + outline.s[:-1])]))
+    heading, _, across = along(motion.wave, both, time)
+    harmonics = _harmonics(heading)
+    return Undulation(
+        name=motion.name,
+        frequency=motion.frequency,
+        outline=outline,
+        middles=harmonics[:, 1::2],
+        stations=harmonics[:, ::2],
+        sway=_harmonics(across[:, :1])[:, 0],
+    )
+
+
+def _harmonics(values: np.ndarray) -> np.ndarray:
+    """Return the harmonics of values over one cycle, shape (time, ...), as ``Undulation`` wants them."""
+    found = 2.0 * np.fft.rfft(values, axis=0)[: len(values) // 2] / len(values)
+    found[0] *= 0.5
+    return np.asarray(found)
+
+
+def taken(outline: Outline, record: xr.Dataset, *, frequency: float, cycles: int, name: str = "as taken") -> Undulation:
+    """Return the motion of the midline in the last whole cycles of a run, averaged over them.
+
+    Only yaw counts, as in the slice of water seen from above that it is for: pitch, heave and roll of the run are not
+    in it, and of yaw its mean over a cycle is not.
+
+    Args:
+        outline: of the robot without a hull.
+        record: of one run of a robot with these joints.
+        frequency: of the motion [Hz].
+        cycles: over which is averaged [-].
+        name: of the motion.
+
+    Raises:
+        InvalidDesign: the run is shorter, or a cycle has fewer than two samples for each harmonic.
+    """
+    period, time = 1.0 / frequency, record.time.values.astype(float)
+    step = float(time[1] - time[0]) if time.size > 1 else np.inf
+    if time[-1] - time[0] < cycles * period - 0.5 * step:
+        raise InvalidDesign(
+            f"the run lasts {time[-1] - time[0]:.3g} s, and {cycles} cycles of {period:.3g} s are asked for; let it "
+            "last longer, or ask for fewer cycles."
+        )
+    if period < 2 * HARMONICS * step:
+        raise InvalidDesign(
+            f"a cycle of {period:.3g} s has {period / step:.3g} samples; {2 * HARMONICS} are needed: keep more samples."
+        )
+    last = time > time[-1] - cycles * period + 0.5 * step
+    angles = record.joint_angle.sel(joint=list(outline.joints)).transpose("time", "joint").values[last]
+    turning = np.exp(-2j * np.pi * frequency * np.outer(np.arange(HARMONICS), time[last]))
+    harmonics = 2.0 * turning @ angles / last.sum()
+    harmonics[0] = 0.0
+    return _of_joints(outline, name, frequency, harmonics)
+
+
+def unevenness(motion: Undulation, meant: Undulation) -> float:
+    """Return how far a midline is from another of the same outline, the head alike: rms angle over the other's [-]."""
+    count = max(len(motion.middles), len(meant.middles))
+    one, other = (np.pad(each.middles, ((0, count - len(each.middles)), (0, 0))) for each in (motion, meant))
+    return float(np.sqrt((np.abs(one - other) ** 2).sum() / (np.abs(other) ** 2).sum()))

@@ -1,0 +1,174 @@
+"""Waves given as curves: (20) in each of its readings, and the eel of the flow literature."""
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from suchus.robot.design import Robot
+from suchus.robot.kinematics import wave as wave_kinematics
+from suchus.robot.kinematics.wave import READINGS, TravellingWave
+from suchus.swim.water.outline import tail_root
+
+_FINE = 2049
+"""Points along a wave from which its arc length is found [-]."""
+
+
+@runtime_checkable
+class BodyWave(Protocol):
+    """A midline that is given as a curve, x from the snout towards the tail."""
+
+    @property
+    def period(self) -> float:
+        """Of one cycle [s]."""
+
+    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return how far the midline lies off the axis, to the right positive [m]."""
+
+    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return dy/dx [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PrintedWave:
+    """(20) on a robot, from the snout or from the root of the tail on; ahead of that the body stays straight.
+
+    Paper: Eq. (20).
+    """
+
+    wave: TravellingWave
+    """Its constants in SI units."""
+    origin: float
+    """Where x of the wave begins, from the snout [m]."""
+
+    @property
+    def period(self) -> float:
+        """Of one cycle [s]."""
+        return 2 * np.pi / self.wave.angular_frequency
+
+    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return how far the midline lies off the axis [m]."""
+        return wave_kinematics.displacement(self.wave, np.maximum(x - self.origin, 0.0), time)
+
+    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return dy/dx [-]."""
+        inside = wave_kinematics.slope(self.wave, np.maximum(x - self.origin, 0.0), time)
+        return np.where(x >= self.origin, inside, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EelWave:
+    """The eel of the flow literature: ``0.125 (x + 0.03125) / 1.03125 sin 2 pi (x - t)`` in lengths and periods.
+
+    Source: IBAMR examples, ConstraintIB eel2d; Carling, Williams and Bowtell 1998, J. Exp. Biol. 201, 3143.
+    """
+
+    length: float
+    """Length of the body [m]."""
+    frequency: float
+    """[Hz]."""
+
+    @property
+    def period(self) -> float:
+        """Of one cycle [s]."""
+        return 1.0 / self.frequency
+
+    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return how far the midline lies off the axis [m]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part - self.frequency * time)
+        return np.asarray(self.length * 0.125 * (part + 0.03125) / 1.03125 * np.sin(phase))
+
+    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return dy/dx [-]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part - self.frequency * time)
+        grown = 2 * np.pi * (part + 0.03125) * np.cos(phase)
+        return np.asarray(0.125 / 1.03125 * (np.sin(phase) + grown))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilmedWave:
+    """A wave of which a film gave the amplitudes of snout and tail, and its length: ``A(x) sin 2 pi (x / wave - f t)``.
+
+    In between the amplitude follows a parabola that is level at the snout; that is what a film says of it that gives
+    its ends only, and how swimmers of the eel's and of the carp's kind look (Di Santo et al. 2021, PNAS 118,
+    e2113206118).
+    """
+
+    length: float
+    """Length of the body [m]."""
+    frequency: float
+    """[Hz]."""
+    wavelength: float
+    """Length of one whole wave [body length]."""
+    head: float
+    """Amplitude of the snout, half of the distance from side to side [body length]."""
+    tail: float
+    """Amplitude of the tail's tip, half of the distance from side to side [body length]."""
+
+    @property
+    def period(self) -> float:
+        """Of one cycle [s]."""
+        return 1.0 / self.frequency
+
+    def displacement(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return how far the midline lies off the axis [m]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
+        return np.asarray(self.length * self._amplitude(part) * np.sin(phase))
+
+    def slope(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return dy/dx [-]."""
+        part = x / self.length
+        phase = 2 * np.pi * (part / self.wavelength - self.frequency * time)
+        grows = 2 * part * (self.tail - self.head)
+        return np.asarray(grows * np.sin(phase) + self._amplitude(part) * 2 * np.pi / self.wavelength * np.cos(phase))
+
+    def _amplitude(self, part: np.ndarray) -> np.ndarray:
+        return self.head + (self.tail - self.head) * part**2
+
+
+def printed_wave(
+    robot: Robot, reading: str = "I", *, frequency: float = 1.0, sign: int = -1, waves_per_body: float = 1.0
+) -> PrintedWave:
+    """Return (20) on a robot in one of its readings.
+
+    Args:
+        robot: whose body it runs along.
+        reading: letter of ``kinematics.wave.READINGS``.
+        frequency: which the article does not give [Hz].
+        sign: -1 runs from head to tail; 1 as printed.
+        waves_per_body: of reading I [-].
+
+    Raises:
+        UnknownName: there is no such reading.
+    """
+    wave = wave_kinematics.reading(
+        reading,
+        length=robot.length,
+        angular_frequency=2 * np.pi * frequency,
+        sign=sign,
+        waves_per_body=waves_per_body,
+    )
+    return PrintedWave(wave=wave, origin=tail_root(robot) if READINGS[reading].tail_only else 0.0)
+
+
+def along(wave: BodyWave, s: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return heading, x and y of a wave at equal arc lengths, each of shape (time, station).
+
+    Args:
+        wave: the curve.
+        s: arc lengths from the snout, ascending [m].
+        time: [s].
+    """
+    x = np.linspace(0.0, s[-1], _FINE)
+    step = x[1] - x[0]
+    heading, ahead, across = (np.empty((len(time), len(s))) for _ in range(3))
+    for i, t in enumerate(time):
+        stretch = np.sqrt(1.0 + wave.slope(x, t) ** 2)
+        arc = np.concatenate([[0.0], np.cumsum(0.5 * step * (stretch[1:] + stretch[:-1]))])
+        ahead[i] = np.interp(s, arc, x)  # arc lengths grow faster than x, so that s ends within
+        heading[i] = np.arctan(wave.slope(ahead[i], t))
+        across[i] = wave.displacement(ahead[i], t)
+    return heading, ahead, across

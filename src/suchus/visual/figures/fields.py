@@ -1,0 +1,104 @@
+"""Fields of a flow around a body: colours with two sides, the outline, the midline, streamlines."""
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from scipy.ndimage import zoom
+
+from suchus.visual.figures.data import carry
+
+SKIN, EDGE = "#C9DCCB", "#2F4737"
+"""Colours of a body seen from above."""
+VORTICITY, PRESSURE = "RdBu_r", "PuOr"
+"""Colour maps with a meaningful zero: vorticity red counter-clockwise, pressure purple where it is high."""
+
+_STEPS = 41
+"""Steps of colour [-]."""
+_PIXELS = 700
+"""About how many pixels a field is wide [-]."""
+
+
+def span(values: np.ndarray, share: float) -> float:
+    """Return the end of a two-sided scale: the size that a share of the values stays below."""
+    return float(max(np.quantile(np.abs(values), share), 1e-9))
+
+
+def draw_field(ax: Axes, record: xr.Dataset, name: str, what: str, index: int, limit: float, cmap: str) -> AxesImage:
+    """Draw one instant of a field as a picture in even steps of colour, which stays small in an SVG.
+
+    Args:
+        ax: where.
+        record: of the experiment ``swimming``.
+        name: prefix of the swim in the record.
+        what: which field.
+        index: which instant.
+        limit: end of the scale to both sides.
+        cmap: colour map.
+    """
+    x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
+    half = 0.5 * (x[1] - x[0])
+    values = record[f"{name}_{what}"].values[index]
+    ax.grid(visible=False)
+    image = ax.imshow(
+        smooth(values),
+        origin="lower",
+        extent=(x[0] - half, x[-1] + half, y[0] - half, y[-1] + half),
+        cmap=colormaps[cmap].resampled(_STEPS),
+        vmin=-limit,
+        vmax=limit,
+        interpolation="none",
+        aspect="equal",
+    )
+    carry(image, values)
+    return image
+
+
+def smooth(values: np.ndarray, pixels: int = _PIXELS) -> np.ndarray:
+    """Return a field on a finer grid of about ``pixels`` along x, so that its cells do not show."""
+    return np.asarray(zoom(values, max(1, round(pixels / values.shape[1])), order=1, grid_mode=True, mode="nearest"))
+
+
+def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m]."""
+    x, y, heading, half = (
+        record[f"{name}_midline_{what}"].values[index] for what in ("x", "y", "heading", "half_width")
+    )
+    across = np.column_stack([-np.sin(heading), np.cos(heading)]) * half[:, None]
+    line = np.column_stack([x, y])
+    return np.vstack([line + across, (line - across)[::-1]]), line
+
+
+def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Polygon, Line2D]:
+    """Draw a body and its midline; return both, to be moved in a film."""
+    edge, line = outline(record, name, index)
+    body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
+    ax.add_patch(body)
+    (middle,) = ax.plot(*line.T, color=EDGE, linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
+    return body, middle
+
+
+def move_body(drawn: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:
+    """Move what ``draw_body`` drew to another instant."""
+    edge, line = outline(record, name, index)
+    drawn[0].set_xy(edge)
+    drawn[1].set_data(line[:, 0], line[:, 1])
+
+
+def draw_streamlines(ax: Axes, record: xr.Dataset, name: str, index: int) -> None:
+    """Draw where the water goes at one instant."""
+    x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
+    even = np.linspace(x[0], x[-1], x.size), np.linspace(y[0], y[-1], y.size)  # streamplot wants exactly even steps
+    ax.streamplot(
+        *even,
+        record[f"{name}_u"].values[index],
+        record[f"{name}_v"].values[index],
+        density=(0.9, 0.45),
+        color="#3A3A3A",
+        linewidth=0.6,
+        arrowsize=0.6,
+        zorder=2,
+    )

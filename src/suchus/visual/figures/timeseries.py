@@ -1,0 +1,57 @@
+"""Quantities over time, one line per arm."""
+
+from collections.abc import Mapping, Sequence
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from suchus.visual.figures.style import COLOURS, LINES
+
+
+def draw_lines(ax: Axes, values: xr.DataArray, roles: Sequence[str], *, scale: float = 1.0) -> None:
+    """Draw one line per run in the colours of its role.
+
+    Args:
+        ax: to draw on.
+        values: with the dimensions ``run`` and ``time``.
+        roles: of ``style.LINES``, one per run.
+        scale: factor on the values, for a unit people read.
+    """
+    for i, role in enumerate(roles):
+        ax.plot(values.time, scale * values.isel(run=i).transpose("time"), **LINES[role])
+    ax.set_xlabel("time [s]")
+    ax.set_xlim(float(values.time[0]), float(values.time[-1]))
+
+
+def draw_band(ax: Axes, values: xr.DataArray, role: str, *, scale: float = 1.0, label: str | None = None) -> None:
+    """Shade the range of all runs over time in the colour of a role.
+
+    Args:
+        ax: to draw on.
+        values: with the dimensions ``run`` and ``time``.
+        role: of ``style.LINES``.
+        scale: factor on the values.
+        label: in the legend; None: none.
+    """
+    low, high = scale * values.min("run"), scale * values.max("run")
+    ax.fill_between(values.time, low, high, color=COLOURS[role], alpha=0.22, linewidth=0, label=label)
+
+
+def mark_cycles(ax: Axes, times: Sequence[float]) -> None:
+    """Mark where cycles begin and end."""
+    for time in times:
+        ax.axvline(time, color=COLOURS["neutral"], linewidth=0.9, linestyle=(0, (1, 2)), zorder=0)
+
+
+def mark_printed(ax: Axes, values: Mapping[str, float], at: float, *, scale: float = 1.0) -> None:
+    """Mark the article's values with diamonds; the first has an entry in the legend.
+
+    Args:
+        ax: to draw on.
+        values: by role, whose colour the bar takes.
+        at: position along the axis of time [s].
+        scale: factor on the values.
+    """
+    for i, (role, value) in enumerate(values.items()):
+        ax.plot([at], [scale * value], "D", color=COLOURS[role], markeredgecolor="black", markersize=8, zorder=5,
+                clip_on=False, label=None if i else "article")  # fmt: skip

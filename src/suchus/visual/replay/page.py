@@ -1,0 +1,272 @@
+"""The page: a run or a swim in space, packed into one HTML file with its player."""
+
+import base64
+import json
+import re
+from collections.abc import Mapping, Sequence
+from io import BytesIO, StringIO
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+from PIL import Image
+
+from suchus.robot.design import Robot
+from suchus.robot.design.ground import Ground
+from suchus.core.errors import InvalidDesign
+from suchus.visual.figures import limb_colours, panels, styled, vortices
+from suchus.visual.figures.posture import draw_posture
+from suchus.sim.record import ground_of
+from suchus.core.files import versions, write
+from suchus.visual.replay.frames import Frames, checked, frames
+from suchus.visual.replay.scene import ARROW, KEYS, PackedArrays, quantised, scene
+
+
+def replay(
+    record: xr.Dataset,
+    robot: Robot,
+    *,
+    ghost: xr.Dataset | None = None,
+    labels: Sequence[str] = ("this run", "the other run"),
+    title: str = "",
+    caption: str = "",
+    overlaid: bool = False,
+) -> str:
+    """Return a run as an HTML page that plays offline and needs nothing else.
+
+    The ground is the one that the record holds, level and even where it holds none.
+
+    Args:
+        record: of one run on land.
+        robot: whose it is.
+        ghost: another run of the same robot, half transparent, for comparison.
+        labels: what the two runs are called.
+        title: heading; by default robot and gait.
+        caption: one or two sentences: what there is to see.
+        overlaid: whether the two begin in the same place or side by side; on ground that is not even they always do.
+
+    Raises:
+        IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
+        InvalidDesign: there are more runs than labels.
+    """
+    return rendered("replay.html", record, robot, ghost=ghost, labels=labels, title=title, caption=caption,
+                    overlaid=overlaid)  # fmt: skip
+
+
+def rendered(
+    template: str,
+    record: xr.Dataset,
+    robot: Robot,
+    *,
+    ghost: xr.Dataset | None = None,
+    others: Sequence[xr.Dataset] = (),
+    choice: str = "",
+    labels: Sequence[str],
+    title: str = "",
+    caption: str = "",
+    overlaid: bool = False,
+    **more: Any,
+) -> str:
+    """Return a template that extends ``replay.html``, filled with runs; see ``replay``.
+
+    Args:
+        template: its file name.
+        record: of one run on land.
+        robot: whose it is.
+        ghost: another run of the same robot, half transparent.
+        others: instead of a ghost, further runs of the robot on such ground, of which a slider chooses one.
+        choice: the name of that slider.
+        labels: what the runs are called.
+        title: heading; by default robot and gait.
+        caption: one or two sentences.
+        overlaid: whether run and ghost begin in the same place.
+        **more: what else the template names.
+
+    Raises:
+        IncompatibleRecord: a record is no run on land, several runs, of another robot, or without a frame.
+        InvalidDesign: there are more runs than labels.
+    """
+    records = [record, *others, *([] if ghost is None else [ghost])]
+    if len(labels) < len(records):
+        raise InvalidDesign(f"a replay of {len(records)} runs has {len(labels)} labels; give each run a name.")
+    runs = [checked(given, robot) for given in records]
+    grounds = [ground_of(given) or Ground() for given in records]
+    first = frames(runs[0], robot)
+    moving = [first, *(frames(run, robot, first.rate) for run in runs[1:])]
+    overlaid = overlaid or grounds[0].relief is not None
+    meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
+    still, still_time = _still(robot, runs[0])
+    return environment().get_template(template).render(
+        title=title or f"{robot.name}: {_text(record, 'gait', 'a run on land').replace('_', ' ')}",
+        caption=" ".join(f"{caption} {_on(grounds)}".split()),
+        alt=_in_words(robot, moving, labels),
+        still=Markup(still),
+        still_time=still_time,
+        ghost=labels[1] if ghost is not None else "",
+        choice=choice,
+        choices=len(records),
+        beside=grounds[0].relief is None,
+        overlaid=overlaid,
+        keys=KEYS | {"legs": limb_colours(robot)},
+        arrow=f"{100 * ARROW * robot.length:.0f} cm",
+        version=versions()["suchus"],
+        meta=_script(meta | {"chosen": bool(choice)}),
+        data=data,
+        **more,
+    )  # fmt: skip
+
+
+def save(page: str, path: str | Path) -> Path:
+    """Write a page, which appears complete or not at all, and return its path.
+
+    Raises:
+        Unwritable: the place cannot be written to.
+    """
+    return write(path, page)
+
+
+def environment() -> Environment:
+    """Return the templates of the pages, which hold styles and players as globals."""
+    templates = Environment(
+        loader=PackageLoader("suchus.visual.replay"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    loader = templates.loader
+    assert loader is not None
+    files = {"style": "player.css", "shared": "shared.js", "player": "player.js", "wake_player": "wake.js"}
+    for name, file in files.items():
+        templates.globals[name] = Markup(loader.get_source(templates, file)[0])
+    return templates
+
+
+def _script(meta: Mapping[str, Any]) -> Markup:
+    """Return values as JSON that stands in a page: it begins no tag and no comment."""
+    return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
+
+
+def _on(grounds: Sequence[Ground]) -> str:
+    """Return in words how the ground slopes, and whether the second run's is another one."""
+    said = [
+        f"{'rises' if angle > 0 else 'falls'} by {abs(degrees(angle)):.3g}° {direction}"
+        for angle, direction in ((grounds[0].uphill, "ahead"), (grounds[0].sideways, "to the left"))
+        if angle
+    ]
+    text = f"The ground {' and '.join(said)}." if said else ""
+    if not all(other.looks_like(grounds[0]) for other in grounds[1:]):
+        text += " The half transparent one went on other ground, which is not shown."
+    return text
+
+
+def _in_words(robot: Robot, moving: Sequence[Frames], labels: Sequence[str]) -> str:
+    """Return the replay in words, for those who cannot see it."""
+    paths = [
+        f"{label}: {run.mass[-1, 0] - run.mass[0, 0]:.2f} m forward in {(len(run.mass) - 1) / run.rate:.1f} s"
+        for run, label in zip(moving, labels, strict=False)
+    ]
+    where = "on the ground" if moving[0].level is None else "in water"
+    return f"Three-dimensional replay of the robot {robot.name} {where}. {'; '.join(paths)}."
+
+
+def _still(robot: Robot, record: xr.Dataset) -> tuple[str, str]:
+    """Return a still picture as SVG, and its time."""
+    time = float(record.time[record.sizes["time"] // 2])
+    with styled(svg__hashsalt="replay"):
+        figure, axes = panels(2, 1, width=8.0, height=6.0)
+        draw_posture(axes[0, 0], robot, record, time, view="above")
+        draw_posture(axes[1, 0], robot, record, time, view="side")
+        axes[0, 0].set_ylabel("y [m]")
+        axes[1, 0].set_ylabel("z [m]")
+        axes[1, 0].set_xlabel("x [m]")
+        text = StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    svg = re.sub(r"(\d\.\d\d)\d+", r"\1", text.getvalue())  # a hundredth of a point is fine enough
+    label = f'<svg role="img" aria-label="The robot at {time:.1f} s, from above and from the side" '
+    return label + svg[svg.index("<svg") + 5 :], f"{time:.1f} s"
+
+
+def _text(record: xr.Dataset, name: str, otherwise: str) -> str:
+    return str(record[name].values.ravel()[0]) if name in record.coords else otherwise
+
+
+LARGEST = 3_500_000
+"""Bytes of arrays from which the surfaces are taken of blocks of cells [-]; as text they take a third more."""
+_COARSEST = 4
+
+
+def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> str:
+    """Return a cycle of a swim as an HTML page that plays offline and needs nothing else.
+
+    Args:
+        record: of ``water.resolved`` in space with frames, or of the experiment ``swim_3d``.
+        title: heading.
+        caption: one or two sentences: what there is to see.
+
+    Raises:
+        IncompatibleRecord: the record holds no vortices of a swim in three dimensions.
+    """
+    vortices.check_filmed(record)
+    meta, data = _swim_scene(record)
+    still = vortices.still(record, record.sizes["frame"] - 1)
+    drawn = BytesIO()
+    Image.fromarray(still).save(drawn, format="PNG", optimize=True)
+    picture = base64.b64encode(drawn.getvalue()).decode("ascii")
+    return environment().get_template("wake.html").render(
+        title=title or "A swim in three dimensions",
+        caption=" ".join(caption.split()),
+        alt=f"Three-dimensional replay of a swimming body and the vortices around it, {record.sizes['frame']} instants "
+        "of one cycle.",
+        still=picture,
+        limit=f"{meta['limit']:.3g}",
+        keys={"left": vortices.hexed(1.0), "right": vortices.hexed(-1.0)},
+        version=versions()["suchus"],
+        meta=_script(meta),
+        data=data,
+    )  # fmt: skip
+
+
+def _swim_scene(record: xr.Dataset) -> tuple[dict[str, Any], str]:
+    """Return what the player gets, on the finest blocks whose surfaces are small enough."""
+    for coarse in range(1, _COARSEST + 1):
+        pack = PackedArrays()
+        meta = _packed_swim(record, pack, coarse)
+        if pack.size <= LARGEST or coarse == _COARSEST:
+            break
+    return meta, pack.text()
+
+
+def _packed_swim(record: xr.Dataset, pack: PackedArrays, coarse: int) -> dict[str, Any]:
+    limit = vortices.colour_limit(record)
+    surfaces = [vortices.surface(record, i, coarse=coarse) for i in range(record.sizes["frame"])]
+    middle = np.array([0.5 * float(record[axis].min() + record[axis].max()) for axis in "xy"] + [0.0])
+    scale = max(float(np.abs(mesh.points - middle).max(initial=0.0)) for mesh, _ in surfaces) or 1.0
+    frames = []
+    for mesh, spin in surfaces:
+        whole = np.round((mesh.points - middle) / scale * np.iinfo(np.int16).max).astype(np.int16)
+        shades = np.round(127.0 * np.clip(spin / limit, -1.0, 1.0)).astype(np.int8)
+        small = len(whole) <= np.iinfo(np.uint16).max
+        faces = pack.add(mesh.faces.astype(np.uint16 if small else np.uint32))
+        frames.append({"points": pack.add(whole), "spin": pack.add(shades), "faces": faces})
+    lines = {
+        name.removeprefix("film_"): quantised(record[name].values, np.int16) for name in vortices.LINES
+    }  # fmt: skip
+    return {
+        "frames": frames,
+        "phase": np.round(record.frame.values.astype(float), 4).tolist(),
+        "middle": np.round(middle, 6).tolist(),
+        "scale": scale,
+        "limit": limit,
+        "coarse": coarse,
+        "stations": record.sizes["station"],
+        "length": round(float(np.ptp(record.film_x.values[0])), 4),
+        "lines": {name: {"array": pack.add(values), "scale": size} for name, (values, size) in lines.items()},
+        "high": pack.add(record.half_height.values.astype(np.float32)),
+        "skin": vortices.SKIN,
+        "ramp": np.round(vortices.colours(np.linspace(-limit, limit, 9), limit), 4).tolist(),
+    }

@@ -1,0 +1,176 @@
+"""The whole skin: its parts, how each vertex hangs on the bones, and how it bends."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from suchus.robot.design import MEASURED, Layout, Robot, lacking, layout
+from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import rotate
+from suchus.visual.skin.body import body, shape
+from suchus.visual.skin.bones import bone_names, bone_rest
+from suchus.visual.skin.head import eyes, jaw, teeth
+from suchus.visual.skin.legs import left_leg
+from suchus.visual.skin.look import SKIN, Look
+from suchus.visual.skin.mesh import Mesh, joined, normals
+from suchus.visual.skin.paint import smooth
+from suchus.visual.skin.plain import axis_mesh, ends, limb_meshes
+from suchus.visual.skin.plain import eyes as plain_eyes
+from suchus.visual.skin.scutes import left_scutes, middle_scutes
+
+_HANGS = 4  # bones that a vertex may hang on; two are used, viewers expect four
+
+
+@dataclass(frozen=True, slots=True)
+class Skin:
+    """The surface of a body and how it follows the bones; the arrays are not to be written to."""
+
+    vertices: np.ndarray
+    """At zero posture in the frame of the pelvis, (n, 3) [m]."""
+    normals: np.ndarray
+    """Unit normals, outward, (n, 3) [-]."""
+    faces: np.ndarray
+    """Places of three vertices, counterclockwise as seen from outside, (m, 3) int32."""
+    colours: np.ndarray
+    """Red, green, blue of each vertex, (n, 3) uint8."""
+    part: np.ndarray
+    """Number of the closed part to which each vertex belongs, (n,) int32."""
+    bones: tuple[str, ...]
+    """Names of the bones, which are bodies of the model."""
+    rest: np.ndarray
+    """Origins of the bones at zero posture in the frame of the pelvis, (bone, 3) [m]; all are parallel to it."""
+    indices: np.ndarray
+    """Bones that each vertex hangs on, (n, 4) int32."""
+    weights: np.ndarray
+    """How much of each, (n, 4) [-]; they sum to one."""
+    plain: bool
+    """Whether it is a plain hide with rods for limbs and balls for feet, and not the skin of a crocodile."""
+
+    def posed(self, positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
+        """Return the vertices in a posture, (n, 3) [m], by linear blend skinning.
+
+        Args:
+            positions: origins of the bones in the world, (bone, 3) [m].
+            quaternions: orientations of the bones, (bone, 4), unit quaternions wxyz.
+
+        Raises:
+            InvalidDesign: the number of poses is not the number of bones.
+        """
+        count = len(self.bones)
+        if positions.shape != (count, 3) or quaternions.shape != (count, 4):
+            raise InvalidDesign(
+                f"poses of shape {positions.shape} and {quaternions.shape} were given; this skin has {count} bones: "
+                f"give ({count}, 3) positions and ({count}, 4) quaternions."
+            )
+        found = np.zeros_like(self.vertices)
+        for i in range(_HANGS):
+            if not self.weights[:, i].any():
+                continue
+            bone = self.indices[:, i]
+            arm = self.vertices - self.rest[bone]
+            found += self.weights[:, i, None] * (positions[bone] + rotate(quaternions[bone], arm))
+        return found
+
+
+@lru_cache(maxsize=16)
+def skin(robot: Robot, look: Look = SKIN) -> Skin:
+    """Return the skin of a robot; the same robot gives the same skin again.
+
+    Args:
+        robot: any robot; one with the chains of ``design.MEASURED`` is a crocodile, any other a plain hide with
+            rods for limbs.
+        look: proportions of the animal where the robot has none.
+    """
+    plain = bool(lacking(robot, MEASURED))
+    parts = _plain(layout(robot)) if plain else _crocodile(robot, look)
+    hung = [_hung(robot, mesh.vertices, on) for mesh, on in parts]
+    whole = joined([mesh for mesh, _ in parts])
+    found = Skin(
+        vertices=whole.vertices,
+        normals=normals(whole),
+        faces=whole.faces,
+        colours=np.round(255 * np.clip(whole.colours, 0.0, 1.0)).astype(np.uint8),
+        part=np.repeat(np.arange(len(parts), dtype=np.int32), [len(mesh.vertices) for mesh, _ in parts]),
+        bones=bone_names(robot),
+        rest=bone_rest(robot),
+        indices=np.concatenate([indices for indices, _ in hung]),
+        weights=np.concatenate([weights for _, weights in hung]),
+        plain=plain,
+    )
+    for array in (found.vertices, found.normals, found.faces, found.colours, found.part, found.rest, found.indices,
+                  found.weights):  # fmt: skip
+        array.flags.writeable = False
+    return found
+
+
+def _crocodile(robot: Robot, look: Look) -> list[tuple[Mesh, str | int]]:
+    """Return the parts of a crocodile, each with the limb that it hangs on, or nothing for the axis."""
+    limbs = [(mesh, girdle) for girdle in "FH" for mesh in left_leg(robot, girdle)]
+    parts: list[tuple[Mesh, str | int]] = [(mesh, "") for mesh in _axial(robot, look)]
+    return parts + [(m.mirrored() if side == "R" else m, side + girdle) for m, girdle in limbs for side in "LR"]
+
+
+def _plain(place: Layout) -> list[tuple[Mesh, str | int]]:
+    """Return the parts of any body, each with the bone that it hangs on, or nothing for the axis."""
+    parts: list[tuple[Mesh, str | int]] = [(axis_mesh(place), "")]
+    parts += [(mesh, "") for mesh in plain_eyes(place)]
+    return parts + [part for limb in place.limbs for part in limb_meshes(place, limb)]
+
+
+def _hung(robot: Robot, vertices: np.ndarray, on: str | int) -> tuple[np.ndarray, np.ndarray]:
+    """Hang vertices on a bone, on the axis or on a leg of that name: return bones and weights."""
+    if isinstance(on, int):
+        indices, weights = np.full((len(vertices), _HANGS), on, dtype=np.int32), np.zeros((len(vertices), _HANGS))
+        weights[:, 0] = 1.0
+        return indices, weights
+    return _on_leg(robot, vertices, on) if on else _on_axis(robot, vertices)
+
+
+def _axial(robot: Robot, look: Look) -> list[Mesh]:
+    """Return the parts of head, trunk and tail."""
+    outline = shape(robot, look)
+    left = [*eyes(robot, look), *teeth(robot, look), *left_scutes(robot, outline, look)]
+    both = [side for mesh in left for side in (mesh, mesh.mirrored())]
+    return [body(robot, look), jaw(robot, look), *middle_scutes(robot, outline), *both]
+
+
+def _on_axis(robot: Robot, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Hang vertices on the bodies of the axis by their place along the straight body."""
+    place, rest = layout(robot), bone_rest(robot)
+    names = [body.name for body in place.bodies]
+    order = [names.index(name) for name in (*reversed(place.tail), *place.trunk)]
+    # a segment behind the root ends at its own joint, one ahead of it begins there
+    behind = len(place.tail)
+    joints = [float(rest[bone, 0]) for i, bone in enumerate(order) if i != behind]
+    front, back = ends(place)
+    return _blended(vertices[:, 0], joints, np.diff([back, *joints, front]), order)
+
+
+def _on_leg(robot: Robot, vertices: np.ndarray, leg: str) -> tuple[np.ndarray, np.ndarray]:
+    """Hang vertices on girdle, femur and tibia by their distance from the midline."""
+    names, links = bone_names(robot), robot.leg(leg)
+    order = [names.index("thorax" if leg.endswith("F") else "pelvis"), names.index(f"{leg}_femur")]
+    order.append(names.index(f"{leg}_tibia"))
+    joints = [links.hip_offset, links.hip_offset + links.femur]
+    lengths = np.array([links.hip_offset, links.femur, links.tibia])
+    return _blended(np.abs(vertices[:, 1]), joints, np.minimum(lengths, 4.2 * links.radius), order)
+
+
+def _blended(
+    along: np.ndarray, joints: list[float], lengths: np.ndarray, order: list[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return bones and weights: half and half at a joint, whole half a segment away from it."""
+    shares = np.ones((len(along), len(order)))
+    for i, (joint, (before, after)) in enumerate(zip(joints, pairwise(lengths), strict=True)):
+        half = 0.5 * min(before, after)
+        beyond = smooth(along, joint - half, joint + half)
+        shares[:, : i + 1] *= 1 - beyond[:, None]
+        shares[:, i + 1 :] *= beyond[:, None]
+    largest = np.argsort(-shares, axis=1, kind="stable")[:, :_HANGS]
+    if largest.shape[1] < _HANGS:
+        largest = np.pad(largest, ((0, 0), (0, _HANGS - largest.shape[1])))
+    weights = np.take_along_axis(shares, largest, axis=1)
+    weights[:, len(order) :] = 0.0
+    return np.array(order, dtype=np.int32)[largest], weights / weights.sum(axis=1, keepdims=True)
