@@ -10,14 +10,14 @@ from time import process_time
 
 from form import SHORT, in_form
 from suchus import flow
-from suchus.robot.control import Swimming
-from suchus.swim.coupling import Swim
-from suchus.swim.coupling.on_joints import floating
+from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.control import Swimming
+from suchus.robot.motion import LIMBS_BACK, with_limbs
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Slice, Space
-from suchus.robot.motion import LIMBS_BACK, with_limbs
-from suchus.core.progress import silent
+from suchus.swim.coupling import Swim
+from suchus.swim.coupling.on_joints import floating
 from suchus.swim.water import fit, printed_wave
 from suchus.swim.water.setting import GROWS, SwimSetting
 from suchus.swim.water.swim_setup import ResolvedSwim

@@ -16,9 +16,9 @@ import numpy as np
 from form import in_form
 from suchus.robot.control import Swimming
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.loop import Loop, physics_steps
-from suchus.robot.robots import ROBOTS
 from suchus.swim.water import fit, printed_wave
 
 RUNS, TICKS = 8, in_form(20, 2)  # TICKS control periods in a turn

@@ -14,12 +14,12 @@ import numpy as np
 from mujoco import rollout
 
 from form import in_form
-from suchus.core import threads
 from suchus.apps.envs import Follow
+from suchus.core import threads
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.model import activations, compile_model
-from suchus.robot.robots import ROBOTS
 
 TIMESTEP, DURATION, RUNS, REPEATS = 0.002, in_form(4.0, 0.2), in_form(32, 2), in_form(5, 1)
 NOISE = 0.01  # rad on every commanded angle

@@ -17,12 +17,12 @@ from mujoco import rollout
 
 from form import in_form
 from suchus.core import threads
+from suchus.experiments.study import Study, Vary, conduct, run_chunk
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.sim.model import activations, compile_model, standing
 from suchus.robot.motion import hip_height
 from suchus.robot.robots import ROBOTS
-from suchus.experiments.study import Study, Vary, conduct, run_chunk
+from suchus.sim.land import Run, simulate
+from suchus.sim.model import activations, compile_model, standing
 
 MEASURES = ("displacement", "slip", "cost_of_transport", "height_std", "peak_torque")
 RUNS, DURATION, HALVED = in_form(100, 2), in_form(10.0, 1.1), in_form(8, 1)

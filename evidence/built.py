@@ -5,12 +5,12 @@ from math import isfinite
 from typing import Any
 
 from evidence.store import ROOT
+from suchus.hardware.loads import LoadCase, borne, cold, records_of_each
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
-from suchus.hardware.loads import LoadCase, borne, cold, records_of_each
-from suchus.sim.metrics import displacement
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import displacement
 
 FILE = ROOT / "examples" / "former_caiman.toml"
 ITS_OWN = ("belly_crawl", "low_crawl", "limbs_only", "spine_only", "tail_still", "semi_erect", "high_walk")

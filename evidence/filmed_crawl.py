@@ -9,9 +9,9 @@ import xarray as xr
 from suchus.animals.capture import Camera, driven_share, film, observe, to_gait
 from suchus.robot.design import LEGS
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import crawl
 from suchus.robot.motion import START, Gait, limb_reaches
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import crawl
 
 NAME = "filmed_crawl"
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from suchus import swim
-from suchus.robot.control.standing import BALANCE, Standing
 from suchus.core.errors import InvalidDesign
 from suchus.flow.setup import LAYER_CELLS
+from suchus.robot.control.standing import BALANCE, Standing
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Ground, Run, simulate
-from suchus.sim.metrics.reach import lead
 from suchus.robot.motion import Gait
 from suchus.robot.motion.rising import stand_up, tallest
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Run, simulate
+from suchus.sim.metrics.reach import lead
 from suchus.swim.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
 

@@ -7,14 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming
-from suchus.robot.design import layout
-from suchus.apps.envs import LONGER, STEPS, TASKS, Anything, Controlled, CrocodileVectorEnv, Follow, Still, SwimToGoal, Task
+from suchus.apps.envs import (
+    LONGER,
+    STEPS,
+    TASKS,
+    Anything,
+    Controlled,
+    CrocodileVectorEnv,
+    Follow,
+    Still,
+    SwimToGoal,
+    Task,
+)
 from suchus.apps.envs.policies import Played, Policy, play
 from suchus.apps.envs.shelf import chosen
+from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming
+from suchus.robot.design import layout
 from suchus.robot.gaits import own_gait
-from suchus.sim.land import Ground, Lake
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Lake
 
 NAME = "policies"
 EPISODES, SEED = 32, 1000

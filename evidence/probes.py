@@ -17,17 +17,17 @@ from suchus import flow
 from suchus.atlas import CASES
 from suchus.contestants import CONTESTANTS
 from suchus.core.errors import SuchusError
+from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.robot.gaits import GAITS
-from suchus.hardware import cases, loads_of_each
-from suchus.league import find
-from suchus.robot.motion import cycle_targets
 from suchus.experiments.optimise import READY
 from suchus.experiments.optimise.evaluate import evaluate
-from suchus.core.progress import silent
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study.chunk import run_chunk
 from suchus.experiments.study.claims import Claims
+from suchus.hardware import cases, loads_of_each
+from suchus.league import find
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import cycle_targets
+from suchus.robot.robots import ROBOTS
 from suchus.swim.water import fit, printed_wave
 
 Numbers = Mapping[str, float]

@@ -68,7 +68,8 @@ def run_experiment(name: str) -> dict[str, float]:
 
 def _experiment(name: str, of: str) -> Kept:
     return Kept(
-        name=name, modules=(f"suchus.experiments.catalog.{of}", "suchus.experiments.experiment"), probe=partial(probes.experiment, of),
+        name=name, modules=(f"suchus.experiments.catalog.{of}", "suchus.experiments.experiment"),
+        probe=partial(probes.experiment, of),
         renew=f"make renew NAME={name}", compute=partial(run_experiment, name),
     )  # fmt: skip
 
@@ -89,7 +90,10 @@ _OTHERS = (
     ),
     Kept(
         name="lifted_design",
-        modules=("suchus.experiments.catalog.crawl_stability", "suchus.experiments.catalog.displacement", "suchus.experiments.experiment"),
+        modules=(
+            "suchus.experiments.catalog.crawl_stability", "suchus.experiments.catalog.displacement",
+            "suchus.experiments.experiment",
+        ),
         probe=partial(probes.experiment, "displacement"), renew="python tools/lifted_design.py",
         of=("optimise_lifted",),
     ),
@@ -98,7 +102,8 @@ _OTHERS = (
         renew="suchus study claims --out out/claims && make renew NAME=claims",
     ),
     Kept(
-        name="verdicts", modules=("suchus.article.verdict",), renew="make reproduce && python tools/verdict_table.py out",
+        name="verdicts", modules=("suchus.article.verdict",),
+        renew="make reproduce && python tools/verdict_table.py out",
         of=("claims", *EXPERIMENTS),
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from suchus.robot.design import Robot, Servo, with_named_servos
 from suchus.core.errors import OutsideLimits
-from suchus.robot.gaits import GAITS, suits
 from suchus.hardware import ServoLoad, cases, check_loads, loads_of_each, overloaded, with_better
 from suchus.hardware.loads import AT_LIMIT, LoadCase, borne, cold, records_of_each
+from suchus.robot.design import Robot, Servo, with_named_servos
+from suchus.robot.gaits import GAITS, suits
 from suchus.robot.motion import Gait
 from suchus.robot.motors import motor
 

@@ -11,7 +11,7 @@ import suchus
 from suchus.core.files.provenance import syntax_of
 
 PACKAGE = Path(suchus.__file__).parent
-CATALOGS = ("control", "faults", "gaits", "metrics", "motors", "robots")
+CATALOGS = ("robot.control", "robot.gaits", "robot.motors", "robot.robots", "sim.faults", "sim.metrics")
 """Packages whose modules are loaded by name: who imports the package may reach all of them."""
 _DATA = (".toml", ".csv", ".npz")
 

@@ -16,7 +16,7 @@ from suchus.core.files import new_file
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "results"
-SHIPPED = {"claims": ROOT / "src" / "suchus" / "verdict" / "claims.json"}
+SHIPPED = {"claims": ROOT / "src" / "suchus" / "article" / "verdict" / "claims.json"}
 """Results whose numbers suchus itself reads: they stand in the package, and everything else about them here."""
 FORMAT = 1
 """Version of the files' schema."""

@@ -9,9 +9,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import suchus
-from suchus.sim.land import Run
 from suchus.experiments.optimise import Aim, Limit, Optimisation, optimise
 from suchus.experiments.study import Vary
+from suchus.sim.land import Run
 
 search = Optimisation(
     name="stride",

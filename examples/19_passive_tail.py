@@ -2,9 +2,9 @@
 
 import suchus
 from suchus.robot.control import Swimming
-from suchus.swim.coupling import simulate
 from suchus.robot.design import with_spring
 from suchus.sim.land.waters import Slice
+from suchus.swim.coupling import simulate
 from suchus.swim.water import swim_of
 
 robot = suchus.ROBOTS["floating_caiman"]

@@ -32,10 +32,10 @@ CHECKED = (
 assert not {*CHECKED} & {*sys.modules}, "imported before their shapes can be checked"
 install_import_hook(CHECKED, "first_calls.checked")  # jaxtyping's own option comes too late for us before its 0.3.6
 
+from suchus.experiments.catalog import EXPERIMENTS  # noqa: E402
+from suchus.experiments.experiment import Outcome  # noqa: E402
 from suchus.robot import blueprint  # noqa: E402
 from suchus.robot.design import Robot, crocodile  # noqa: E402
-from suchus.experiments.experiment import Outcome  # noqa: E402
-from suchus.experiments.catalog import EXPERIMENTS  # noqa: E402
 from suchus.robot.gaits import GAITS  # noqa: E402
 from suchus.robot.motion import Gait  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402

@@ -5,11 +5,11 @@ from typing import ClassVar
 import pytest
 import xarray as xr
 
+from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import AmbiguousName, IncompatibleRecord, InvalidDesign
+from suchus.core.progress import portion
 from suchus.experiments.experiment import Experiment, Measure, Measures, Simulated, estimated, ranged, silent, staged
 from suchus.robot.motion import Gait
-from suchus.core.progress import portion
-from suchus.article.verdict import Clause, Rule
 
 
 @dataclass(frozen=True)

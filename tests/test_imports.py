@@ -26,14 +26,21 @@ def test_what_walks_loads_no_flow_solver_and_a_swim_by_cfd_would_be_noticed():
 
     walking = [f"suchus.experiments.catalog.{name}.experiment" for name in EXPERIMENTS if name not in RESOLVED]
     assert "suchus.experiments.catalog.displacement.experiment" in walking
-    doors = ["suchus.visual.replay", "suchus.experiments.study", "suchus.experiments.optimise", "suchus.apps.envs", "suchus.apps.cli.view", "suchus.apps.viewer"]
+    doors = [
+        "suchus.visual.replay",
+        "suchus.experiments.study",
+        "suchus.experiments.optimise",
+        "suchus.apps.envs",
+        "suchus.apps.cli.view",
+        "suchus.apps.viewer",
+    ]
     walks, swims = flow_modules_after([*walking, *doors], ["suchus.experiments.catalog.swimming.experiment"])
     assert walks == "[]"
     assert "suchus.flow" in swims
 
 
 def test_to_save_a_record_loads_no_cluster(tmp_path):
-    code = "import sys, xarray, suchus.sim.record; suchus.core.files.save(xarray.Dataset({'a': 1.0}), sys.argv[1])"
+    code = "import sys, xarray, suchus.core.files; suchus.core.files.save(xarray.Dataset({'a': 1.0}), sys.argv[1])"
     code += "; print('distributed' in sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", code, str(tmp_path / "r.nc")], capture_output=True, text=True, check=True

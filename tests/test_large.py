@@ -9,16 +9,16 @@ import time
 import mujoco
 import pytest
 
-from suchus.core import large
 from suchus.apps.cli import main
 from suchus.apps.cli.entry import LEAST
+from suchus.core import large
 from suchus.core.errors import InvalidDesign, NoMemory
-from suchus.robot.gaits import GAITS
 from suchus.core.jobs import processes
+from suchus.experiments.study import read_study, run_chunk
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.land.extent import processor_seconds, record_bytes
-from suchus.robot.robots import ROBOTS
-from suchus.experiments.study import read_study, run_chunk
 
 CRAWL = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])
 STUDY = """

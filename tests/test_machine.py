@@ -15,9 +15,9 @@ import xarray as xr
 
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, OutsideLimits
-from suchus.core.jobs.store import MARK, Store
 from suchus.core.files import provenance
 from suchus.core.files.provenance import made_alike
+from suchus.core.jobs.store import MARK, Store
 
 LINUX = pytest.mark.skipif(
     (platform.machine(), platform.libc_ver()[0]) != ("x86_64", "glibc"), reason="portable arithmetic is for x86-64"

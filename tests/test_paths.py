@@ -16,25 +16,25 @@ from matplotlib.figure import Figure
 
 import suchus
 from suchus import GAITS, ROBOTS, atlas, hardware
-from suchus.robot import blueprint
-from suchus.experiments import optimise, study
-from suchus.core import files as record
-from suchus.apps import report
 from suchus.animals import capture as captures
-from suchus.swim.coupling import Swim
-from suchus.hardware.emulator import Server
+from suchus.apps import report
+from suchus.core import files as record
 from suchus.core.errors import SuchusError
-from suchus.visual.figures import places
-from suchus.visual.figures import save as save_figure
-from suchus.robot.gaits import gait_of
 from suchus.core.jobs import Store, conduct_sweep
-from suchus.league.page import standings_of
-from suchus.sim.model.export import export
-from suchus.sim.model.importing import import_robot
 from suchus.core.reading import read_bytes, read_mesh
-from suchus.visual.replay import save as save_replay
 from suchus.core.samples import sample
 from suchus.core.writing import keep
+from suchus.experiments import optimise, study
+from suchus.hardware.emulator import Server
+from suchus.league.page import standings_of
+from suchus.robot import blueprint
+from suchus.robot.gaits import gait_of
+from suchus.sim.model.export import export
+from suchus.sim.model.importing import import_robot
+from suchus.swim.coupling import Swim
+from suchus.visual.figures import places
+from suchus.visual.figures import save as save_figure
+from suchus.visual.replay import save as save_replay
 from wires import wiring
 
 ROOMS = (

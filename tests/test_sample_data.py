@@ -9,8 +9,8 @@ import pytest
 import suchus
 from suchus.animals.capture import observe, read_tracks
 from suchus.core.errors import UnknownName
-from suchus.sim.model.importing import import_robot
 from suchus.core.samples import SAMPLES
+from suchus.sim.model.importing import import_robot
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 from pages.blocks import blocks, follow

@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 import suchus
-from suchus.core import sources
-from suchus.robot.blueprint import read_gait
 from suchus.apps.cli import main
+from suchus.core import sources
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign, SuchusError, UnknownName, UnreadableFile
-from suchus.sim.faults import FAULTS, from_table
-from suchus.robot.gaits import GAITS, own_gait
 from suchus.core.jobs import processes
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study import MEASURES
+from suchus.robot.blueprint import read_gait
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import FAULTS, from_table
 
 TIRED = '''"""A servo without its strength."""
 
@@ -176,7 +176,7 @@ def test_our_own_errors_in_a_file_of_the_user_are_told_with_its_line(lab):
         (
             "robots/caiman.toml",
             SHORT,
-            r"there are two robots named 'caiman': suchus/robots/caiman.py and robots/caiman.toml",
+            r"there are two robots named 'caiman': suchus/robot/robots/caiman.py and robots/caiman.toml",
         ),
         ("robots/caiman.py", "", "there are two modules named 'caiman'"),
         ("robots/_plans.py", "", "there are two modules named '_plans'"),

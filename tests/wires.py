@@ -6,9 +6,9 @@ import numpy as np
 from tests.felt import felt
 
 from suchus.hardware.bus import FRAMINGS, Bus, BusPlace, straight
+from suchus.hardware.emulator import USUAL, Emulator, MemoryPort, Trouble
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period
-from suchus.hardware.emulator import USUAL, Emulator, MemoryPort, Trouble
 from suchus.robot.robots import ROBOTS
 
 

@@ -18,8 +18,8 @@ from pages.stated import keep
 from pages.stated import main as write_pages
 from suchus.atlas import CASES, GRIDS, ROWS, load_outcomes, published
 from suchus.core.errors import IncompatibleRecord, SuchusError
-from suchus.visual.figures.atlas import Entry, entries, write_atlas
 from suchus.core.writing import MANIFEST
+from suchus.visual.figures.atlas import Entry, entries, write_atlas
 
 DOCS = Path(__file__).parents[1] / "docs"
 

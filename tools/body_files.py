@@ -9,9 +9,9 @@ from suchus.robot import blueprint
 from suchus.robot.design import Robot, crocodile
 from suchus.robot.design.scale import scaled
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.model.export import export
 from suchus.sim.model.importing import import_robot
-from suchus.robot.robots import ROBOTS
 
 _CAIMAN: Robot = ROBOTS["caiman"]
 

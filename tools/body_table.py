@@ -22,17 +22,17 @@ from time import process_time
 from unittest import mock
 
 import gymnasium
-from evidence import store
 
 from body_files import FILES, write_files
-from suchus.robot import blueprint
+from evidence import store
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.apps.cli.entry import main as suchus
-from suchus.robot.design import Robot
-from suchus.robot.design.scale import coarse_step
 from suchus.apps.envs import TASKS
 from suchus.core.errors import SuchusError
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot import blueprint
+from suchus.robot.design import Robot
+from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import own_gait
 from suchus.robot.robots import ROBOTS
 

@@ -17,14 +17,14 @@ from matplotlib.figure import Figure
 from lighter import lighten
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.visual.figures import COLOURS, panels, styled
 from suchus.core.jobs import conduct_sweep
-from suchus.sim.land.prescribed import free_sections, held_sections, towed_sections
-from suchus.robot.motion import Gait
 from suchus.core.progress import Progress
+from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land.prescribed import free_sections, held_sections, towed_sections
 from suchus.swim.water import Outline, Water, fit, printed_wave, recoil
 from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.visual.figures import COLOURS, panels, styled
 from water_coefficients import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 
 ROBOT = ROBOTS["caiman"]

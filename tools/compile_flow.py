@@ -11,9 +11,9 @@ import sys
 import numpy as np
 
 from suchus import flow
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import wetting
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.robot.robots import ROBOTS
 
 
 def main(which: str) -> None:

@@ -10,20 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from evidence import store
 from matplotlib.figure import Figure
 
 import suchus
+from evidence import store
 from lighter import lighten
 from suchus.apps import envs
-from suchus.robot.design import with_values
 from suchus.experiments.catalog.bipedal_reach.figure import draw_side_views
 from suchus.experiments.catalog.displacement.figure import draw_crawls
-from suchus.visual.figures import COLOURS, dimension_drawing, panels, styled
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import displacement
 from suchus.experiments.optimise import READY
 from suchus.experiments.optimise.pictures import draw_gaits
+from suchus.robot.design import with_values
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement
+from suchus.visual.figures import COLOURS, dimension_drawing, panels, styled
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]

@@ -13,11 +13,11 @@ from typing import Any
 
 import xarray as xr
 
+from suchus.core.progress import silent
 from suchus.experiments.catalog.swimming.experiment import experiment
 from suchus.experiments.catalog.swimming.ladder import GRIDS, Climb, Swims, numbers_in_space, rules_digest, space_swims
-from suchus.core.progress import silent
 
-KEPT = Path(__file__).parents[1] / "src" / "suchus" / "experiments" / "swimming" / GRIDS
+KEPT = Path(__file__).parents[1] / "src" / "suchus" / "experiments" / "catalog" / "swimming" / GRIDS
 CELLS = (68, 80, 96)
 """Cells per body length, rising [-]."""
 

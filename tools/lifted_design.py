@@ -9,12 +9,12 @@ from string import Formatter
 from typing import Any
 
 from pages import stated
-from suchus.robot.design import Robot, with_values
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES
+from suchus.robot.design import Robot, with_values
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.experiments.claims import RULES
 
 NAME, SEARCH = "lifted_design", "optimise_lifted"
 ASKED = ("com_height_pp_change_tail_lifted", "com_height_pp_change", "forward_ratio_tail_lifted", "forward_ratio",

@@ -1,4 +1,4 @@
-"""Put the sizes of the rooms, and the processor time of the tests, into CONTRIBUTING.md. ``make sizes`` calls it.
+"""Put the sizes of the wings, and the processor time of the tests, into CONTRIBUTING.md. ``make sizes`` calls it.
 
 What a room is for is the first line of its docstring. The processor time is what the last ``make test`` from a fresh
 clone printed; where there was none in this checkout, the passage keeps what it says.
@@ -39,8 +39,8 @@ class Room(NamedTuple):
 
 
 def rooms() -> Iterator[Room]:
-    """Yield all rooms of the package, modules that stand alone last, and then the folders beside it."""
-    for name in sorted(code.rooms(), key=lambda name: (not (code.SOURCE / name).is_dir(), name)):
+    """Yield all wings of the package, and then the folders beside it."""
+    for name in code.wings():
         yield _room(name, code.SOURCE / name, code.about(name))
     for name, purpose in BESIDE.items():
         yield _room(f"{name}/", ROOT / name, purpose)
@@ -49,10 +49,10 @@ def rooms() -> Iterator[Room]:
 def table(found: list[Room]) -> str:
     """Return the rooms as a table with the sum of the package."""
     package = [room for room in found if not room.name.endswith("/")]
-    total = Room("**all rooms**", sum(room.files for room in package), sum(room.lines for room in package), "")
+    total = Room("**all wings**", sum(room.files for room in package), sum(room.lines for room in package), "")
     told = [*package, total, *found[len(package) :]]
     rows = [f"| {room.name} | {room.files} | {room.lines} | {room.purpose} |\n" for room in told]
-    return "| room | files | lines | what it is for |\n|---|---:|---:|---|\n" + "".join(rows)
+    return "| wing | files | lines | what it is for |\n|---|---:|---:|---|\n" + "".join(rows)
 
 
 def time_taken(seconds: int) -> str:

@@ -10,13 +10,13 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-from evidence import renew, store
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evidence import renew, store
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.visual.figures.style import COLOURS, styled
 from suchus.core.files import new_file
+from suchus.visual.figures.style import COLOURS, styled
 
 UNKNOWN = "-"
 """Value of ``theirs`` in a row without anything to compare with: its curves are drawn, and it is in no table."""
@@ -165,8 +165,8 @@ def page(rows: Sequence[Row], sources: Sequence[str] = ()) -> str:
         "# Validation of the flow solver", "",
         "Results of `suchus.flow` beside exact solutions, budgets that must close and required bounds. `make "
         "validate` runs every case (`tests/flow/test_validate_*.py`) and writes this page; every row is a run. Code "
-        "is how the hash of the solver's source began in that run, `suchus.core.files.code_digest(\"flow\")`: cases that "
-        "are run alone renew their own rows, and a row without a code is older than this rule. Comparisons with "
+        "is how the hash of the solver's source began in that run, `suchus.core.files.code_digest(\"flow\")`: cases "
+        "that are run alone renew their own rows, and a row without a code is older than this rule. Comparisons with "
         "published data are in the [atlas](atlas.md). [Limits](flow_limits.md) says what the rows mean, and where the "
         "solver falls short: a required bound that is not kept is marked.", "",
         "Grids are given in cells per diameter D or body length L. Re is the Reynolds number, Cd and Ci are the "

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from evidence import renew, store
-
 from pages.stated import elsewhere, kept, templates, wrapped
-from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES, counted
 from suchus.article.verdict import SHARES, TOO_FEW, judge, ladder
 from suchus.article.verdict.judging import fragile
+from suchus.core.errors import IncompatibleRecord
+from suchus.experiments.claims import RULES, counted
 
 ROOT = Path(__file__).parents[1]
 NAME = "verdicts"

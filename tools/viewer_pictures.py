@@ -20,14 +20,14 @@ from playwright.sync_api import Page, sync_playwright
 
 from lighter import lighten
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal
-from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.core.files import save
-from suchus.visual.replay import replay as replay_file
-from suchus.robot.robots import ROBOTS
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.pages import LivePage, ReplayPage, Viewer
 from suchus.apps.viewer.replay import beside, takes
+from suchus.core.files import save
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.visual.replay import replay as replay_file
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 SIZE = {"width": 1400, "height": 860}

@@ -10,12 +10,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot
 from suchus.core.checks import Course
+from suchus.robot.design import Robot
 from suchus.robot.design.water import Water
+from suchus.robot.motion import Gait
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.prescribed import held_sections
-from suchus.robot.motion import Gait
 
 QUANTITIES = ("thrust", "aside", "power")
 """What is compared over a cycle."""

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from pages import stated as pages
-from suchus.robot.design import layout
 from suchus.core.errors import OutsideLimits
+from suchus.robot.design import layout
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import cycle_targets, lateral_servos
 from suchus.robot.robots import ROBOTS

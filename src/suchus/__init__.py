@@ -8,10 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from suchus.core.catalog import Catalog as Catalog
-    from suchus.robot.control import CONTROLLERS as CONTROLLERS
-    from suchus.robot.control import Coordinated as Coordinated
-    from suchus.robot.control import HeadingRule as HeadingRule
-    from suchus.robot.design import Robot as Robot
     from suchus.core.errors import Diverged as Diverged
     from suchus.core.errors import IncompatibleRecord as IncompatibleRecord
     from suchus.core.errors import InvalidDesign as InvalidDesign
@@ -21,9 +17,20 @@ if TYPE_CHECKING:
     from suchus.core.errors import UnknownName as UnknownName
     from suchus.core.errors import Unreachable as Unreachable
     from suchus.core.errors import UnreadableFile as UnreadableFile
+    from suchus.core.samples import sample as sample
+    from suchus.core.sources import project as project
+    from suchus.experiments.catalog import EXPERIMENTS as EXPERIMENTS
     from suchus.experiments.experiment import Experiment as Experiment
     from suchus.experiments.experiment import Outcome as Outcome
-    from suchus.experiments.catalog import EXPERIMENTS as EXPERIMENTS
+    from suchus.experiments.study import MEASURES as MEASURES
+    from suchus.robot.control import CONTROLLERS as CONTROLLERS
+    from suchus.robot.control import Coordinated as Coordinated
+    from suchus.robot.control import HeadingRule as HeadingRule
+    from suchus.robot.design import Robot as Robot
+    from suchus.robot.gaits import GAITS as GAITS
+    from suchus.robot.motion import Gait as Gait
+    from suchus.robot.motion import swimming_gait as swimming_gait
+    from suchus.robot.robots import ROBOTS as ROBOTS
     from suchus.sim.fault import Fault as Fault
     from suchus.sim.faults import FAULTS as FAULTS
     from suchus.sim.faults import Backlash as Backlash
@@ -34,19 +41,12 @@ if TYPE_CHECKING:
     from suchus.sim.faults import Offset as Offset
     from suchus.sim.faults import Slow as Slow
     from suchus.sim.faults import Weak as Weak
-    from suchus.robot.gaits import GAITS as GAITS
     from suchus.sim.land import Ground as Ground
     from suchus.sim.land import Live as Live
     from suchus.sim.land import Push as Push
     from suchus.sim.land import Run as Run
     from suchus.sim.land import crawl as crawl
     from suchus.sim.land import simulate as simulate
-    from suchus.robot.motion import Gait as Gait
-    from suchus.robot.motion import swimming_gait as swimming_gait
-    from suchus.robot.robots import ROBOTS as ROBOTS
-    from suchus.core.samples import sample as sample
-    from suchus.core.sources import project as project
-    from suchus.experiments.study import MEASURES as MEASURES
     from suchus.swim.water import swim as swim
 
     __version__: str

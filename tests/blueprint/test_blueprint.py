@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.robot.blueprint import MistakenFile, read, render, write
 from suchus.robot.design import Robot, crocodile
-from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS

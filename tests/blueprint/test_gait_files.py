@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.robot.blueprint import MistakenFile, read_gait, write
 from suchus.core.errors import OutsideLimits, UnreadableFile
+from suchus.robot.blueprint import MistakenFile, read_gait, write
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import AxialWave, Bend, Curve, FootPath, Gait, GaitInMetres, Held, Sweep, cycle_targets
 from suchus.robot.motion.forms import GaitByPlaces

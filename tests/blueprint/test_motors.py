@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.core.errors import InvalidDesign, UnknownName, UnreadableFile
 from suchus.robot.blueprint import MistakenFile, read_motors, render
 from suchus.robot.design import LINE, Motor, Servo, Winding
 from suchus.robot.design.motor import COPPER, ROOM
-from suchus.core.errors import InvalidDesign, UnknownName, UnreadableFile
 from suchus.robot.motors import motor, motors
 
 WORDS = {"name", "maker", "family", "protocol", "protection", "sources"}

@@ -4,8 +4,8 @@ import pytest
 
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, observe
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import crawl as let_crawl
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import crawl as let_crawl
 
 
 @pytest.fixture(scope="session")

@@ -7,8 +7,8 @@ from suchus.animals.capture import Camera
 from suchus.animals.capture.angles import bend_angles
 from suchus.animals.capture.film import keypoints, tracked
 from suchus.animals.capture.retarget import driven_share
-from suchus.robot.design import joint_names
 from suchus.article.paper import BendAngles, to_joint_sums
+from suchus.robot.design import joint_names
 
 
 def posed(robot, crawl, bends):

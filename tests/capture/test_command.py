@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from suchus.robot import blueprint
 from suchus.animals.capture import Tracks, film, film_animal, write_table
 from suchus.apps.cli import main
+from suchus.robot import blueprint
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 

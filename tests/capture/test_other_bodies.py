@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.robot import blueprint
 from suchus.animals.capture import driven_share, film_animal, observe, to_gait, write_table
 from suchus.apps.cli import main
-from suchus.robot.design import hips_ahead, layout
 from suchus.core.errors import OutsideLimits, UnsuitedRobot
+from suchus.robot import blueprint
+from suchus.robot.design import hips_ahead, layout
 from suchus.robot.gaits import GAITS, own_gait
 from suchus.robot.motion import Gait, Held, check_limits, cycle_targets
 from suchus.robot.robots import ROBOTS

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from suchus.animals.capture import read_angles, to_curves
-from suchus.robot.design import layout
 from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.robot.design import layout
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot import blueprint
 from suchus.animals.capture import Camera, Walk, driven_share, film, film_animal, observe, to_gait, write_gait
 from suchus.animals.capture.film import keypoints
+from suchus.core.errors import UnsuitedRobot
+from suchus.robot import blueprint
 from suchus.robot.design import LEGS, layout
 from suchus.robot.design.scale import coarse_step
-from suchus.core.errors import UnsuitedRobot
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import crawl as let_crawl
-from suchus.sim.metrics import displacement
 from suchus.robot.motion import START, Gait, limb_reaches, movement
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import crawl as let_crawl
+from suchus.sim.metrics import displacement
 
 PHASE = 0.02  # [cycle]
 AMPLITUDE = 0.05

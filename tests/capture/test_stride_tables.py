@@ -21,12 +21,12 @@ from suchus.animals.capture import (
     to_gait,
     write_table,
 )
-from suchus.apps.cli import main
-from suchus.robot.design import LEGS
-from suchus.core.errors import UnreadableFile
 from suchus.animals.overlay import overlay
-from suchus.robot.gaits import GAITS
+from suchus.apps.cli import main
+from suchus.core.errors import UnreadableFile
 from suchus.core.files import load
+from suchus.robot.design import LEGS
+from suchus.robot.gaits import GAITS
 
 TURN = 0.06  # [rad per cycle]
 

@@ -31,7 +31,9 @@ def fakes(monkeypatch):
     yield
     path[:] = real
     vars(RULES).pop("_by_claim", None)
-    for name in [n for n in sys.modules if n in ("suchus.experiments.catalog.wave", "suchus.experiments.catalog.broken")]:
+    for name in [
+        n for n in sys.modules if n in ("suchus.experiments.catalog.wave", "suchus.experiments.catalog.broken")
+    ]:
         monkeypatch.delitem(sys.modules, name)
 
 

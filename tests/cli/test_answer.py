@@ -9,10 +9,10 @@ import pytest
 
 from suchus.apps.cli.entry import main
 from suchus.apps.cli.run import Performed, show_outcome
-from suchus.experiments.experiment import Measure, estimated
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.apps.report import answer, carried, quantity
 from suchus.apps.report.outcome_page import MOST
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Measure, estimated
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)

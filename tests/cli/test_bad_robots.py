@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from suchus.robot import blueprint
 from suchus.apps.cli import main
+from suchus.robot import blueprint
 from suchus.robot.robots import ROBOTS
 
 BODY = blueprint.render(replace(ROBOTS["caiman"]))  # part by part: a replaced robot is none of the tables

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.robot import blueprint
 from suchus.animals.capture import is_angle_table, read_angles
 from suchus.apps.cli.capture import capture
 from suchus.core.errors import UnknownName, UnsuitedRobot
+from suchus.core.files import load
+from suchus.robot import blueprint
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
-from suchus.core.files import load
 
 TABLE = Path(__file__).parent.parent / "data" / "animals" / "salamander_walking.csv"
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 import suchus.experiments.catalog
-from suchus.robot import blueprint
 from suchus.apps.cli import main
 from suchus.apps.cli.entry import COMMANDS
+from suchus.core.files import load
+from suchus.core.writing import MANIFEST
+from suchus.robot import blueprint
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
-from suchus.core.files import load
 from suchus.robot.robots import ROBOTS
-from suchus.core.writing import MANIFEST
 
 pytestmark = pytest.mark.usefixtures("fakes")
 FAKES = Path(__file__).parent / "fake_shelf"

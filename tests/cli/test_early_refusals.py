@@ -6,8 +6,8 @@ import sys
 import pytest
 
 HEAVY = {
-    "numpy", "scipy", "mujoco", "numba", "matplotlib", "xarray", "pandas", "tyro", "suchus.sim.land", "suchus.robot.control",
-    "suchus.sim.faults", "suchus.robot.design", "suchus.visual.figures", "suchus.flow",
+    "numpy", "scipy", "mujoco", "numba", "matplotlib", "xarray", "pandas", "tyro", "suchus.sim.land",
+    "suchus.robot.control", "suchus.sim.faults", "suchus.robot.design", "suchus.visual.figures", "suchus.flow",
 }  # fmt: skip
 LOADED = """
 import sys

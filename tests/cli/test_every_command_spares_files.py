@@ -24,14 +24,14 @@ from tests.wires import Obedient, wiring
 
 from suchus.apps.cli import calibrate, demo, drive, main, view
 from suchus.apps.cli.entry import COMMANDS
-from suchus.hardware.emulator import Emulator, MemoryPort
-from suchus.robot.gaits import GAITS
-from suchus.hardware import Rig, straight, write_map, write_wiring
-from suchus.sim.land import Run, simulate
-from suchus.league import SingleContestant
 from suchus.core.files import load, save
-from suchus.robot.robots import ROBOTS
 from suchus.core.writing import MANIFEST
+from suchus.hardware import Rig, straight, write_map, write_wiring
+from suchus.hardware.emulator import Emulator, MemoryPort
+from suchus.league import SingleContestant
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
 
 SLOW = "commands are repeated with each of their places taken"
 MOST = 12

@@ -11,13 +11,13 @@ from tests.swims import crocodile_swim
 
 from suchus.animals.capture import Camera, film_animal
 from suchus.apps.cli import main
-from suchus.core.errors import SuchusError
-from suchus.core.progress import silent
-from suchus.core.files import save
 from suchus.apps.report import OUTCOME, PAGE
+from suchus.core.errors import SuchusError
+from suchus.core.files import save
+from suchus.core.progress import silent
+from suchus.core.writing import MANIFEST
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
-from suchus.core.writing import MANIFEST
 
 sys.path[:0] = [str(Path(__file__).parents[1] / room) for room in ("model", "capture")]
 from hinge_trees import quadruped  # noqa: E402

@@ -8,9 +8,9 @@ import pytest
 
 from suchus.apps.cli.run import perform
 from suchus.core.errors import Unwritable
-from suchus.experiments.experiment import CONDUCT, silent
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.core.files.provenance import digest
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import CONDUCT, silent
 from suchus.robot.robots import ROBOTS
 
 run = sys.modules["suchus.apps.cli.run"]

@@ -9,9 +9,9 @@ import pytest
 
 from suchus.apps.cli import main
 from suchus.apps.cli.reproduce import Reproduction, attempt, kept
-from suchus.experiments.experiment import silent
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.apps.report import Result
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import silent
 
 origin = sys.modules["suchus.core.files.provenance"]
 

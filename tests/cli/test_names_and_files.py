@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from suchus.robot import blueprint
 from suchus.apps.cli import main, view
 from suchus.apps.cli.options import choose
 from suchus.core.errors import UnknownName, UnreadableFile
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.robot.gaits import GAITS, gait_of, own_gait
-from suchus.sim.land import Run
 from suchus.experiments.optimise.spec import read_optimisation
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study.page import read_study
+from suchus.robot import blueprint
+from suchus.robot.gaits import GAITS, gait_of, own_gait
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run
 
 STRIDER, TRIPOD = ROBOTS["strider"], GAITS["tripod"]
 STUDY = """

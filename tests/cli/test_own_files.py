@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from suchus.robot import blueprint
 from suchus.apps.cli import main
+from suchus.core.errors import InvalidDesign, UnreadableFile, Unwritable
+from suchus.core.writing import write
+from suchus.flow import checkpoint
+from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.design.segment import Rod, Shell
-from suchus.core.errors import InvalidDesign, UnreadableFile, Unwritable
-from suchus.flow import checkpoint
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water.samples import Samples
-from suchus.core.writing import write
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "model"))
 from hinge_trees import quadruped

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.core import files as record
 from suchus.apps.cli import main
+from suchus.core import files as record
 
 
 @pytest.fixture(scope="module")

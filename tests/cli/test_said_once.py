@@ -7,8 +7,8 @@ import pytest
 
 from suchus.apps.cli.run import perform
 from suchus.core.errors import Doubtful, plain_warnings
-from suchus.experiments.experiment import silent
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import silent
 
 pytestmark = pytest.mark.filterwarnings("always")
 

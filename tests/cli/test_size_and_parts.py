@@ -6,15 +6,15 @@ from math import inf, nan
 
 import pytest
 
-from suchus.robot.blueprint import read
 from suchus.apps.cli import main
-from suchus.robot.design import Robot, layout
-from suchus.robot.gaits import GAITS
+from suchus.apps.report.size_page import answer
 from suchus.hardware import cases
 from suchus.hardware.loads import ServoLoad
 from suchus.hardware.sizing import Sizing
+from suchus.robot.blueprint import read
+from suchus.robot.design import Robot, layout
+from suchus.robot.gaits import GAITS
 from suchus.robot.motors import motors
-from suchus.apps.report.size_page import answer
 from suchus.robot.robots import ROBOTS
 
 

@@ -1,12 +1,12 @@
 import pytest
 
 from suchus.apps.cli import main
-from suchus.robot.design import unit_at
 from suchus.core.errors import SuchusError
-from suchus.sim.land import Backlash, Limp, LostFoot, Offset, Slow, Weak
 from suchus.experiments.study import read_study
 from suchus.experiments.study.chunk import called
 from suchus.experiments.study.plan import Plan
+from suchus.robot.design import unit_at
+from suchus.sim.land import Backlash, Limp, LostFoot, Offset, Slow, Weak
 
 PAGE = """
 name = "grip"

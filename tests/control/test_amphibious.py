@@ -8,14 +8,14 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Sensed, Swimming
 from suchus.robot.control.holding import DepthHold
 from suchus.robot.design import layout
-from suchus.core.errors import InvalidDesign
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Lake, Run, simulate
 from suchus.robot.motion import LIMBS_UP, START
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Run, simulate
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 WAVE = crocodile_swim(limbs=LIMBS_UP)

@@ -8,14 +8,14 @@ from tests.felt import felt as feels
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.core.rotation import about
 from suchus.robot.control import DepthHold, HeadingHold, Swimming
 from suchus.robot.control.holding import Depths, Headings, neutral_air_fraction
 from suchus.robot.design import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
-from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.sim.land import Lake, Run, simulate
 from suchus.robot.robots import ROBOTS
-from suchus.core.rotation import about
+from suchus.sim.land import Lake, Run, simulate
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 WAVE = crocodile_swim()

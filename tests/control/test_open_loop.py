@@ -3,8 +3,8 @@ import pytest
 from tests.metres import limb_phase
 from tests.start_batch import start_batch
 
-from suchus.robot.control import Control, OpenLoop
 from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.control import Control, OpenLoop
 from suchus.robot.gaits import own_gait
 from suchus.robot.motion import as_table, cycle_targets, intended
 from suchus.robot.robots import ROBOTS

@@ -9,18 +9,18 @@ from tests.felt import felt
 from tests.start_batch import start_batch
 
 from suchus.animals.capture.angles import standing_index
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
 from suchus.robot.control import LAWS, Control, OpenLoop, Oscillators, PatternGenerator, SpineRule, TailRule
 from suchus.robot.control import oscillate as turned
 from suchus.robot.control.oscillators import AxisPart, Rhythm, couple, cut, steps_needed
 from suchus.robot.control.pattern_posture import axis_segments
 from suchus.robot.design import layout, servo_ranges
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import displacement
 from suchus.robot.motion import START, middle_stance
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement
 
 WALKERS = {
     "caiman": "belly_crawl",

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from tests.felt import felt as feels
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.control import LoadRule, PatternGenerator
 from suchus.robot.control.pattern_load import FeltDrive
 from suchus.robot.design import GRAVITY
-from suchus.core.errors import InvalidDesign
-from suchus.sim.land import Ground, Lake, Run, simulate
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Lake, Run, simulate
 
 ROBOT = ROBOTS["floating_caiman"]
 WEIGHT = ROBOT.mass * GRAVITY

@@ -9,6 +9,7 @@ from tests.felt import felt as feels
 from tests.metres import limb_phase, placed, tail_bend, trunk_bend, with_metres
 from tests.start_batch import start_batch
 
+from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.control import LAWS, OWNERS, Coordinated, HeadingRule, Kick, LimbLaw, OpenLoop, SpineRule, TailRule
 from suchus.robot.control.limbs import GRAVITY, Limbs
 from suchus.robot.control.shared import silence
@@ -16,11 +17,10 @@ from suchus.robot.control.spine import SpineController
 from suchus.robot.control.tail import TailController
 from suchus.robot.design import layout
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Run, simulate
 from suchus.robot.motion import START, Batch, cycle_targets
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
 
 TRUNK_YAW = list(layout(ROBOTS["caiman"]).trunk_yaw)
 (PITCH,) = layout(ROBOTS["caiman"]).tail_pitch

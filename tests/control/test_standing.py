@@ -8,16 +8,16 @@ from tests.metres import limb_phase, placed
 from tests.start_batch import start_batch
 
 import suchus
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.control.standing import BALANCE, Standing
 from suchus.robot.design import with_values
 from suchus.robot.design.scale import coarse_step, scaled
-from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.gaits import own_gait
 from suchus.robot.kinematics import leg as leg_kinematics
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics.reach import lead, reach
 from suchus.robot.motion.posture import plan
 from suchus.robot.motion.rising import stand_up, stretched
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics.reach import lead, reach
 
 CAIMAN, CRAWL = suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"]
 SOON = Standing(at=0.2, hold=4.0, blend=1.0)

@@ -11,14 +11,14 @@ from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
 from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import about
 from suchus.robot.control import DepthHold, PitchHold, Sensed, Swimming
 from suchus.robot.control.holding import neutral_air_fraction
 from suchus.robot.control.trim import Pitches
 from suchus.robot.design.pieces import chambers
-from suchus.core.errors import InvalidDesign
-from suchus.sim.land import Lake, Run, simulate
 from suchus.robot.robots import ROBOTS
-from suchus.core.rotation import about
+from suchus.sim.land import Lake, Run, simulate
 
 ROBOT, PERIOD = ROBOTS["floating_caiman"], 0.01
 IN_FOAM = replace(ROBOT, hull=replace(ROBOT.hull, chambers=()))

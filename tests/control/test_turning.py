@@ -3,12 +3,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.robot.control import CURVES, AttitudeRule, TurningCurve, turn
 from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.control import CURVES, AttitudeRule, TurningCurve, turn
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import START
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import heading_change, path_length
-from suchus.robot.motion import START
 
 CURVE = TurningCurve(bend=0.8, asymmetry=0.5, mixtures=(0.0, 0.5, 1.0), curvatures=(0.0, 1.0, 2.5))
 

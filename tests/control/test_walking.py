@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from tests.felt import felt as feels
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.control import AttitudeRule, Change, Control, OpenLoop, Runs, SwitchRule, Walking
 from suchus.robot.control.switching import Switcher
 from suchus.robot.design.ground import Bumps, Stone
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics import between, displacement, heading_change, tilt
-from suchus.robot.robots import ROBOTS
 
 
 def started(control, robot, gait):

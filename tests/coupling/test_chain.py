@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from suchus import flow
-from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
 from suchus.flow.momentum import Reaction
-from suchus.sim.model import compile_model, joint_addresses
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import compile_model, joint_addresses
+from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
 from suchus.swim.water import Outline
 
 NAMES = ("floating_caiman", "swimmer", "salamander")

@@ -10,21 +10,21 @@ from scipy.linalg import eigh
 
 import suchus
 from body_files import eight, giant, hatchling, six
+from suchus.core.errors import Diverged, Doubtful, InvalidDesign, UnknownName, UnreadableFile
+from suchus.core.fingerprint import fingerprint
+from suchus.core.progress import silent
 from suchus.robot.control import Swimming
 from suchus.robot.control.holding import HeadingHold
+from suchus.robot.design.scale import scaled
+from suchus.robot.motion import roll
+from suchus.sim.land import Ground, Lake, Push, Run
+from suchus.sim.land.stepper import Stepper
+from suchus.sim.land.waters import Sections, Slice, Space
+from suchus.sim.record import COUPLED, WATER
 from suchus.swim.coupling import Swim, check_on_joints, simulate
 from suchus.swim.coupling import swim as coupled
 from suchus.swim.coupling.chain import MidlineChain
 from suchus.swim.coupling.on_joints import floating
-from suchus.robot.design.scale import scaled
-from suchus.core.errors import Diverged, Doubtful, InvalidDesign, UnknownName, UnreadableFile
-from suchus.core.fingerprint import fingerprint
-from suchus.sim.land import Ground, Lake, Push, Run
-from suchus.sim.land.stepper import Stepper
-from suchus.sim.land.waters import Sections, Slice, Space
-from suchus.robot.motion import roll
-from suchus.core.progress import silent
-from suchus.sim.record import COUPLED, WATER
 from suchus.swim.water import Outline, swim_of
 from suchus.swim.water.resolved import check_resolved_swim
 from suchus.swim.water.setting import SwimSetting

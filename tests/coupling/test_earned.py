@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot import blueprint
 from suchus.robot.blueprint import MistakenFile, read_correction
 from suchus.robot.control import Swimming
-from suchus.swim.coupling.earned import ForceParts, judged, judgement_text
 from suchus.robot.design import LinkFactors, SectionCorrection, with_values
-from suchus.core.errors import InvalidDesign
+from suchus.robot.motion.axis import yaw_hinges
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.lake import lake_text
 from suchus.sim.land.prescribed import link_bodies, sections_along
-from suchus.robot.motion.axis import yaw_hinges
-from suchus.robot.robots import ROBOTS
+from suchus.swim.coupling.earned import ForceParts, judged, judgement_text
 from suchus.swim.water import swim_of
 
 TIME = np.arange(600) / 100.0

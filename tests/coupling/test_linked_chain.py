@@ -8,22 +8,22 @@ import pytest
 from body_files import eight, hatchling, rigid
 from suchus import flow
 from suchus.core import rotation
-from suchus.robot.control import OpenLoop, Swimming
-from suchus.swim.coupling import Swim, simulate
-from suchus.swim.coupling.chain import ChainState
-from suchus.swim.coupling.linked import LinkChain
-from suchus.swim.coupling.on_joints import floating
-from suchus.robot.design.pieces import volumes
 from suchus.core.errors import InvalidDesign
+from suchus.core.progress import silent
 from suchus.flow.momentum import Reaction
+from suchus.robot.control import OpenLoop, Swimming
+from suchus.robot.design.pieces import volumes
 from suchus.robot.gaits import own_gait
+from suchus.robot.motion import Curve, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
 from suchus.sim.land.links import RobotLinks
 from suchus.sim.land.waters import Slice, Space
 from suchus.sim.model import compile_model
-from suchus.robot.motion import Curve, Gait
-from suchus.core.progress import silent
-from suchus.robot.robots import ROBOTS
+from suchus.swim.coupling import Swim, simulate
+from suchus.swim.coupling.chain import ChainState
+from suchus.swim.coupling.linked import LinkChain
+from suchus.swim.coupling.on_joints import floating
 from suchus.swim.water import swim_of
 
 BODIES = ("floating_caiman", "swimmer", "strider", eight, hatchling)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.robot import blueprint
 from suchus.robot.design import (
     Cable,
@@ -23,7 +24,6 @@ from suchus.robot.design import (
 )
 from suchus.robot.design.body import servos_of
 from suchus.robot.design.scale import check_step, control_period, gravity_time, physics_step, scaled, servo_for
-from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 

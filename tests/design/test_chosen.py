@@ -1,7 +1,7 @@
 import pytest
 
-from suchus.robot.design import value_at, with_values
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.design import value_at, with_values
 from suchus.robot.gaits import CONDITIONS, GAITS
 from suchus.robot.robots import ROBOTS
 

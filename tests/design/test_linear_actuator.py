@@ -10,10 +10,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.robot import blueprint
-from suchus.robot.blueprint import MistakenFile
+from suchus.apps.report.building_sheet import write_parts
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.experiments.catalog.tail_bending import figure as pictures
+from suchus.experiments.catalog.tail_bending.experiment import TailBending, _cords
+from suchus.hardware import check_commands, commands, csv_text, ros, straight
 from suchus.hardware.bus import BusPlace
 from suchus.hardware.bus import straight as wired
+from suchus.hardware.limits import overloaded
+from suchus.hardware.loads import ServoLoad
+from suchus.hardware.parts import sheet
+from suchus.hardware.sizing import places
+from suchus.robot import blueprint
+from suchus.robot.blueprint import MistakenFile
 from suchus.robot.design import (
     LinearActuator,
     Robot,
@@ -25,21 +34,12 @@ from suchus.robot.design import (
     with_servos,
 )
 from suchus.robot.design.scale import scaled
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
-from suchus.experiments.catalog.tail_bending import figure as pictures
-from suchus.experiments.catalog.tail_bending.experiment import TailBending, _cords
 from suchus.robot.gaits import GAITS
-from suchus.hardware import check_commands, commands, csv_text, ros, straight
-from suchus.hardware.limits import overloaded
-from suchus.hardware.loads import ServoLoad
-from suchus.hardware.parts import sheet
-from suchus.hardware.sizing import places
 from suchus.robot.kinematics.tail import bend_of_servo, servo_angle
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.model.export.folder import _mjcf
 from suchus.sim.model.export.urdf import unsaid
-from suchus.apps.report.building_sheet import write_parts
-from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 EXAMPLE = Path(__file__).parents[2] / "examples" / "linear_tail.toml"

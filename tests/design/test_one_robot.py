@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import suchus
-from suchus.robot import blueprint
 from suchus.article import paper
+from suchus.core.errors import UnknownName, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot import blueprint
 from suchus.robot.design import (
     MEASURED,
     NEEDS,
@@ -26,8 +28,6 @@ from suchus.robot.design import (
     with_values,
 )
 from suchus.robot.design.scale import scaled
-from suchus.core.errors import UnknownName, UnsuitedRobot
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.robots import ROBOTS
 
 CAIMAN, STRIDER = ROBOTS["caiman"], ROBOTS["strider"]

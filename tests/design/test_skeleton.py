@@ -11,9 +11,9 @@ from suchus.robot.design.body import servos_of
 from suchus.robot.design.scale import scaled
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Run, Tolerances
 from suchus.robot.motion import Batch, intended, movement
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, Tolerances
 
 CAIMAN = ROBOTS["caiman"]
 SIZED = [*(ROBOTS[name] for name in ROBOTS), *(scaled(CAIMAN, length_factor=factor) for factor in (0.05, 4.0))]

@@ -7,8 +7,8 @@ import pytest
 
 import body_table as tool
 from body_files import FILES, write_files
-from suchus.robot.design import lacking
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.design import lacking
 from suchus.robot.robots import ROBOTS
 
 REFUSED = [(row, name) for row in EXPERIMENTS for name in ROBOTS if lacking(ROBOTS[name], EXPERIMENTS[row].needs)]

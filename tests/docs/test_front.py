@@ -70,7 +70,7 @@ def test_a_dead_link_is_noticed():
 
 def test_what_the_site_makes_pages_of_is_led_to_them():
     page = "[a](../results/verdicts.json#tail_swing) [b](../examples/04_kinematics.py) [c](../src/suchus/sim/metrics)"
-    assert links.built(page) == "[a](verdicts.md#tail_swing) [b](examples/04_kinematics.md) [c](api/metrics.md)"
+    assert links.built(page) == "[a](verdicts.md#tail_swing) [b](examples/04_kinematics.md) [c](api/sim.metrics.md)"
     assert {page.partition("#")[0] for page in links.MADE.values()} <= made()
     assert all((ROOT / "docs" / source).exists() for source in links.MADE)
 

@@ -10,8 +10,8 @@ from pages.code import exported, papers, rooms
 from pages.mathml import Formulas
 from pages.references import named
 from pages.stated import page as stated_page
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.paper import CLAIMS, ERRATA
+from suchus.experiments.catalog import EXPERIMENTS
 
 
 @pytest.mark.parametrize(

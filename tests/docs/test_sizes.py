@@ -23,7 +23,7 @@ def test_every_folder_with_python_is_a_room_or_stands_beside_them():
 
 def test_the_sum_is_that_of_the_rooms():
     told = table([Room("a", 2, 30, "A."), Room("b", 1, 5, "B."), Room("tests/", 9, 900, "T.")])
-    assert "| **all rooms** | 3 | 35 |  |\n| tests/ | 9 | 900 | T. |" in told
+    assert "| **all wings** | 3 | 35 |  |\n| tests/ | 9 | 900 | T. |" in told
 
 
 def test_the_processor_time_is_said_beside_what_is_allowed():

@@ -5,10 +5,10 @@ import pytest
 import verdict_table
 from pages import article
 from pages.stated import kept
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.paper import CLAIMS, ERRATA
-from suchus.experiments.claims import RULES
 from suchus.article.verdict.judging import WORDS
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES
 
 TABLE = kept(verdict_table.NAME)
 QUICKLY = ("gait_diagram", "leg_kinematics", "spine_kinematics", "tail_bending")

@@ -5,10 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.hardware.bus import BusPlace, straight
-from suchus.robot.control import OpenLoop
-from suchus.robot.design import layout
-from suchus.hardware.emulator import EmulatedBody, Trouble, body
 from suchus.experiments.catalog.rehearsal.experiment import (
     ENOUGH,
     LOSES,
@@ -18,10 +14,14 @@ from suchus.experiments.catalog.rehearsal.experiment import (
     rehearse,
     sent_directly,
 )  # fmt: skip
+from suchus.hardware.bus import BusPlace, straight
+from suchus.hardware.emulator import EmulatedBody, Trouble, body
+from suchus.robot.control import OpenLoop
+from suchus.robot.design import layout
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Lake, crawl
 from suchus.robot.motion import START, intended
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, crawl
 
 ROBOT, GAIT = ROBOTS["caiman"], GAITS["belly_crawl"]
 TICKS = 130

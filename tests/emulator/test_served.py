@@ -12,10 +12,10 @@ import pytest
 from tests.hardware.test_drive import GAIT, REST, ROBOT
 from tests.wires import Obedient, wiring
 
-from suchus.hardware.bus import FRAMINGS, Bus, BusGone, FilePort, open_port
-from suchus.hardware.emulator import Emulator, Server, Trouble
 from suchus.core.errors import BusFailure, InvalidDesign, Unwritable
 from suchus.hardware import BusClock, DriveSettings, Rig, drive
+from suchus.hardware.bus import FRAMINGS, Bus, BusGone, FilePort, open_port
+from suchus.hardware.emulator import Emulator, Server, Trouble
 
 pytest.importorskip("serial", reason="the extra hardware is not installed")
 SOON = 2.0

@@ -16,17 +16,17 @@ from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode  # noqa: E402
 
 from suchus.apps import envs  # noqa: E402
-from suchus.core import rotation  # noqa: E402
-from suchus.robot.design import LINE, layout, leg_joints, servo_names, with_values  # noqa: E402
-from suchus.robot.design.scale import scaled  # noqa: E402
 from suchus.apps.envs.pack import Pack, draw  # noqa: E402
 from suchus.apps.envs.task import Terms  # noqa: E402
+from suchus.core import rotation  # noqa: E402
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
-from suchus.sim.faults import Locked, Weak  # noqa: E402
+from suchus.robot.design import LINE, layout, leg_joints, servo_names, with_values  # noqa: E402
+from suchus.robot.design.scale import scaled  # noqa: E402
 from suchus.robot.gaits import GAITS, own_gait  # noqa: E402
 from suchus.robot.motion import intended  # noqa: E402
 from suchus.robot.motion.rising import stretched  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
+from suchus.sim.faults import Locked, Weak  # noqa: E402
 
 CRAWL, STAND, FAULT = (envs.TASKS[name] for name in ("Crawl", "Stand", "Fault"))
 DOCS = Path(__file__).parents[2] / "docs" / "environments.md"

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 
 import suchus.apps.envs
-from suchus.swim.coupling import Swim
-from suchus.robot.design import layout
 from suchus.apps.envs import CrocodileEnv, CrocodileVectorEnv, Landing
 from suchus.apps.envs.pack import Pack
 from suchus.apps.envs.shelf import chosen
 from suchus.core.errors import Diverged, InvalidDesign, UnknownName
+from suchus.robot.design import layout
 from suchus.sim.land import Lake
 from suchus.sim.land.waters import Slice, Space
+from suchus.swim.coupling import Swim
 
 WATER = Slice(cells=40, reynolds=600.0)
 ASKED = {"robot": "swimmer", "water": WATER}

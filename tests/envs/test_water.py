@@ -10,14 +10,14 @@ from scipy.spatial.transform import Rotation
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed: pip install suchus[gym]")
 
 from suchus.apps import envs  # noqa: E402
-from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming  # noqa: E402
 from suchus.apps.envs.pack import Pack  # noqa: E402
 from suchus.apps.envs.senses import felt  # noqa: E402
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName  # noqa: E402
-from suchus.sim.land import Ground, Lake, Wave  # noqa: E402
-from suchus.sim.land.lake import up  # noqa: E402
+from suchus.robot.control import Amphibious, HeadingHold, HeadingRule, Swimming  # noqa: E402
 from suchus.robot.motion import cycle_targets  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
+from suchus.sim.land import Ground, Lake, Wave  # noqa: E402
+from suchus.sim.land.lake import up  # noqa: E402
 
 SWIM, SHORE = envs.TASKS["Swim"], envs.TASKS["Shore"]
 NEAR = envs.Goal(distance=0.4, within=0.1, bearing=0.3)

@@ -137,9 +137,9 @@ def test_a_comment_in_every_module_makes_no_result_old(package):
 @pytest.mark.parametrize(
     ("file", "before", "after", "old"),
     [
-        ("robots/caiman.py", "        kp=40.0,\n", "        kp=28.0,\n", ["gallop_limits", "turning"]),
+        ("robot/robots/caiman.py", "        kp=40.0,\n", "        kp=28.0,\n", ["gallop_limits", "turning"]),
         (
-            "metrics/progress.py",
+            "sim/metrics/progress.py",
             "return com.isel(time=-1) - com",
             "return com.isel(time=9) - com",
             ["gallop_limits", "salamander"],

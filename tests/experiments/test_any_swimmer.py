@@ -6,15 +6,15 @@ from math import isfinite
 import pytest
 
 from body_files import eight, giant, hatchling, imported_quadruped, six
-from suchus.robot.control import LoadRule, PatternGenerator
-from suchus.robot.design import check_needs, lacking
 from suchus.core.errors import UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free.experiment import _motions, _steered
+from suchus.robot.control import LoadRule, PatternGenerator
+from suchus.robot.design import check_needs, lacking
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Lake, Run, simulate
 from suchus.robot.motion import START, check_speeds, still, suits
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Run, simulate
 from suchus.swim.water import swim_of
 
 AXIAL = [*(name for name in ROBOTS if not lacking(ROBOTS[name], ["axis"])), eight, giant, hatchling, six]

@@ -8,14 +8,14 @@ import pytest
 from tests.bodies import eel, eight, hatchling, six
 
 from body_files import giant
-from suchus.robot import blueprint
 from suchus.apps.cli.entry import main
 from suchus.apps.cli.options import choose
 from suchus.apps.cli.run import moves
-from suchus.robot.design import NEEDS, lacking, layout
-from suchus.robot.design.scale import coarse_step, control_period
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot import blueprint
+from suchus.robot.design import NEEDS, lacking, layout
+from suchus.robot.design.scale import coarse_step, control_period
 from suchus.robot.gaits import DRAFTED, GAITS, conditions_of, own_gait, suits
 from suchus.robot.robots import ROBOTS
 

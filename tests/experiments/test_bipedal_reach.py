@@ -5,11 +5,11 @@ import pytest
 import xarray as xr
 from tests.bodies import eight, six
 
-from suchus.robot.design import lacking, with_values
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.bipedal_reach.experiment import least_lead
 from suchus.experiments.catalog.bipedal_reach.figure import draw_limits, draw_side_views
+from suchus.robot.design import lacking, with_values
 from suchus.robot.motion.rising import cantilever_torque, stretched
 from suchus.robot.robots import ROBOTS
 

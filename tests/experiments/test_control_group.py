@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from suchus.apps.cli.options import choose
-from suchus.robot.design import layout
 from suchus.core.errors import OutsideLimits
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.design import layout
 from suchus.robot.gaits import GAITS, control_group, own_gait
 from suchus.robot.motion import as_table, cycle_targets, suits
 from suchus.robot.robots import ROBOTS

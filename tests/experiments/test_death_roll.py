@@ -6,14 +6,14 @@ import pytest
 import xarray as xr
 from tests.bodies import eel, six
 
-from suchus.robot.control import OpenLoop
-from suchus.robot.design import crocodile, layout
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
-from suchus.sim.metrics import roll_angle, roll_rate
+from suchus.robot.control import OpenLoop
+from suchus.robot.design import crocodile, layout
 from suchus.robot.motion import Held, intended, roll
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
+from suchus.sim.metrics import roll_angle, roll_rate
 
 CAIMAN = ROBOTS["caiman"]
 BOTH = (radians(50), radians(50))

@@ -11,8 +11,8 @@ from jinja2 import nodes
 import suchus.experiments.catalog
 from evidence import store
 from suchus.core.errors import BrokenFile, InvalidDesign
-from suchus.experiments.experiment import EXPLANATION, Experiment, templates
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import EXPLANATION, Experiment, templates
 
 """Measures of full forms, by experiment: those of a question's options that no quick form takes among them."""
 ASKED_FOR = {

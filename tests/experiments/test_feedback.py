@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
 from suchus.experiments.catalog.feedback.experiment import ARMS, STARTS, _loop_measures, experiment
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
 from suchus.sim.land import Limp, Locked, Run, simulate
 from suchus.sim.metrics import displacement, heading
 from suchus.sim.metrics.coordination import cycles_until, phase_error

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import layout
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog.gallop_limits.experiment import GallopLimits, _first, experiment, fastest
 from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS
-from suchus.sim.metrics import flight_share
+from suchus.robot.design import layout
 from suchus.robot.motion import START, cycle_targets
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import flight_share
 
 SPEEDS = np.array([7.0, 14.0, 28.0])
 

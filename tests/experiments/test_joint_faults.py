@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import servo_names
+from suchus.article.paper import CLAIMS
+from suchus.article.verdict import between
 from suchus.core.errors import Diverged
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES
+from suchus.robot.design import servo_names
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import cycle_targets, movement
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import FAILED_JOINTS, KINDS, LEGS_FAILED, Limp, Locked, Run, angle_at, joint_failure, simulate
 from suchus.sim.metrics import displacement, loss, swing_lift, swing_loads, whole
-from suchus.robot.motion import cycle_targets, movement
-from suchus.article.paper import CLAIMS
-from suchus.robot.robots import ROBOTS
-from suchus.experiments.claims import RULES
-from suchus.article.verdict import between
 
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]

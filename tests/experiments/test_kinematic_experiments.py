@@ -6,18 +6,18 @@ import pytest
 from matplotlib.figure import Figure
 from tests.metres import with_metres
 
-from suchus.robot.design import crocodile
+from suchus.article.verdict import judge
 from suchus.core.errors import OutsideLimits
-from suchus.experiments.experiment import Outcome
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.leg_kinematics.experiment import _SHOWN as LEG_SHOWN
 from suchus.experiments.catalog.spine_kinematics.experiment import _SHOWN as SPINE_SHOWN
-from suchus.visual.figures import caption, save
+from suchus.experiments.experiment import Outcome
+from suchus.robot.design import crocodile
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics import leg, spine
 from suchus.robot.motion import suits
 from suchus.robot.robots import ROBOTS
-from suchus.article.verdict import judge
+from suchus.visual.figures import caption, save
 
 MODULES = {name: EXPERIMENTS[name] for name in ("leg_kinematics", "spine_kinematics", "tail_bending")}
 

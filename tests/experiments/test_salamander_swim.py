@@ -9,17 +9,17 @@ import pytest
 import xarray as xr
 
 import suchus.contestants
-from suchus.robot.design import WATER_DENSITY, layout
-from suchus.robot.design.pieces import volumes
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.salamander_swim import own_size
 from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, STRIDE, envelope, played
 from suchus.experiments.catalog.salamander_swim.rules import LADDER
+from suchus.robot.design import WATER_DENSITY, layout
+from suchus.robot.design.pieces import volumes
 from suchus.robot.kinematics.tree import landmarks
-from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.robot.motion import check_limits, cycle_targets
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swim.water import MODELS, Outline, Water, cruise
 
 CATSHARK = Path(suchus.contestants.__file__).parent / "data" / "catshark_midlines.csv"

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.article.verdict.judging import Share
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.sensitivity import experiment as sensitivity
-from suchus.robot.gaits import GAITS
 from suchus.experiments.study import Claims, Plan
 from suchus.experiments.study.claim_measures import RUNS, asked_rules
-from suchus.article.verdict.judging import Share
+from suchus.robot.gaits import GAITS
 
 FULL = EXPERIMENTS["sensitivity"]
 

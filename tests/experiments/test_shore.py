@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.control import OpenLoop
 from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import about, rotate
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.shore import experiment as shore
 from suchus.experiments.catalog.shore.figure import _obliquely, draw_decides, levelled, posture_times
+from suchus.robot.control import OpenLoop
 from suchus.sim.land import Ground, simulate
 from suchus.sim.record import ground_text
-from suchus.core.rotation import about, rotate
 
 SHORE = EXPERIMENTS["shore"]
 

@@ -11,8 +11,8 @@ from tests.swims import crocodile_swim
 from evidence import store
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free import submerged
-from suchus.sim.land import Lake
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake
 
 ROBOT, LAKE = ROBOTS["floating_caiman"], Lake(level=2.0)
 SWIM = crocodile_swim(yaw=(0.1, 0.2, 0.3), yaw_lag=(0.0, 0.0, 0.0), tail=0.5, tail_lag=0.0)

@@ -8,24 +8,24 @@ import pytest
 import xarray as xr
 
 from suchus import flow
-from suchus.core import large
 from suchus.apps.cli import main
-from suchus.swim.coupling.on_joints import floating
-from suchus.robot.design import layout, with_values
-from suchus.robot.design.pieces import pieces
+from suchus.core import large
 from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog._taken import TAKEN, TakenMidline
 from suchus.experiments.catalog.swim_3d.experiment import AS_COMMANDED, with_midlines
 from suchus.experiments.catalog.swim_3d.figure import draw_tails
-from suchus.visual.figures import caption
+from suchus.robot.design import layout, with_values
+from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water_table import column
-from suchus.sim.land.afloat import floats
-from suchus.core.progress import silent
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land.afloat import floats
+from suchus.swim.coupling.on_joints import floating
 from suchus.swim.water import Outline, displaced, fit, printed_wave, undulation
 from suchus.swim.water.immersed import folded, half_heights, trunk
 from suchus.swim.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
+from suchus.visual.figures import caption
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait
@@ -252,7 +252,9 @@ def test_a_robot_that_sinks_gets_the_foam_that_carries_it_and_others_stay_as_the
 
 
 def test_the_midlines_are_asked_for_only_if_they_are_to_swim(monkeypatch):
-    monkeypatch.setattr("suchus.experiments.catalog.swim_3d.experiment.midlines", lambda *given: pytest.fail("nobody asked"))
+    monkeypatch.setattr(
+        "suchus.experiments.catalog.swim_3d.experiment.midlines", lambda *given: pytest.fail("nobody asked")
+    )
     monkeypatch.setattr("suchus.experiments.catalog.swim_3d.experiment.check_resolved_swim", _stopped)
     with pytest.raises(KeyboardInterrupt):
         ASKED.quick().run()

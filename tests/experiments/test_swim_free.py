@@ -8,18 +8,18 @@ import xarray as xr
 from tests.start_batch import start_batch
 from tests.swims import crocodile_swim
 
-from suchus.robot.control import Swimming
-from suchus.robot.design import GRAVITY
 from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import about
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free.experiment import _ends, _radius, _speed, _uneven
 from suchus.experiments.catalog.swim_free.figure import draw_below
 from suchus.experiments.catalog.swim_free.flow_figure import _fins
 from suchus.experiments.catalog.swim_free.in_flow import fins, passive_joints
 from suchus.experiments.catalog.swim_free.submerged import DEEP
+from suchus.robot.control import Swimming
+from suchus.robot.design import GRAVITY
 from suchus.robot.motion import LIMBS_UP, intended
 from suchus.robot.robots import ROBOTS
-from suchus.core.rotation import about
 
 SWIM = crocodile_swim(yaw=(0.1, 0.2, 0.3), yaw_lag=(0.0, 0.0, 0.0), tail=0.5, tail_lag=0.0, limbs=LIMBS_UP)
 

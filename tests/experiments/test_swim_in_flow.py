@@ -6,16 +6,23 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.blueprint import read_correction, write
-from suchus.robot.control import Swimming
-from suchus.swim.coupling import Swim
-from suchus.robot.design import LinkFactors, SectionCorrection
 from suchus.core.errors import Doubtful, InvalidDesign, UnreadableFile
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.swim_free.in_flow import fin_runs, flow_speed, nearer, residual_text, speeds_beside, water_of
+from suchus.experiments.catalog.swim_free.in_flow import (
+    fin_runs,
+    flow_speed,
+    nearer,
+    residual_text,
+    speeds_beside,
+    water_of,
+)
+from suchus.robot.blueprint import read_correction, write
+from suchus.robot.control import Swimming
+from suchus.robot.design import LinkFactors, SectionCorrection
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
 from suchus.sim.land.waters import Slice, Space
-from suchus.robot.robots import ROBOTS
+from suchus.swim.coupling import Swim
 from suchus.swim.water import swim_of
 
 

@@ -8,13 +8,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.article.verdict import judge
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, OutsideLimits, UnreadableFile, Unwritable
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swimming import ladder
-from suchus.experiments.catalog.swimming.ladder import FEWEST, MOTIONS, Settled, climbed, kept_grids, measures, motions, settle
+from suchus.experiments.catalog.swimming.ladder import (
+    FEWEST,
+    MOTIONS,
+    Settled,
+    climbed,
+    kept_grids,
+    measures,
+    motions,
+    settle,
+)
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SETTLED
 from suchus.robot.robots import ROBOTS
-from suchus.article.verdict import judge
 from suchus.swim.water.field_samples import COURSE, TICKS
 
 CYCLES = 10

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.article.paper import ERRATA
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_sweep.figure import draw_maps
 from suchus.experiments.catalog.swimming.experiment import ARMS, PlaneSwims
-from suchus.article.paper import ERRATA
 from suchus.swim.water import fit, printed_wave, swim
 
 

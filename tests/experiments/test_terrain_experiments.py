@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import layout
-from suchus.robot.design.ground import STONE, Bumps, Step, Stone
-from suchus.robot.design.servos import with_full_torque, with_named_servos, with_servos
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.speed_range.experiment import _UNITS, _models, _with_other
 from suchus.experiments.catalog.terrain.experiment import SINGLE, _met
+from suchus.robot.design import layout
+from suchus.robot.design.ground import STONE, Bumps, Step, Stone
+from suchus.robot.design.servos import with_full_torque, with_named_servos, with_servos
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Ground, Run, simulate
 from suchus.robot.motion import hip_height
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Run, simulate
 
 
 @pytest.fixture(scope="module")

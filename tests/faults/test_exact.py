@@ -8,9 +8,9 @@ import pytest
 from suchus.robot.control import Command
 from suchus.robot.design import GRAVITY, servo_names
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
 from suchus.robot.motion import movement
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import VACUUM, Backlash, Ground, LostFoot, Offset, Run, Slow, simulate
 
 CAIMAN, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 LYING = tuple(

@@ -9,16 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.robot.control import LAWS, Command, Coordinated
 from suchus.robot.design import crocodile, servo_names
-from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.faults import FAULTS, Backlash, Limp, Locked, Offset, Slow, from_table, numbers
-from suchus.robot.gaits import GAITS
 from suchus.sim.land import Live, Run, simulate
 from suchus.sim.land.batch import SimulationBatch
 from suchus.sim.land.injector import Injector
-from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 GAIT = replace(GAITS["belly_crawl"], period=1.0)

@@ -6,8 +6,8 @@ from matplotlib.path import Path
 from tests.bodies import eight
 
 from suchus.robot.design import joint_names
-from suchus.visual.figures.silhouette import silhouette
 from suchus.robot.robots import ROBOTS
+from suchus.visual.figures.silhouette import silhouette
 from suchus.visual.skin import poses, skin
 
 STILL = np.array([1.0, 0.0, 0.0, 0.0])

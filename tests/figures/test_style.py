@@ -7,6 +7,7 @@ import pytest
 
 from body_files import imported_quadruped
 from suchus.robot.design import behind_hips
+from suchus.robot.robots import ROBOTS
 from suchus.visual.figures import (
     COLOURS,
     LINES,
@@ -20,7 +21,6 @@ from suchus.visual.figures import (
     save,
     styled,
 )
-from suchus.robot.robots import ROBOTS
 
 
 def picture():

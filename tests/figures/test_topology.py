@@ -2,12 +2,12 @@
 
 from matplotlib.text import Annotation, Text
 
+from suchus.experiments.catalog.feedback.figure import draw_topology
 from suchus.robot.control import LAWS, Coordinated
 from suchus.robot.control.shared import OWNERS
 from suchus.robot.control.topology import topology
-from suchus.experiments.catalog.feedback.figure import draw_topology
-from suchus.visual.figures import caption
 from suchus.robot.gaits import GAITS
+from suchus.visual.figures import caption
 
 
 def parts(robot, **rules):

@@ -19,10 +19,10 @@ import mujoco
 import numpy as np
 
 from suchus import flow
-from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
-from suchus.flow import checkpoint as store
-from suchus.swim.water.outline import BodySilhouette
 from suchus.core.writing import keep
+from suchus.flow import checkpoint as store
+from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swim.water.outline import BodySilhouette
 
 WATER = 1000.0
 """Density of the water [kg/m3]."""

@@ -14,8 +14,8 @@ from flow_cases import still_setup
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.core import fingerprint as prints
 from suchus import flow
+from suchus.core import fingerprint as prints
 from suchus.core.errors import UnreadableFile
 from suchus.core.fingerprint import fingerprint
 from suchus.flow.checkpoint import MARK, arrays

@@ -14,11 +14,11 @@ from validation_rows import note
 
 from pages.stated import keep, kept
 from suchus import flow
+from suchus.core.progress import silent
 from suchus.experiments.catalog.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.core.progress import silent
 from suchus.swim.water import setting
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
 

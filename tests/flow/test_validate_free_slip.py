@@ -15,10 +15,10 @@ from test_friction import lamb, meridian
 from validation_rows import note
 
 from suchus import flow
-from suchus.robot.design.water import Water
 from suchus.flow import simulation
 from suchus.flow.compiled import PAD
 from suchus.flow.friction import FrictionBand, along_stations
+from suchus.robot.design.water import Water
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water import Outline, cycle, fit, printed_wave, recoil, resolved
 from suchus.swim.water.sections import coefficients

@@ -13,15 +13,15 @@ from validation_rows import note
 
 import suchus
 from suchus import flow
-from suchus.robot.control import Swimming
-from suchus.swim.coupling import Swim
-from suchus.swim.coupling.chain import ChainState, Way
-from suchus.robot.design.scale import scaled
+from suchus.core.progress import silent
 from suchus.flow.added import generalised_added_mass
 from suchus.flow.twist import Twists, joined, none
+from suchus.robot.control import Swimming
+from suchus.robot.design.scale import scaled
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Slice
-from suchus.core.progress import silent
+from suchus.swim.coupling import Swim
+from suchus.swim.coupling.chain import ChainState, Way
 from suchus.swim.water import swim_of
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]

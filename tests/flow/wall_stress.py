@@ -35,6 +35,7 @@ import numba
 import numpy as np
 
 from suchus import flow
+from suchus.core.writing import keep
 from suchus.flow import body as bodies_of
 from suchus.flow import simulation
 from suchus.flow.compiled import PAD
@@ -43,7 +44,6 @@ from suchus.flow.immerse import fill_source
 from suchus.flow.nest import Nested
 from suchus.flow.solid import SpaceField, SpaceShape
 from suchus.flow.water import Fluid
-from suchus.core.writing import keep
 
 GAP = 2.0
 """Distance from the skin at which the water outside the layer is read, beyond kernel and offset of the wall [cells]."""

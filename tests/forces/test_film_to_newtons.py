@@ -9,21 +9,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, driven_share, film, film_animal, observe
-from suchus.apps.cli import main
-from suchus.robot.control import Swimming
-from suchus.robot.design import GRAVITY
-from suchus.robot.design.pieces import volumes
-from suchus.core.errors import InvalidDesign, UnknownName
-from suchus.visual.figures.forces import ground_forces_figure, water_forces_figure
 from suchus.animals.forces import Unknown, said, walked_forces
 from suchus.animals.forces.body import Quantities, drawn, errors, unsure, widened
 from suchus.animals.forces.water import THICK, _shared, _spread, _Swum, swum_forces
+from suchus.apps.cli import main
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.control import Swimming
+from suchus.robot.design import GRAVITY
+from suchus.robot.design.pieces import volumes
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import START, swimming_gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, crawl, simulate
 from suchus.sim.metrics import mean_cycle
 from suchus.sim.metrics.foot_forces import PARTS, Window, stance_forces
-from suchus.robot.motion import START, swimming_gait
-from suchus.robot.robots import ROBOTS
+from suchus.visual.figures.forces import ground_forces_figure, water_forces_figure
 
 FEW = Unknown(draws=3)
 ABOVE = Camera(rate=50.0, noise=0.0005, lost=0.0, heading=0.4, scale=None, heights=False, seed=1)

@@ -26,23 +26,37 @@ import xarray as xr
 from hostile import Range, Silent, commands, damaged, finite, foreign_records, judge, records
 
 import suchus
-from suchus.robot import blueprint
 from suchus.animals.capture import Tracks, film_animal, observe
 from suchus.animals.capture.film import Camera
 from suchus.apps.cli import main
+from suchus.apps.viewer.replay import takes
+from suchus.core.errors import Diverged, SuchusError
+from suchus.core.files import save
+from suchus.core.jobs.store import Store
+from suchus.core.kernel_cache import SealedFiles
+from suchus.experiments.optimise import READY, read_optimisation
+from suchus.experiments.study import Plan, read_study
+from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout, servo_names
 from suchus.robot.design.ground import Bumps, Step, Stone
 from suchus.robot.design.scale import scaled
-from suchus.core.errors import Diverged, SuchusError
-from suchus.core.jobs.store import Store
-from suchus.core.kernel_cache import SealedFiles
-from suchus.sim.land import Backlash, Deaf, Ground, Lake, Limp, Locked, LostFoot, Offset, Push, Run, Slow, Weak, simulate
-from suchus.sim.model.importing import Words, import_robot
 from suchus.robot.motion import check_limits, draft_gait
-from suchus.experiments.optimise import READY, read_optimisation
-from suchus.core.files import save
-from suchus.experiments.study import Plan, read_study
-from suchus.apps.viewer.replay import takes
+from suchus.sim.land import (
+    Backlash,
+    Deaf,
+    Ground,
+    Lake,
+    Limp,
+    Locked,
+    LostFoot,
+    Offset,
+    Push,
+    Run,
+    Slow,
+    Weak,
+    simulate,
+)
+from suchus.sim.model.importing import Words, import_robot
 
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "model"), str(ROOT / "tests" / "capture")]

@@ -23,25 +23,25 @@ import numpy as np
 import xarray as xr
 
 import suchus
-from suchus.robot import blueprint, kinematics
 from suchus import flow
 from suchus.animals.capture import observe, read_tracks
 from suchus.animals.capture.tracks import NEEDED
 from suchus.apps.cli import main
 from suchus.apps.cli.entry import COMMANDS
-from suchus.robot.design import Robot, layout, servo_names, value_at, with_values
-from suchus.core.errors import OutsideLimits, SuchusError
-from suchus.hardware import read_map, straight, write_map
-from suchus.core.jobs.store import Store
-from suchus.sim.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
-from suchus.robot.motion import check_limits
-from suchus.experiments.optimise import read_optimisation
-from suchus.core.files import load, save
-from suchus.visual.replay.frames import checked
 from suchus.apps.report import load_result, render_page
-from suchus.experiments.study import MEASURES, Arm, Plan, Study, Vary, conduct, conducted, read_study
 from suchus.apps.viewer.replay import Player, takes
 from suchus.apps.viewer.swim import films
+from suchus.core.errors import OutsideLimits, SuchusError
+from suchus.core.files import load, save
+from suchus.core.jobs.store import Store
+from suchus.experiments.optimise import read_optimisation
+from suchus.experiments.study import MEASURES, Arm, Plan, Study, Vary, conduct, conducted, read_study
+from suchus.hardware import read_map, straight, write_map
+from suchus.robot import blueprint, kinematics
+from suchus.robot.design import Robot, layout, servo_names, value_at, with_values
+from suchus.robot.motion import check_limits
+from suchus.sim.land import Deaf, Limp, Locked, Push, Run, Weak, simulate
+from suchus.visual.replay.frames import checked
 
 PATIENCE = 10
 """A case that takes more of a processor's time hangs, and one that waits for something else for longer [s]."""

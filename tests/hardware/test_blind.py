@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.hardware.bus.pca9685 import Pulses, open_wires
-from suchus.robot.control import Coordinated
 from suchus.core.errors import BusFailure, InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog._driven import Driven
-from suchus.robot.gaits import GAITS
 from suchus.hardware import BlindRig, DriveSettings, drive, held, straight
+from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.robot.control import Coordinated
+from suchus.robot.gaits import GAITS
 from suchus.robot.motion import intended
 from suchus.robot.robots import ROBOTS
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from evidence.built import HASTY, ITS_OWN, former
 
+from suchus.hardware.loads import AT_LIMIT
 from suchus.robot.design import Servo, with_servos
 from suchus.robot.design.body import servos_of
 from suchus.robot.gaits import GAITS
-from suchus.hardware.loads import AT_LIMIT
 from suchus.robot.motors import motor
 from suchus.robot.robots import ROBOTS
 

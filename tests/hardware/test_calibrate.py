@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 from tests.wires import Obedient, wiring
 
-from suchus.robot.design import layout
-from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
 from suchus.core.errors import BusFailure, IncompatibleRecord, InvalidDesign
 from suchus.hardware import BusClock, Rig
 from suchus.hardware.calibrate import NUDGE, find_wiring, find_zeros, fit_log, fits_text
+from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
+from suchus.robot.design import layout
 from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]

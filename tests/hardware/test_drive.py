@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from tests.wires import Obedient, wiring
 
+from suchus.core.errors import BusFailure, InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, about, drive, read_wiring, senses, write_wiring
 from suchus.hardware.bus import BusGone, BusPlace, straight
+from suchus.hardware.drive import ASKED, check_drive
+from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
 from suchus.robot.control import Coordinated, HeadingRule, OpenLoop
 from suchus.robot.design import layout
-from suchus.hardware.emulator import Emulator, MemoryPort, Trouble
-from suchus.core.errors import BusFailure, InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.gaits import GAITS
-from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, about, drive, read_wiring, senses, write_wiring
-from suchus.hardware.drive import ASKED, check_drive
 from suchus.robot.motion import intended
 from suchus.robot.robots import ROBOTS
 

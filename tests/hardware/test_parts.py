@@ -9,17 +9,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.robot.design import Servo, layout, with_servos
+from suchus.apps.report.building_sheet import floats_said, mass_said, printed, tables
+from suchus.article.paper.tables import LEG_CHAIN, SPINE_CHAIN
 from suchus.hardware import commands, straight, trajectory_text
 from suchus.hardware.outlines import CORD_HOLE, plates_dxf, stl, top_dxf
 from suchus.hardware.parts import area, sheet
 from suchus.hardware.ros import PLUGIN, controllers, described, note
+from suchus.robot.design import Servo, layout, with_servos
 from suchus.robot.kinematics.tail import cable_changes
-from suchus.sim.model import compile_model
 from suchus.robot.motors import motor
-from suchus.article.paper.tables import LEG_CHAIN, SPINE_CHAIN
-from suchus.apps.report.building_sheet import floats_said, mass_said, printed, tables
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import compile_model
 
 NAMES = ["caiman", "floating_caiman", "strider", "salamandra", "swimmer"]
 

@@ -12,10 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.blueprint import MistakenFile
-from suchus.robot.design import Servo, cable_joints, crocodile, layout, servo_names, with_named_servos
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.robot.gaits import own_gait
 from suchus.hardware import (
     ServoLoad,
     check_commands,
@@ -30,11 +27,14 @@ from suchus.hardware import (
     trajectory_text,
     write_map,
 )
+from suchus.robot.blueprint import MistakenFile
+from suchus.robot.design import Servo, cable_joints, crocodile, layout, servo_names, with_named_servos
+from suchus.robot.gaits import own_gait
 from suchus.robot.kinematics.tail import servo_angle
-from suchus.sim.model.export.urdf import urdf
 from suchus.robot.motion import START, intended
 from suchus.robot.motors import motor
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model.export.urdf import urdf
 
 STRAIGHT = straight(ROBOTS["caiman"])
 

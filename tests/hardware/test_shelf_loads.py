@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from evidence.servo_loads import measured
 
+from suchus.hardware.loads import AT_LIMIT
 from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS, suits
-from suchus.hardware.loads import AT_LIMIT
 from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[2]

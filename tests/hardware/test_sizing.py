@@ -8,16 +8,16 @@ import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
 
-from suchus.robot.design import Servo, layout, servo_names, with_servos
-from suchus.robot.design.motor import COPPER
 from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
-from suchus.robot.gaits import GAITS
 from suchus.hardware import cases, fitted, loads_of_each, share_at_limit, size, with_better
 from suchus.hardware.loads import FULL_WOUND, borne, given_in, use_of_each
 from suchus.hardware.sizing import FACTORS, does, families_of, places, use
-from suchus.sim.land import Limp
+from suchus.robot.design import Servo, layout, servo_names, with_servos
+from suchus.robot.design.motor import COPPER
+from suchus.robot.gaits import GAITS
 from suchus.robot.motors import motor
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Limp
 
 STS = motor("STS3250")
 

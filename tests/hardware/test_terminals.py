@@ -10,8 +10,8 @@ from time import monotonic, sleep
 import pytest
 from tests.wires import wiring
 
-from suchus.hardware.bus import FRAMINGS, Bus, open_port
 from suchus.core.files import load
+from suchus.hardware.bus import FRAMINGS, Bus, open_port
 
 pytest.importorskip("serial", reason="the extra hardware is not installed")
 PATIENCE = 240.0

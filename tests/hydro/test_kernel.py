@@ -10,12 +10,11 @@ from hypothesis import strategies as st
 
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import physics_step
-from suchus.robot.design.water_table import FORCE, UNDER, packed, unpacked
+from suchus.robot.design.water_table import FORCE, LANES, UNDER, packed, unpacked
+from suchus.robot.robots import ROBOTS
 from suchus.sim.hydro.forces import _arcsine
-from suchus.robot.design.water_table import LANES
 from suchus.sim.land import Lake, Wave, wetting
 from suchus.sim.model.wet import wet_model
-from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["floating_caiman"]
 

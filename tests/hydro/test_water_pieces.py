@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Foam, Hull, Rod, Segment, Shell
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.pieces import masses, pieces, swollen, volumes
 from suchus.robot.design.profile import profile, stations
-from suchus.core.errors import InvalidDesign
-from suchus.robot.design.water_table import BALL, column, packed, unpacked
-from suchus.robot.design.water_table import LANES
+from suchus.robot.design.water_table import BALL, LANES, column, packed, unpacked
 from suchus.robot.robots import ROBOTS
 
 

@@ -15,16 +15,16 @@ import xarray as xr
 
 from suchus.apps.cli import main
 from suchus.core.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.catalog.swim_3d.experiment import Item, _swum_here, swum_in_space
 from suchus.core.fingerprint import fingerprint
 from suchus.core.jobs import NoCluster, conduct_sweep, connected
-from suchus.sim.land import Run
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.swim_3d.experiment import Item, _swum_here, swum_in_space
 from suchus.experiments.optimise import Aim, Optimisation, optimise
 from suchus.experiments.optimise.conduct import tried
 from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study import Study, Vary, conduct
 from suchus.experiments.study.varied import conduct_varied, varied_study
+from suchus.sim.land import Run
 from suchus.swim.water import fit, printed_wave
 from suchus.swim.water.resolved import SwimSetting
 

@@ -19,7 +19,7 @@ from suchus.core.progress import silent
 from suchus.robot.robots import ROBOTS
 from suchus.experiments.study import Study, Vary, conduct
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
-from suchus.sim.record import save
+from suchus.core.files import save
 from tests.swims import crocodile_swim
 
 RUN = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])

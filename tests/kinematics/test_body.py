@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from suchus.robot.design import LEGS, crocodile, joint_names, layout
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import LEGS, crocodile, joint_names, layout
 from suchus.robot.kinematics import landmarks
-from suchus.sim.model import compile_model
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import compile_model
 
 CAIMAN = ROBOTS["caiman"]
 VARIANTS = {

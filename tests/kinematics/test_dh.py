@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.article.paper import LEG_CHAIN, SPINE_CHAIN
 from suchus.core.errors import InvalidDesign
 from suchus.robot.kinematics import dh
-from suchus.article.paper import LEG_CHAIN, SPINE_CHAIN
 
 number = st.floats(-3, 3)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.robot.design import layout
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import layout
 from suchus.robot.kinematics import dh, leg, limb, printed, spine, tail, tree, wave
 
 CAIMAN = suchus.ROBOTS["caiman"]

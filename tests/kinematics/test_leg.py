@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.article.paper import LEG_CHAIN
 from suchus.core.errors import InvalidDesign, Unreachable
 from suchus.robot.kinematics import dh, leg
-from suchus.article.paper import LEG_CHAIN
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.robot.design import Hinge, Limb, Link
 from suchus.core.errors import NotConverged, Unreachable
+from suchus.robot.design import Hinge, Limb, Link
 from suchus.robot.kinematics import leg, limb
 from suchus.robot.robots import ROBOTS
 

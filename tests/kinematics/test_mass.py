@@ -6,11 +6,11 @@ import pytest
 from tests.bodies import eight, six
 
 import suchus
-from suchus.robot.design import crocodile, joint_names, layout
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import crocodile, joint_names, layout
 from suchus.robot.kinematics import tree
-from suchus.sim.model import compile_model, joint_addresses
 from suchus.robot.motion.rising import cantilever_torque
+from suchus.sim.model import compile_model, joint_addresses
 
 CAIMAN = suchus.ROBOTS["caiman"]
 LONG = crocodile(

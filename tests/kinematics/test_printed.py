@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from suchus.robot.kinematics import dh, leg, printed, spine, tail, wave
 from suchus.article.paper import ERRATA, LEG_CHAIN, SPINE_CHAIN, TABLE_I, TABLE_II
 from suchus.article.paper.errata import FORMULAS
 from suchus.article.paper.tables import Chain
+from suchus.robot.kinematics import dh, leg, printed, spine, tail, wave
 
 LEG = SimpleNamespace(hip_offset=0.070, femur=0.086, tibia=0.089)
 SPINE = SimpleNamespace(base=0.0505, link=0.0605)

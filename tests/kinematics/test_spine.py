@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.article.paper import SPINE_CHAIN
 from suchus.core.errors import InvalidDesign, Unreachable
 from suchus.robot.kinematics import dh, spine
-from suchus.article.paper import SPINE_CHAIN
 
 SPINE = SimpleNamespace(base=0.0505, link=0.0605)
 

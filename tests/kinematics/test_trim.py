@@ -6,19 +6,19 @@ import mujoco
 import numpy as np
 import pytest
 
+from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.control.holding import neutral_air_fraction
 from suchus.robot.design import Chamber, Hull, layout
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.pieces import SOLID, chambers, masses, pieces, volumes
-from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.design.water_table import column, unpacked
 from suchus.robot.kinematics.tree import centre_of_mass
 from suchus.robot.kinematics.trim import level_chambers, spare_volume
+from suchus.robot.motion import cycle_targets, limbs_back, still
+from suchus.robot.robots import ROBOTS
 from suchus.sim.model.build import TIMESTEP, joint_addresses
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.sim.model.wet import wet_model
-from suchus.robot.motion import cycle_targets, limbs_back, still
-from suchus.robot.robots import ROBOTS
 
 BARE, ROBOT = ROBOTS["caiman"], ROBOTS["floating_caiman"]
 BACK = cycle_targets(ROBOT, still(ROBOT), np.zeros(1))[0]

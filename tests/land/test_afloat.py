@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.core.errors import Doubtful
 from suchus.robot.control import Swimming
 from suchus.robot.design import WATER_DENSITY, Foam, Hull, Inertia, Shell
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
-from suchus.core.errors import Doubtful
+from suchus.robot.motion import cycle_targets, still
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import HEAVIER, INDIFFERENT, check_afloat
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.robot.motion import cycle_targets, still
-from suchus.robot.robots import ROBOTS
 
 
 def straight(robot):

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot import blueprint
 from suchus.robot.control import Coordinated
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import scaled
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import WATER, Run, crawl, simulate
-from suchus.sim.metrics import displacement, heading
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import WATER, Run, crawl, simulate
+from suchus.sim.metrics import displacement, heading
 
 GAIT_OF = {
     "salamander": "salamander_walk",

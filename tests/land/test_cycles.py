@@ -6,8 +6,8 @@ import pytest
 
 import suchus
 from suchus.core.errors import InvalidDesign
-from suchus.sim.metrics import displacement, speed
 from suchus.robot.motion import START
+from suchus.sim.metrics import displacement, speed
 
 GAIT = suchus.GAITS["belly_crawl"]
 FAST = replace(GAIT, period=GAIT.period / 2)

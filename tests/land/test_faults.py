@@ -3,14 +3,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.control import Command, OpenLoop
 from suchus.robot.design import crocodile, servo_names
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
-from suchus.sim.fault import SENSORS
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.fault import SENSORS
 from suchus.sim.land import Deaf, Limp, Locked, Run, Weak, simulate
 from suchus.sim.metrics import displacement
-from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]
 CRAWL = GAITS["belly_crawl"]

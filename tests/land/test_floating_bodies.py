@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.experiments.catalog.floating import cases
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import physics_step
-from suchus.experiments.catalog.floating import cases
 from suchus.robot.design.water_table import ADDED, CROSS_DRAG, DENSITY, FORCE, POWER, UNDER, column, packed, unpacked
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Wave, wetting
 from suchus.sim.land.float_body import FloatBody, FloatTank
 from suchus.sim.model.wet import wet_model
-from suchus.robot.robots import ROBOTS
 
 
 @pytest.mark.parametrize("one", cases.drafts(), ids=lambda one: one.name)

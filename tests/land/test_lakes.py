@@ -10,17 +10,17 @@ from numba import cfunc, types
 from tests.swims import crocodile_swim
 
 from suchus.core import rotation
+from suchus.core.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.control import Swimming
 from suchus.robot.design import crocodile
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
-from suchus.core.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
-from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.motion import LIMBS_UP, still
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, Ground, Lake, Run, Wave, crawl, simulate, structs, wetting
 from suchus.sim.land.afloat import check_floats
-from suchus.robot.motion import LIMBS_UP, still
 from suchus.sim.record import WATER
-from suchus.robot.robots import ROBOTS
 
 WAVE = crocodile_swim(yaw=(0.1, 0.1, 0.1), yaw_lag=(0.2, 0.1, 0.0), tail=0.6, tail_lag=-0.1, limbs=LIMBS_UP)
 REST = still(ROBOTS["caiman"], limbs=LIMBS_UP)

@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.robot.control import LAWS, Coordinated, HeadingRule
 from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits, UnknownName
+from suchus.robot.control import LAWS, Coordinated, HeadingRule
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Ground, Limp, Live, Locked, Push, Run, simulate
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Limp, Live, Locked, Push, Run, simulate
 
 ROBOT, GAIT = ROBOTS["caiman"], replace(GAITS["belly_crawl"], period=1.0)
 OPEN = Coordinated(limbs=LAWS["off"], spine=None, tail=None)

@@ -12,11 +12,11 @@ from tests.swims import crocodile_swim
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water import Water
 from suchus.robot.design.water_table import column
-from suchus.sim.land import Lake
-from suchus.sim.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 from suchus.robot.motion import still
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake
+from suchus.sim.land.prescribed import INSTANTS, _Submerged, free_sections, held_sections, towed_sections
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
 

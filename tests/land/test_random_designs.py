@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.metres import with_metres
 
-from suchus.robot.design import crocodile, servo_names
 from suchus.core.errors import SuchusError
+from suchus.robot.design import crocodile, servo_names
 from suchus.sim.land import Ground, Limp, Locked, Run, Weak, simulate
 
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import suchus
-from suchus.robot.design import crocodile
+from suchus.article.paper import CLAIMS
 from suchus.core.errors import Diverged, InvalidDesign, OutsideLimits
+from suchus.robot.design import crocodile
 from suchus.sim.land import Ground, Run, crawl, simulate
 from suchus.sim.metrics import between, displacement, heading_change
-from suchus.article.paper import CLAIMS
 from suchus.sim.record import PER_RUN, VARIABLES
 
 GRAVITY = 9.81

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.robot.design.servos import with_servos
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.design.servos import with_servos
 from suchus.sim.land.stand import on_stand
 
 ONE_SECOND = 500

@@ -6,11 +6,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from suchus.robot.design import servo_names
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import servo_names
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Ground, Run, Tolerances, simulate
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Run, Tolerances, simulate
 
 NONE = Tolerances(zero_error=0.0, dead_band=0.0, backlash=0.0, friction=0.0, mass=0.0)
 COARSE = 0.005

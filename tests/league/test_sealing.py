@@ -11,10 +11,10 @@ from toys import failing, silent, stone
 from suchus.apps.cli import main
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.core.errors import InvalidDesign, NotConverged, UnreadableFile
+from suchus.core.files import package_digest
 from suchus.league import Predictor, SingleContestant, every, find, sealing
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
 from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
-from suchus.core.files import package_digest
 
 _TRUTH = {"speed": {"value": 4.4, "low": 4.3, "high": 4.5, "unit": "m/s", "source": "a gun"}}
 _OPENED: list[Path] = []

@@ -5,17 +5,17 @@ import numpy as np
 import pytest
 
 from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, swimming_law
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.league import find, swims
+from suchus.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.robot.control import Swimming
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.pieces import masses, volumes
 from suchus.robot.design.scale import control_period, servo_for
 from suchus.robot.design.water import Water
-from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.sim.land import Run, simulate
-from suchus.league import find, swims
-from suchus.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.robot.motion.swim import still, swimming_gait
 from suchus.robot.robots._animals import pleurodeles
+from suchus.sim.land import Run, simulate
 from suchus.swim.water import Outline, reactive, resistive, undulation
 from suchus.swim.water.slender import Effort
 

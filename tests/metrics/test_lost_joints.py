@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.sim.metrics import swing_height, swing_lift, swing_unloaded, tail_joint_spread
-from suchus.experiments.claims import RULES
 from suchus.article.verdict import between
+from suchus.experiments.claims import RULES
+from suchus.sim.metrics import swing_height, swing_lift, swing_unloaded, tail_joint_spread
 
 TIME = np.arange(0, 901) * 0.01
 LEGS = ["LF", "RF", "LH", "RH"]

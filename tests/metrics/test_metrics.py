@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord
+from suchus.robot.motion import START
 from suchus.sim.metrics import (
     between,
     cost_of_transport,
@@ -38,7 +39,6 @@ from suchus.sim.metrics import (
     two_feet_share,
     work,
 )
-from suchus.robot.motion import START
 
 TIME = np.arange(0, 901) * 0.01
 LEGS = ["LF", "RF", "LH", "RH"]

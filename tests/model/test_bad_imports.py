@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hinge_trees import joint, link, pendulum, quadruped, shape, skewed, urdf
 
-from suchus.robot import blueprint
 from suchus.apps.cli import main
+from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion.movement import cycle_targets

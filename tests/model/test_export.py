@@ -9,18 +9,18 @@ import mujoco
 import numpy as np
 import pytest
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
+from suchus.core.writing import MANIFEST
 from suchus.robot import blueprint
 from suchus.robot.design import GRAVITY, Robot, crocodile, joint_names
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, Unwritable
 from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import check_limits
+from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model, joint_addresses
 from suchus.sim.model import sites as sensed
 from suchus.sim.model.export import NoUsd, ball, export, unsaid, unsaid_in_usd
 from suchus.sim.model.export.urdf import _roll_pitch_yaw
 from suchus.sim.model.export.usd import prim_name
-from suchus.robot.motion import check_limits
-from suchus.robot.robots import ROBOTS
-from suchus.core.writing import MANIFEST
 
 NOT_PHYSICS = ("key", "name", "tex", "mat", "skin", "vis", "nnames", "nbuffer", "nkey", "ntex", "signature")
 

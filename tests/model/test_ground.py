@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Step, Stone, field, heights, profile
 from suchus.sim.model import compile_model
 
 STEP = Step(at=0.7, height=0.03)

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from suchus.core import rotation
+from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import about
 from suchus.robot.design import servo_names
 from suchus.robot.design.pieces import pieces
-from suchus.core.errors import InvalidDesign
 from suchus.robot.design.water_table import column, unpacked
+from suchus.robot.motion import LIMBS_UP, cycle_targets, still
+from suchus.robot.robots import ROBOTS
 from suchus.sim.model.build import TIMESTEP
 from suchus.sim.model.hydrostatics import Hydrostatics, _root, hydrostatics
 from suchus.sim.model.wet import wet_model
-from suchus.robot.motion import LIMBS_UP, cycle_targets, still
-from suchus.robot.robots import ROBOTS
-from suchus.core.rotation import about
 
 BARE, FLOATING = ROBOTS["caiman"], ROBOTS["floating_caiman"]
 POSTURE = cycle_targets(BARE, still(BARE, limbs=LIMBS_UP), np.zeros(1))[0]

@@ -13,19 +13,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import suchus
+from suchus.core.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.robot import blueprint
 from suchus.robot.design import Crank, Inertia, Robot, Servo, Spring, layout
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.design.segment import together
-from suchus.core.errors import OutsideLimits, UnknownName, UnreadableFile
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics import limb as limb_kinematics
+from suchus.robot.motion import check_limits, cycle_targets, draft_gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import displacement
 from suchus.sim.model import compile_model, joint_addresses
 from suchus.sim.model.export import export
 from suchus.sim.model.importing import Words, import_robot
-from suchus.robot.motion import check_limits, cycle_targets, draft_gait
-from suchus.robot.robots import ROBOTS
 
 PLACES = 1e-9  # m
 BOX = shape('<box size="1 1 0.1"/>')

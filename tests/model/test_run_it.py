@@ -7,13 +7,13 @@ import pytest
 from hinge_trees import quadruped
 
 import suchus
-from suchus.robot import blueprint
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.apps.cli import main, run
+from suchus.robot import blueprint
 from suchus.robot.design.scale import scaled
 from suchus.robot.gaits import GAITS
-from suchus.sim.model.export import export
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model.export import export
 
 LIZARD = SyntheticAnimal(
     trunk=0.12, tail=0.2, period=0.8, duty_factor=0.7, limb_phases=(0.0, 0.5, 0.25, 0.75), stride=0.15, outward=0.06,

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from body_files import giant
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import with_servos, with_values
 from suchus.robot.design.scale import physics_step, scaled, swim_servo_for
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, Run, simulate
 from suchus.sim.model import longest_step
-from suchus.robot.robots import ROBOTS
 
 
 def test_the_longest_step_is_a_time_of_the_body():

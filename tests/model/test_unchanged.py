@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.robot import blueprint
 from suchus.core import machine
+from suchus.robot import blueprint
 from suchus.robot.control import Coordinated
 from suchus.robot.design import Robot, crocodile
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import crawl
 from suchus.sim.model import build
 from suchus.sim.model.export.mjcf import mjcf
-from suchus.robot.robots import ROBOTS
 
 BEFORE = json.loads((Path(__file__).with_name("caiman_bytes.json")).read_text())
 """Hashes made on Linux on x86-64 with MuJoCo 4.0 by the code as it was when it knew one skeleton only. Those of records

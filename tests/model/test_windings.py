@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design import LINE, Servo, with_servos, with_speed_lines
 from suchus.robot.design.motor import COPPER, ROOM
-from suchus.core.errors import InvalidDesign
 from suchus.robot.gaits import GAITS
+from suchus.robot.motors import motor
 from suchus.sim.land import Backlash, Limp, Run, Slow, Weak, crawl, simulate
 from suchus.sim.land.batch import Beginning
 from suchus.sim.land.loop import Loop
 from suchus.sim.model import activations, compile_model, warming
 from suchus.sim.model.export.mjcf import mjcf
-from suchus.robot.motors import motor
 
 COARSE = 0.005
 STS = motor("STS3250")

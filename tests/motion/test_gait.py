@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.control.pattern_posture import PatternPosture
 from suchus.robot.design import layout, unit_at, value_at, with_values
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.gaits import GAITS, own_gait
 from suchus.robot.motion import (
     NUMBERS,

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 from tests.metres import with_metres
 
-from suchus.robot.design import crocodile, layout
 from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.design import crocodile, layout
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import displacement, vertical_bend
 from suchus.robot.motion import (
     START,
     Bend,
@@ -28,6 +26,8 @@ from suchus.robot.motion import (
     suits,
 )
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement, vertical_bend
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 WALKERS = ("caiman", "pleurobot", "salamander", "salamandra", "strider")

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.metres import with_metres
 
+from suchus.core.errors import OutsideLimits
 from suchus.robot.control import Coordinated, OpenLoop, Runs, Walking
 from suchus.robot.control.limbs import LAWS
 from suchus.robot.design import crocodile, layout, servo_names
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import OutsideLimits
 from suchus.robot.gaits import GAITS, own_gait
 from suchus.robot.kinematics import landmarks
 from suchus.robot.kinematics import leg as leg_kinematics

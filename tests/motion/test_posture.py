@@ -6,12 +6,12 @@ import pytest
 from tests.bodies import eight, hatchling, six
 
 import suchus
-from suchus.robot.design import Spring, crocodile, layout
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
+from suchus.robot.design import Spring, crocodile, layout
 from suchus.robot.kinematics import leg as leg_kinematics
-from suchus.sim.model import compile_model, joint_addresses
 from suchus.robot.motion.posture import Keyed, hind_leg, plan
 from suchus.robot.motion.rising import STRETCH, stand_up, stretched, tallest
+from suchus.sim.model import compile_model, joint_addresses
 
 CAIMAN = suchus.ROBOTS["caiman"]
 RISE = stand_up(CAIMAN)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from tests.bodies import six
 
-from suchus.robot.design import LEGS, crocodile, joint_names
 from suchus.core.errors import UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.robot.design import LEGS, crocodile, joint_names
 from suchus.robot.gaits import GAITS
 from suchus.robot.gaits.belly_crawl import LIMBS
 from suchus.robot.kinematics.tree import centre_of_mass, landmarks

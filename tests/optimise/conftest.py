@@ -2,9 +2,9 @@
 
 import pytest
 
-from suchus.sim.land import Run
 from suchus.experiments.optimise import Aim, Limit, Optimisation
 from suchus.experiments.study import Vary
+from suchus.sim.land import Run
 
 for library in ("cma", "comocma", "moarchiving"):
     pytest.importorskip(library, reason="not installed: pip install 'suchus[optimise]'")

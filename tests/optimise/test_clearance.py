@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.bodies import eight, hatchling
 
-from suchus.robot.design import joint_names, layout
 from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.optimise.clearance import between_parts, segments_apart
+from suchus.robot.design import joint_names, layout
 from suchus.robot.gaits import own_gait
 from suchus.robot.motion import middle_stance
-from suchus.experiments.optimise.clearance import between_parts, segments_apart
 from suchus.robot.robots import ROBOTS
 
 POINT = st.tuples(*[st.floats(-1.0, 1.0, allow_subnormal=False)] * 3).map(np.array)

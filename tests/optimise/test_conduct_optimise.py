@@ -13,22 +13,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot import blueprint
 from suchus.apps.cli import main
-from suchus.robot.control import Walking
-from suchus.robot.design.scale import coarse_step
 from suchus.core.errors import IncompatibleRecord, NotConverged, Unwritable
-from suchus.robot.gaits import GAITS, own_gait
+from suchus.core.files import load
 from suchus.core.jobs.store import unpacked
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import displacement, slip
-from suchus.robot.motion import Gait
 from suchus.experiments.optimise import Limit, evaluate, optimise, read_optimisation
 from suchus.experiments.optimise.aims import LIMITS
 from suchus.experiments.optimise.conduct import CONDITIONS, _under
-from suchus.core.files import load
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study import Arm, Vary
+from suchus.robot import blueprint
+from suchus.robot.control import Walking
+from suchus.robot.design.scale import coarse_step
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import displacement, slip
 
 PAGE = """
 name = "small"

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import servo_names
 from suchus.core.errors import OutsideLimits, SuchusError
-from suchus.robot.gaits import own_gait
-from suchus.robot.kinematics.tail import servo_angle
-from suchus.robot.motion import excess
 from suchus.experiments.optimise import Aim, Limit
 from suchus.experiments.optimise import evaluate as evaluating
 from suchus.experiments.optimise.aims import AIMS, LIMITS
 from suchus.experiments.optimise.evaluate import allowed, evaluate, excesses, losses, score, units
 from suchus.experiments.optimise.search import SearchResult
+from suchus.robot.design import servo_names
+from suchus.robot.gaits import own_gait
+from suchus.robot.kinematics.tail import servo_angle
+from suchus.robot.motion import excess
 from suchus.robot.robots import ROBOTS
 
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 
 from suchus.apps.cli import main
-from suchus.robot.control import Runs
-from suchus.robot.design import value_at
-from suchus.robot.design.scale import control_period
 from suchus.core.errors import SuchusError
 from suchus.experiments.optimise import AIMS, LIMITS, READY, Aim, Limit
 from suchus.experiments.study import Arm, Vary
+from suchus.robot.control import Runs
+from suchus.robot.design import value_at
+from suchus.robot.design.scale import control_period
 
 STROKE = Vary(field="gait.stroke", low=0.0, high=0.75)
 BAD = [

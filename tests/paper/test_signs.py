@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from suchus.article.paper import BendAngles, JointSums, to_bend_angles, to_joint_sums
 from suchus.robot.design import joint_names
 from suchus.robot.kinematics import landmarks
-from suchus.article.paper import BendAngles, JointSums, to_bend_angles, to_joint_sums
 from suchus.robot.robots import ROBOTS
 
 CAIMAN = ROBOTS["caiman"]

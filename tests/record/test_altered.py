@@ -5,9 +5,9 @@ import pytest
 
 from suchus.core.errors import IncompatibleRecord
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.record import check_land
-from suchus.robot.robots import ROBOTS
 
 NAMES = ("position", "orientation", "joint_angle", "snout", "tail_tip", "foot_position")
 

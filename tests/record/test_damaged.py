@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable, shortened
-from suchus.core.reading import LARGEST
 from suchus.core.files import check_name, check_writable, load, new_folder, read_json, read_toml, save
+from suchus.core.reading import LARGEST
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def test_messages_do_not_repeat_pages():
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from suchus.sim.record import new_folder
+from suchus.core.files import new_folder
 with new_folder(Path(sys.argv[1])) as draft:
     (draft / "m").write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)

@@ -14,7 +14,7 @@ import resource, sys
 from pathlib import Path
 import numpy as np, xarray as xr
 from suchus.core.errors import Unwritable
-from suchus.sim.record import save
+from suchus.core.files import save
 resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
 try:
     save(xr.Dataset({"a": ("x", np.random.default_rng(0).random(4000))}), Path(sys.argv[1]))

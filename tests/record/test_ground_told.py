@@ -7,11 +7,11 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Ground, Step, Stone
 from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import load, save
+from suchus.robot.design.ground import ASIDE, CELL, REACH, Bumps, Ground, Step, Stone
 from suchus.sim.land import VACUUM, Run, simulate
 from suchus.sim.record import ground_of, ground_text
-from suchus.core.files import load, save
 
 SLOPES, HEIGHTS, ALONG = st.floats(-1.0, 1.0), st.floats(0.001, 0.5), st.floats(*REACH)
 RELIEFS = st.one_of(

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import Unwritable
-from suchus.sim.land import Run, simulate
 from suchus.core.files import save, write_tables
 from suchus.core.files.tables import COLUMNS
 from suchus.core.writing import MANIFEST
+from suchus.sim.land import Run, simulate
 
 
 @pytest.fixture(scope="module")

@@ -31,7 +31,7 @@ def built(tmp_path):
     return build
 
 
-WHOLE = ["suchus/__init__.py", "suchus/verdict/claims.json"]
+WHOLE = ["suchus/__init__.py", "suchus/article/verdict/claims.json"]
 BESIDE = ["pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"]
 
 
@@ -40,7 +40,9 @@ def test_whole_distributions_differ_in_nothing(built):
 
 
 def test_a_file_too_few_or_too_many_is_told(built):
-    assert built(WHOLE[:1], [*SOURCES, *BESIDE]) == ["suchus-1-py3-none-any.whl lacks src/suchus/article/verdict/claims.json"]
+    assert built(WHOLE[:1], [*SOURCES, *BESIDE]) == [
+        "suchus-1-py3-none-any.whl lacks src/suchus/article/verdict/claims.json"
+    ]
     assert "which git does not know" in built([*WHOLE, "suchus/secret.txt"], [*SOURCES, *BESIDE])[0]
     assert built(WHOLE, [*SOURCES, *BESIDE[:-1]]) == ["suchus-1.tar.gz lacks CHANGELOG.md"]
 
@@ -68,7 +70,11 @@ def test_what_builds_a_release_is_pinned():
 
 def test_the_package_holds_its_templates_and_the_table_of_claims():
     tracked = distributions.tracked()
-    assert {"src/suchus/article/verdict/claims.json", "src/suchus/py.typed", "src/suchus/visual/replay/templates/player.js"} <= tracked
+    assert {
+        "src/suchus/article/verdict/claims.json",
+        "src/suchus/py.typed",
+        "src/suchus/visual/replay/templates/player.js",
+    } <= tracked
 
 
 SAYS = dict.fromkeys(("pyproject.toml", "CHANGELOG.md", "CITATION.cff", "recipe/recipe.yaml"), "1.2.0")

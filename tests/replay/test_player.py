@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from suchus.core.rotation import rotate
 from suchus.robot.design.ground import Ground, slope
 from suchus.sim.record import ground_text
 from suchus.visual.replay import replay, save
-from suchus.core.rotation import rotate
 
 playwright = pytest.importorskip("playwright.sync_api")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")

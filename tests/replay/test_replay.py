@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.core.errors import IncompatibleRecord, InvalidDesign
+from suchus.core.rotation import rotate
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import LEGS
 from suchus.robot.design.ground import Bumps, Ground, Step, Stone, field
-from suchus.core.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.gaits import GAITS
 from suchus.sim.record import ground_text
 from suchus.visual.replay import replay, save
 from suchus.visual.replay.frames import MOST, frames
-from suchus.core.rotation import rotate
 from suchus.visual.skin import ankles, footed, poses, skin
 from suchus.visual.skin.ankles import NEAR, REACH
 

@@ -1,8 +1,8 @@
 import json
 
-from suchus.experiments.experiment import Outcome, Replay
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.apps.report import save_outcome
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Outcome, Replay
 
 
 def test_replays_stand_beside_the_figures_and_are_listed(crawled, tmp_path):

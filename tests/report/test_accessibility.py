@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from suchus.apps.report import Failure, load_result, render_outcome_page, render_page, save_outcome
+from suchus.article.paper import CLAIMS
+from suchus.article.verdict import Rule, Verdict
 from suchus.experiments.experiment import Experiment, Measure, Outcome, silent
 from suchus.visual.figures import captioned, panels
-from suchus.article.paper import CLAIMS
-from suchus.apps.report import Failure, load_result, render_outcome_page, render_page, save_outcome
-from suchus.article.verdict import Rule, Verdict
 
 AXE = Path(os.environ.get("SUCHUS_AXE", Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"))
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.robot.design import crocodile, layout
-from suchus.visual.figures import captioned, panels, save
-from suchus.robot.kinematics import landmarks
-from suchus.article.paper.animals import ANIMALS
-from suchus.core.files import plain
 from suchus.apps.report import load_result, render_outcome_page, render_page, write_outcome_page, write_page
 from suchus.apps.report.beside import beside
 from suchus.apps.report.page import robot_of
+from suchus.article.paper.animals import ANIMALS
+from suchus.core.files import plain
+from suchus.robot.design import crocodile, layout
+from suchus.robot.kinematics import landmarks
 from suchus.robot.robots import ROBOTS
+from suchus.visual.figures import captioned, panels, save
 
 CAIMAN = ROBOTS["caiman"]
 OUTCOME = {

@@ -9,20 +9,20 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 
-from suchus.core import files as record
-from suchus.robot.design import with_values
-from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.experiments.experiment import Experiment, Measure, Outcome, silent
-from suchus.experiments.catalog import EXPERIMENTS
-from suchus.visual.figures import captioned, panels, styled
-from suchus.robot.gaits import GAITS
-from suchus.article.paper import CLAIMS, ERRATA
 from suchus.apps.report import Failure, load_result, number, quantity, render_outcome_page, render_page, save_outcome
 from suchus.apps.report.page import _place
 from suchus.apps.report.saving import differing
-from suchus.robot.robots import ROBOTS
+from suchus.article.paper import CLAIMS, ERRATA
 from suchus.article.verdict import Rule, Verdict
+from suchus.core import files as record
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.claims import counted
+from suchus.experiments.experiment import Experiment, Measure, Outcome, silent
+from suchus.robot.design import with_values
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.visual.figures import captioned, panels, styled
 
 
 def said(key, measured, why, word):

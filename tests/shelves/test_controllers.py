@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.felt import felt
 
+from suchus.core.sources import snake
 from suchus.robot.control import (
     CONTROLLERS,
     LAWS,
@@ -23,7 +24,6 @@ from suchus.robot.control import (
     needs,
 )
 from suchus.sim.land import Run, simulate
-from suchus.core.sources import snake
 
 DEAF = Coordinated(limbs=LAWS["off"], spine=None, tail=None)
 SHORT = 1.3

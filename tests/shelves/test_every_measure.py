@@ -23,9 +23,9 @@ import pytest
 import xarray as xr
 from tests.experiments.test_swim_ladder import rung
 
-from suchus.experiments.experiment import Measure
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swimming.rules import LADDER
+from suchus.experiments.experiment import Measure
 from suchus.robot.motion import START
 
 NAMES = [name for name, one in EXPERIMENTS.items() if one.rules()]

@@ -9,9 +9,9 @@ from typing import get_args
 
 import pytest
 
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import Clause, ControlGroup, Kind, Rule, judge, judging
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.claims import examples_of, rules_of
 
 ALL = {rule.claim: (name, rule) for name in EXPERIMENTS for rule in rules_of(name)}

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from evidence import store, tolerance
 
-from suchus.experiments.experiment import Measures
+from evidence import store, tolerance
+from suchus.article.paper import CLAIMS
+from suchus.article.verdict import judge
+from suchus.core.sources import current
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Measures
 from suchus.visual.figures import caption
 from suchus.visual.figures.data import field_of
 from suchus.visual.figures.uncover import covering
-from suchus.article.paper import CLAIMS
-from suchus.core.sources import current
-from suchus.article.verdict import judge
 
 GOLDEN = Path(__file__).parent.parent / "golden"
 

@@ -8,16 +8,16 @@ import pytest
 
 import suchus
 from body_files import giant, hatchling, imported_quadruped
+from suchus.article.paper import CYCLE_PERIOD
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.design import layout, value_at, with_values
 from suchus.robot.design.reasons import numbers
 from suchus.robot.design.scale import control_period, scaled
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.gaits import DRAFTED, GAITS, in_size, own_gait
 from suchus.robot.gaits.belly_crawl import LIMBS
-from suchus.sim.metrics import displacement
 from suchus.robot.motion import check_limits, cycle_targets, limb_reaches, suits
-from suchus.article.paper import CYCLE_PERIOD
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import displacement
 
 
 def robot_of(name):

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign
-from suchus.sim.land import Run, simulate
 from suchus.core.sources import snake
 from suchus.experiments.study.measures import MEASURES, _of_each_run, measured, unit_of
+from suchus.sim.land import Run, simulate
 
 
 @pytest.fixture(params=list(MEASURES))

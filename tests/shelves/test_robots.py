@@ -11,8 +11,8 @@ from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import masses, volumes
 from suchus.robot.design.scale import gravity_time, physics_step
 from suchus.robot.gaits import own_gait, suits
-from suchus.sim.model import build, compile_model, joint_addresses, sensor_names
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import build, compile_model, joint_addresses, sensor_names
 
 FROM_THE_ARTICLE = {
     "hind_leg.hip_offset",

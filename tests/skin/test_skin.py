@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 from tests.bodies import eight, hatchling, six
 
-from suchus.robot.design import LEGS, crocodile, joint_names, layout
 from suchus.core.errors import InvalidDesign, SuchusError
-from suchus.sim.model import compile_model, joint_addresses
+from suchus.robot.design import LEGS, crocodile, joint_names, layout
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import compile_model, joint_addresses
 from suchus.visual.skin import bone_names, poses, skin
 from suchus.visual.skin.ankles import ankles, footed
 from suchus.visual.skin.bones import Poses

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import Unwritable
-from suchus.sim.land import Run
 from suchus.experiments.study import Arm, Claims, Plan, Study, Vary, conduct
 from suchus.experiments.study.answers import agreement, first_order, share_interval
+from suchus.sim.land import Run
 
 
 @pytest.fixture(scope="module")

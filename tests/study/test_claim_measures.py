@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.core.errors import IncompatibleRecord
-from suchus.robot.gaits import CONDITIONS, conditions_of
-from suchus.sim.land import FAILED_JOINTS, Limp
 from suchus.article.paper import CLAIMS
-from suchus.robot.robots import ROBOTS
+from suchus.article.verdict import Clause, Rule
+from suchus.core.errors import IncompatibleRecord
+from suchus.experiments.claims import RULES, examples_of
 from suchus.experiments.study import Claims, Plan
 from suchus.experiments.study.claim_measures import RUNS, asked_rules, held, measures_of
-from suchus.experiments.claims import RULES, examples_of
-from suchus.article.verdict import Clause, Rule
+from suchus.robot.gaits import CONDITIONS, conditions_of
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import FAILED_JOINTS, Limp
 
 LEAST = 0.05
 

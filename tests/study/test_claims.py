@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from suchus.article.verdict.judging import Share, digest
 from suchus.core.catalog import Catalog
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.robot.gaits import GAITS
 from suchus.core.jobs.made_by import deciding
+from suchus.experiments.claims import RULES
 from suchus.experiments.study import Claims, answer_finished, claims, conduct_claims
 from suchus.experiments.study.answers import first_order
 from suchus.experiments.study.claim_measures import RUNS, asked_rules
 from suchus.experiments.study.claims_page import OUTCOME, SHARES, TABLE, write_claims
 from suchus.experiments.study.claims_table import claim_row, deciders, turned
 from suchus.experiments.study.claims_table import shares as shares_of
-from suchus.experiments.claims import RULES
-from suchus.article.verdict.judging import Share, digest
+from suchus.robot.gaits import GAITS
 
 EVERY = Catalog.beside
 

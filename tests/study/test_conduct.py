@@ -15,12 +15,12 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, OutsideLimits, Unwritable
+from suchus.core.files import load
 from suchus.core.jobs import Died, ProcessDied, processes
 from suchus.core.jobs.store import MARK, RESULTS, TABLE, Store, packed, unpacked
+from suchus.experiments.study import Plan, Study, Vary, conduct, read_study, run_chunk
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import displacement
-from suchus.core.files import load
-from suchus.experiments.study import Plan, Study, Vary, conduct, read_study, run_chunk
 
 PAGE = """
 name = "strokes"

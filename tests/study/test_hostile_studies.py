@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 
 from suchus.apps.cli import main
-from suchus.robot.control import PatternGenerator
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, SuchusError
 from suchus.core.jobs import NoCluster, connected
 from suchus.core.jobs.cluster import _check_versions, _reach
 from suchus.core.jobs.store import Store
-from suchus.sim.land import Run, crawl
 from suchus.experiments.optimise import Optimisation
 from suchus.experiments.optimise.spec import Aim
 from suchus.experiments.study import MEASURES, Plan, Study, Vary, conduct, read_study, run_chunk
+from suchus.robot.control import PatternGenerator
+from suchus.sim.land import Run, crawl
 
 PAGE = """
 name = "s"

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from suchus.robot.design import with_values
 from suchus.core.errors import InvalidDesign, OutsideLimits, SuchusError, UnknownName
-from suchus.robot.gaits import GAITS
-from suchus.sim.land import Limp, Run, Weak
 from suchus.experiments.study import MEASURES, Plan, Study, Vary
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.chunk import called
 from suchus.experiments.study.plan import value_of
+from suchus.robot.design import with_values
+from suchus.robot.gaits import GAITS
+from suchus.sim.land import Limp, Run, Weak
 
 
 @pytest.fixture

@@ -9,19 +9,26 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import Robot, value_at
+from suchus.article.verdict import TooFew, Varied
+from suchus.article.verdict.judging import digest
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, OutsideLimits
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.core.files import read_json
-from suchus.robot.robots import ROBOTS
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES, examples_of, varied_of
 from suchus.experiments.study.answers import share_interval
 from suchus.experiments.study.claim_measures import asked_rules, claims_varied, held, words
 from suchus.experiments.study.claims_table import claim_row, renewed, shares
 from suchus.experiments.study.study import Vary
-from suchus.experiments.study.varied import LEAST, VariedStudy, answer_varied, conduct_varied, varied_finished, varied_study
-from suchus.experiments.claims import RULES, examples_of, varied_of
-from suchus.article.verdict import TooFew, Varied
-from suchus.article.verdict.judging import digest
+from suchus.experiments.study.varied import (
+    LEAST,
+    VariedStudy,
+    answer_varied,
+    conduct_varied,
+    varied_finished,
+    varied_study,
+)
+from suchus.robot.design import Robot, value_at
+from suchus.robot.robots import ROBOTS
 
 CLAIM = "tail_quadratic_small"
 OF_A_PART = {

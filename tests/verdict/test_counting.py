@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from suchus.article.paper import CLAIMS
-from suchus.experiments.claims import RULES, counted, standings
 from suchus.article.verdict import Clause, Rule
 from suchus.article.verdict.judging import WORDS
+from suchus.experiments.claims import RULES, counted, standings
 
 MEASURED = Rule(claim="a", experiment="e", measure="x", holds=(Clause("x", ">", 0.0, "more is more"),), why="why")
 OTHER = replace(MEASURED, claim="b", holds=(Clause("x", ">", 1.0, "more is more"),))

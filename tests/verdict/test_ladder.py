@@ -5,8 +5,8 @@ from math import inf, nan
 
 import pytest
 
-from suchus.core.errors import IncompatibleRecord
 from suchus.article.verdict import Clause, Rule, Rung, judge, ladder
+from suchus.core.errors import IncompatibleRecord
 
 RUNGS = (
     Rung(name="theory", model="theory", why="It has the force at hand."),

@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import suchus.experiments.catalog
-from suchus.core.errors import IncompatibleRecord, InvalidDesign
-from suchus.experiments.experiment import estimated
 from suchus.article.paper import CLAIMS
-from suchus.experiments.claims import RULES, UNRULED, examples_of, rules_of
 from suchus.article.verdict import Clause, Share, TooFew, between, judge
 from suchus.article.verdict.judging import ROBUST, fragile
+from suchus.core.errors import IncompatibleRecord, InvalidDesign
+from suchus.experiments.claims import RULES, UNRULED, examples_of, rules_of
+from suchus.experiments.experiment import estimated
 
 SWINGS = examples_of("displacement")["tail_swing"]
 SHARE = Share(claim="tail_swing", share=0.95, low=0.9, high=0.97, designs=100, turned_by="", at=None, above=False)
@@ -170,7 +170,9 @@ def test_what_was_built_in_or_fitted_is_not_fragile(claim, fragile):
 
 
 def test_rules_are_read_without_their_experiments():
-    code = "import sys; from suchus.article.verdict import RULES; [*RULES]; print({'numpy', 'mujoco'} & {*sys.modules})"
+    code = (
+        "import sys; from suchus.experiments.claims import RULES; [*RULES]; print({'numpy', 'mujoco'} & {*sys.modules})"
+    )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
 

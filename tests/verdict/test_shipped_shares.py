@@ -6,14 +6,14 @@ from importlib import resources
 
 import pytest
 
+from suchus.article.verdict import SHARES, TOO_FEW, Share, judge
+from suchus.article.verdict.judging import digest
+from suchus.experiments.claims import RULES, examples_of
+from suchus.experiments.study.claim_measures import claims_varied
+from suchus.experiments.study.varied import LEAST
 from suchus.robot.design import value_at
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
-from suchus.experiments.study.claim_measures import claims_varied
-from suchus.experiments.study.varied import LEAST
-from suchus.experiments.claims import RULES, examples_of
-from suchus.article.verdict import SHARES, TOO_FEW, Share, judge
-from suchus.article.verdict.judging import digest
 
 FILE = resources.files("suchus.article.verdict") / "claims.json"
 TOLD = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}

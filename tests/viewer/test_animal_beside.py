@@ -8,13 +8,13 @@ import pytest
 
 from suchus.animals.capture import Camera, SyntheticAnimal, UnusableTracks, film_animal, write_table
 from suchus.apps.cli.entry import main
+from suchus.apps.viewer.replay import Take, beside, takes
+from suchus.core.files import save
 from suchus.robot.design.ground import Ground
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
 from suchus.robot.motion import START
-from suchus.core.files import save
 from suchus.robot.robots import ROBOTS
-from suchus.apps.viewer.replay import Take, beside, takes
+from suchus.sim.land import Run, simulate
 
 LIZARD = SyntheticAnimal(
     trunk=0.12, tail=0.20, period=0.8, duty_factor=0.7, limb_phases=(0.0, 0.5, 0.25, 0.75), stride=0.15, outward=0.06,

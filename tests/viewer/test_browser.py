@@ -14,15 +14,15 @@ import pytest
 import xarray as xr
 from tests.wakes import ringed
 
-from suchus.sim.faults import Limp
-from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.core.files import save
-from suchus.robot.robots import ROBOTS
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.bodies import pieces
 from suchus.apps.viewer.replay import takes
 from suchus.apps.viewer.swim import films, vortex_film
+from suchus.core.files import save
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import Limp
+from suchus.sim.land import Run, simulate
 
 pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer is not installed")
 _stand_back = pytest.importorskip("suchus.apps.viewer.server")._stand_back

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.robot.control import DepthHold, Swimming
-from suchus.core.errors import InvalidDesign
-from suchus.robot.gaits import GAITS
-from suchus.sim.land import Lake, Live, Run, simulate
-from suchus.robot.robots import ROBOTS
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.live_page import status
+from suchus.core.errors import InvalidDesign
+from suchus.robot.control import DepthHold, Swimming
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Live, Run, simulate
 
 ROBOT, CRAWL = ROBOTS["floating_caiman"], GAITS["belly_crawl"]
 WAVE = crocodile_swim()

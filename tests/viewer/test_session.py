@@ -8,15 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.robot.blueprint import read
-from suchus.robot.design import crocodile, layout
-from suchus.robot.design.scale import control_period, scaled
-from suchus.core.errors import OutsideLimits
-from suchus.sim.faults import Limp, Locked
-from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import simulate
-from suchus.robot.motion import Gait, check_limits, suits
-from suchus.robot.robots import ROBOTS
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.bodies import BodyPoses, pieces
 from suchus.apps.viewer.history import columns
@@ -24,6 +15,15 @@ from suchus.apps.viewer.knobs import BUMPS, FORCE, GAIT_KNOBS, bumps_under, forc
 from suchus.apps.viewer.live_page import Controls, gait_file, robot_file, status
 from suchus.apps.viewer.plots import gait_bars, plans
 from suchus.apps.viewer.session import _PLAIN
+from suchus.core.errors import OutsideLimits
+from suchus.robot.blueprint import read
+from suchus.robot.design import crocodile, layout
+from suchus.robot.design.scale import control_period, scaled
+from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import Gait, check_limits, suits
+from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import Limp, Locked
+from suchus.sim.land import simulate
 
 ROBOT, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 GAIT = replace(CRAWL, period=1.0)

@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.robot.design import LEGS
-from suchus.robot.design.ground import Bumps, Ground, heights, slope
-from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.robot.gaits import GAITS
-from suchus.sim.land import Lake, Run, simulate
-from suchus.core.files import save
-from suchus.robot.robots import ROBOTS
-from suchus.core.rotation import rotate
 from suchus.apps.viewer.bodies import BodyPoses, pieces, support
 from suchus.apps.viewer.history import columns
 from suchus.apps.viewer.plots import gait_bars
 from suchus.apps.viewer.replay import _NEEDED, Player, takes
 from suchus.apps.viewer.stage import RodShape, rod, upright
 from suchus.apps.viewer.swim import films
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.core.files import save
+from suchus.core.rotation import rotate
+from suchus.robot.design import LEGS
+from suchus.robot.design.ground import Bumps, Ground, heights, slope
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Run, simulate
 
 stage = pytest.importorskip("suchus.apps.viewer.stage", reason="the extra viewer is not installed")
 

@@ -8,10 +8,10 @@ import pytest
 from tests.wakes import CORE, RADIUS, ringed
 
 from suchus.apps.cli import main
-from suchus.core.errors import IncompatibleRecord
-from suchus.core.files import save
 from suchus.apps.viewer import swim
 from suchus.apps.viewer.swim import VortexFilm, vortex_film
+from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import save
 
 
 @pytest.mark.parametrize(("level", "lower"), [(2.0, False), (4.0, True), (6.0, False)])

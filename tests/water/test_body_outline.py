@@ -3,13 +3,13 @@ import numpy as np
 import pytest
 from tests.swims import crocodile_swim
 
-from suchus.robot.design import cable_joints, layout
 from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.robot.design import cable_joints, layout
 from suchus.robot.kinematics import landmarks
 from suchus.robot.kinematics import tail as tail_kinematics
-from suchus.sim.model import compile_model
 from suchus.robot.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model import compile_model
 from suchus.swim.water import Outline, silhouette, swim, undulation
 
 TIME = np.linspace(0.0, 1.25, 41)

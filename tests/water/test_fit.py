@@ -3,8 +3,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from suchus.robot.design import layout
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.robot.design import layout
 from suchus.robot.motion import cycle_targets, lateral_servos, movement
 from suchus.swim.water import BodyWave, EelWave, Outline, fit, printed_wave
 

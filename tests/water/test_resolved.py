@@ -6,11 +6,18 @@ from tests.swims import crocodile_swim
 
 import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.robot.motion import still
 from suchus.core.progress import silent
+from suchus.robot.motion import still
 from suchus.swim.water import ExactWave, Outline
 from suchus.swim.water.immersed import immersed
-from suchus.swim.water.resolved import ON_THE_SPOT, TETHERED, SwimSetting, check_resolved_swim, resolved_swim, towed_drag
+from suchus.swim.water.resolved import (
+    ON_THE_SPOT,
+    TETHERED,
+    SwimSetting,
+    check_resolved_swim,
+    resolved_swim,
+    towed_drag,
+)
 
 MOTION = crocodile_swim(yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail_lag=-0.1)
 COARSE = SwimSetting(cells=32, viscosity=1e-3, cycles=1)

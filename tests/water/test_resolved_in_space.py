@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.robot.motion import still
 from suchus.core.progress import silent
+from suchus.robot.motion import still
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water import Outline, Water, fit, printed_wave, recoil
 from suchus.swim.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag

@@ -6,8 +6,8 @@ import pytest
 from tests.swims import crocodile_swim
 
 from suchus.core.errors import UnreadableFile
-from suchus.core.progress import silent
 from suchus.core.files.store import sealed
+from suchus.core.progress import silent
 from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
 from suchus.swim.water.samples import Samples
 

@@ -8,10 +8,20 @@ import pytest
 
 from suchus.atlas import sections
 from suchus.atlas.outcome import FlowOutcome, compute
-from suchus.robot.design.water import Water
 from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.core.progress import silent
-from suchus.swim.water.sections import TABLE, attached, coefficients, held_out, likely, measured, points, table, write_table
+from suchus.robot.design.water import Water
+from suchus.swim.water.sections import (
+    TABLE,
+    attached,
+    coefficients,
+    held_out,
+    likely,
+    measured,
+    points,
+    table,
+    write_table,
+)
 
 
 def test_where_the_flow_is_attached_the_round_section_is_that_of_stokes_and_wang():

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 from tests.swims import crocodile_swim
 
-from suchus.robot.design import cable_joints, layout
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import cable_joints, layout
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water import Outline, taken, undulation, unevenness
 

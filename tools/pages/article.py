@@ -7,9 +7,9 @@ from typing import Any
 from pages.code import PaperReference, papers
 from pages.references import named
 from pages.stated import page
-from suchus.experiments.experiment import Experiment
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.paper import CLAIMS, ERRATA, Claim
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Experiment
 
 EQUATIONS = {
     1: "transform between neighbouring links",

@@ -11,7 +11,10 @@ from functools import cache
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[2] / "src" / "suchus"
-BY_MODULE = ("figures", "experiments", "robots", "gaits", "skin", "replay", "viewer", "envs")
+BY_MODULE = (
+    "visual.figures", "experiments.catalog", "robot.robots", "robot.gaits", "visual.skin", "visual.replay",
+    "apps.viewer", "apps.envs",
+)  # fmt: skip
 """Rooms whose modules are used under their own names, beside what the room itself exports."""
 
 
@@ -29,10 +32,24 @@ class PaperReference:
 
 @cache
 def rooms() -> list[str]:
-    """Return the names of all rooms, and of the modules that stand alone."""
-    folders = [p.parent.name for p in SOURCE.glob("*/__init__.py")]
-    alone = [p.stem for p in SOURCE.glob("*.py") if not p.stem.startswith("_")]
-    return sorted([*folders, *alone])
+    """Return the dotted names of all rooms: packages and modules of a wing, or the wing itself if it exports names."""
+    names = []
+    for wing in wings():
+        below = [f"{wing}.{p.parent.name}" for p in (SOURCE / wing).glob("*/__init__.py")]
+        alone = [f"{wing}.{p.stem}" for p in (SOURCE / wing).glob("*.py") if not p.stem.startswith("_")]
+        names += [wing, *below] if exported(wing) else [*below, *alone]
+    return sorted(names)
+
+
+@cache
+def wings() -> list[str]:
+    """Return the names of all wings: the folders of the package."""
+    return sorted(p.parent.name for p in SOURCE.glob("*/__init__.py"))
+
+
+def folder_of(room: str) -> Path:
+    """Return the folder of a room, or of a module that stands alone its path without the ending."""
+    return SOURCE.joinpath(*room.split("."))
 
 
 def about(room: str) -> str:
@@ -53,13 +70,13 @@ def exported(room: str) -> list[str]:
 
 def modules(room: str) -> list[str]:
     """Return the modules of a room that a user names: those it exports, or all that declare something public."""
-    folder = SOURCE / room
+    folder = folder_of(room)
     if not folder.is_dir():
         return []
     wanted = {p.stem for p in folder.glob("*.py") if not p.stem.startswith("_")}
     for below in (p.parent for p in folder.glob("*/__init__.py")):
         inside = [f"{below.name}.{p.stem}" for p in below.glob("*.py") if not p.stem.startswith("_")]
-        wanted |= {below.name} if exported(f"{room}/{below.name}") else set(inside)
+        wanted |= {below.name} if exported(f"{room}.{below.name}") else set(inside)
     return sorted(wanted if room in BY_MODULE else wanted & (set(exported(room)) - _defined(room)))
 
 
@@ -100,13 +117,14 @@ def home(room: str, name: str) -> str:
 
     That is the room's own page, unless a module hides the name of what it declares, as in ``suchus.swim.water.fit``.
     """
-    hidden = (SOURCE / room / f"{name}.py").is_file() and name in _defined(room)
+    hidden = (folder_of(room) / f"{name}.py").is_file() and name in _defined(room)
     return f"suchus.{room}.{name}.{name}" if hidden else f"suchus.{room}.{name}"
 
 
 def _at_home(name: str) -> str:
-    _, room, *_, last = name.split(".")
-    return home(room, last) if (SOURCE / room).is_dir() and last in exported(room) else name
+    last = name.rpartition(".")[2]
+    room = max((room for room in rooms() if name.startswith(f"suchus.{room}.")), key=len, default="")
+    return home(room, last) if room and folder_of(room).is_dir() and last in exported(room) else name
 
 
 def _defined(room: str) -> set[str]:
@@ -120,7 +138,8 @@ def _defined(room: str) -> set[str]:
 
 
 def _file(room: str) -> Path:
-    return SOURCE / room / "__init__.py" if (SOURCE / room).is_dir() else SOURCE / f"{room}.py"
+    folder = folder_of(room)
+    return folder / "__init__.py" if folder.is_dir() else folder.with_name(f"{folder.name}.py")
 
 
 @cache

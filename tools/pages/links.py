@@ -32,8 +32,8 @@ def made(link: str) -> str:
         return MADE[path] + mark + place
     if script := re.fullmatch(r"\.\./examples/(\w+)\.py", path):
         return f"examples/{script[1]}.md"
-    if room := re.fullmatch(r"\.\./src/suchus/(\w+)", path):
-        return f"api/{room[1]}.md"
+    if room := re.fullmatch(r"\.\./src/suchus/([\w/]+)", path):
+        return f"api/{room[1].replace('/', '.')}.md"
     return link
 
 

@@ -1,7 +1,7 @@
 """The API reference: a page per room, filled from docstrings by mkdocstrings."""
 
 import suchus
-from pages.code import BY_MODULE, SOURCE, about, exported, home, modules, public, rooms
+from pages.code import BY_MODULE, about, exported, folder_of, home, modules, public, rooms
 
 
 def pages() -> dict[str, str]:
@@ -69,11 +69,11 @@ def _block(path: str, members: list[str] | None, level: int) -> list[str]:
 
 def _of_module(path: str) -> list[str]:
     """Public names of a module; of a folder, what it exports."""
-    folder = SOURCE.joinpath(*path.split(".")[1:])
-    return exported("/".join(path.split(".")[1:])) if folder.is_dir() else public(path)
+    room = path.partition(".")[2]
+    return exported(room) if folder_of(room).is_dir() else public(path)
 
 
 def _own(room: str, below: list[str]) -> list[str]:
-    if not (SOURCE / room).is_dir():
+    if not folder_of(room).is_dir():
         return list(dict.fromkeys([*public(f"suchus.{room}"), *exported(room)]))
     return [name for name in exported(room) if name not in below or room in BY_MODULE]

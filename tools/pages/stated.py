@@ -2,7 +2,7 @@
 
 A passage stands between ``<!-- stated: NAME -->`` and ``<!-- end -->`` of a page; its words are the Jinja template
 ``docs/stated/NAME.md``, in which ``{{ swim_3d.speed:.3f }}`` is a measure of the experiment ``swim_3d``, written as in
-the explanations of the experiments themselves (``suchus.experiments.experiment.templates``). What was measured is kept: of an
+the explanations of the experiments themselves (``experiments.experiment.templates``). What was measured is kept: of an
 experiment the measures of its full form, of a search its outcome, see ``results`` and ``evidence.registry``. A test
 compares pages and results. ``make stale`` tells which results are old, and ``make renew`` computes them again.
 
@@ -25,12 +25,12 @@ if __name__ == "__main__":
 
 from evidence import renew, store
 from pages import passages
-from suchus.experiments import experiment
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.paper import AUTHORS, CLAIMS, TITLE
-from suchus.experiments.claims import RULES, UNRULED, counted
 from suchus.article.verdict import SHARES, TOO_FEW, Verdict, judge, ladder
 from suchus.article.verdict.judging import ROBUST
+from suchus.experiments import experiment
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES, UNRULED, counted
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

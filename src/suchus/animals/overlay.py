@@ -11,9 +11,9 @@ from PIL import Image, ImageSequence, UnidentifiedImageError
 
 from suchus.animals.capture import Tracks, UnusableTracks
 from suchus.core.errors import UnreadableFile
+from suchus.core.reading import check_file
 from suchus.visual.figures.film import film
 from suchus.visual.figures.style import COLOURS
-from suchus.core.reading import check_file
 
 _PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp")
 _MOVING = (".gif", ".webp", ".tif", ".tiff", ".png")

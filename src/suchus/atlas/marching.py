@@ -8,11 +8,11 @@ from scipy.ndimage import map_coordinates
 
 from suchus import flow
 from suchus.core.errors import InvalidDesign
+from suchus.core.progress import Progress
 from suchus.flow.compiled import PAD
 from suchus.flow.signals import last_periods
 from suchus.flow.simulation import Watcher
 from suchus.flow.water import Fluid
-from suchus.core.progress import Progress
 
 _REPORTS = 200  # times per run that the progress is reported
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from suchus.atlas.case import Case, Curves
 from suchus.core.errors import SuchusError, UnreadableFile
+from suchus.core.files import code_digest, digest, new_file, plain, read_json
 from suchus.core.jobs import Job, deciding, finish, place_for
 from suchus.core.progress import Progress, silent
-from suchus.core.files import code_digest, digest, new_file, plain, read_json
 
 _DIGITS = 7  # of the numbers that are kept: single precision
 

@@ -7,8 +7,8 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import LONG_STEP, Case, Curves, RunEffort, grids, published
 from suchus.atlas.marching import Grids, formed, march, middles, nested, refined
-from suchus.flow.signals import last_periods
 from suchus.core.progress import Progress, staged
+from suchus.flow.signals import last_periods
 
 # At a Reynolds number of 2000 these cells settle nothing: 256 a chord do, at 30 degrees; see docs/flow_limits.md. So no
 # more are spent here than show the row.

@@ -7,8 +7,8 @@ import numpy as np
 from suchus import flow
 from suchus.atlas.case import LONG_STEP, Case, Curves, RunEffort, grids
 from suchus.atlas.marching import Grids, formed, march, middles, refined
-from suchus.flow.signals import last_periods
 from suchus.core.progress import Progress, staged
+from suchus.flow.signals import last_periods
 
 _CODE = ("walls.py", "marching.py", "case.py")
 _HEIGHT, _DIAMETER = 0.41, 0.1  # [m]; of the DFG channel and of its cylinder

@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from math import pi, radians
 
+from suchus.core.errors import OutsideLimits
+from suchus.core.progress import Progress, portion
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant, known
 from suchus.robot.control import OpenLoop
 from suchus.robot.design import Robot
 from suchus.robot.design.scale import scaled
-from suchus.core.errors import OutsideLimits
-from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant, known
-from suchus.sim.metrics import roll_rate
 from suchus.robot.motion import roll
-from suchus.core.progress import Progress, portion
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
+from suchus.sim.metrics import roll_rate
 
 _FISH = "Fish et al. 2007, J. Exp. Biol. 210, 2811 (abstract)"
 _CYCLES = 3

@@ -6,16 +6,16 @@ from math import radians
 
 import numpy as np
 
+from suchus.core.progress import Progress, portion
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.robot.design import GRAVITY, Robot, with_values
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import scaled
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
-from suchus.sim.metrics import between, speed
 from suchus.robot.motion import START
-from suchus.core.progress import Progress, portion
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import between, speed
 
 _SLOPE = radians(15.0)
 _CYCLES = 4

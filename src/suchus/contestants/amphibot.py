@@ -6,10 +6,10 @@ from importlib import resources
 from math import radians
 
 from suchus.contestants._water import fresh
-from suchus.robot.design.drawing import Drawing
-from suchus.robot.design.scale import swim_servo_for
 from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
+from suchus.robot.design.drawing import Drawing
+from suchus.robot.design.scale import swim_servo_for
 from suchus.robot.motion import Gait
 from suchus.robot.motion.swim import swimming_gait
 from suchus.swim.water import Outline

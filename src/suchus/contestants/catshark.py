@@ -9,11 +9,11 @@ from importlib import resources
 import numpy as np
 
 from suchus.contestants._water import fresh
-from suchus.robot.design import Robot
+from suchus.core.progress import Progress
 from suchus.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
+from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
-from suchus.core.progress import Progress
 from suchus.robot.robots._animals import catshark
 from suchus.swim.water import FilmedWave, fit
 

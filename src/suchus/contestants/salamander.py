@@ -8,11 +8,11 @@ import numpy as np
 
 from suchus.contestants._water import fresh
 from suchus.core.errors import NotConverged
-from suchus.robot.gaits import ANIMAL_SWIM
+from suchus.core.progress import Progress
 from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
 from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, sections, theory, waters
+from suchus.robot.gaits import ANIMAL_SWIM
 from suchus.robot.motion import Curve, Gait, servo_parts
-from suchus.core.progress import Progress
 from suchus.robot.robots._animals import pleurodeles
 from suchus.swim.water import resistive
 from suchus.swim.water.slender import Model

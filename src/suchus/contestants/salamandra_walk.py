@@ -6,14 +6,14 @@ from functools import lru_cache
 
 import numpy as np
 
+from suchus.core.progress import Progress, portion
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.robot.design import Robot, with_values
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
-from suchus.sim.metrics import speed
 from suchus.robot.motion import START
-from suchus.core.progress import Progress, portion
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import speed
 
 FREQUENCIES = (0.4, 0.67, 1.0)
 """Of the walk [Hz]."""

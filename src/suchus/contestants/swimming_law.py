@@ -7,14 +7,14 @@ from math import pi
 
 import numpy as np
 
+from suchus.core.errors import SuchusError
+from suchus.core.progress import Progress
+from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.robot.design import Robot
 from suchus.robot.design.needs import lacking
 from suchus.robot.design.water import Water
-from suchus.core.errors import SuchusError
 from suchus.robot.gaits import own_gait
-from suchus.league import Contestant, Found, Given, Numbers, Predictor, Quantity, SingleContestant
 from suchus.robot.motion import Gait
-from suchus.core.progress import Progress
 from suchus.robot.robots import ROBOTS
 from suchus.swim.water import Outline, cruise, cycle, reactive, resistive, swim_of
 from suchus.swim.water.slender import Model

@@ -4,11 +4,11 @@ from functools import lru_cache
 from itertools import pairwise
 
 from suchus.contestants._water import fresh
+from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
+from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.robot.design import Robot
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.scale import swim_servo_for
-from suchus.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
-from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.swim.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"

@@ -41,7 +41,7 @@ SHELVES: Mapping[str, str] = {
     "measures": "suchus.sim.metrics",
     "contestants": "suchus.contestants",
 }
-"""The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robot.robots`` and so on."""
+"""The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")
 """Shelves on which a TOML file can stand."""
 

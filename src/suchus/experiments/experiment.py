@@ -17,14 +17,14 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 from jinja2.ext import Extension
 
+from suchus.article.verdict import Reading, Rule, Verdict, compared, judge, listed
+from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
+from suchus.core.progress import Progress, silent, staged
+from suchus.experiments.claims import rules_of
 from suchus.robot.design import Robot, check_needs
 from suchus.robot.design.scale import coarse_step, control_period, scaled_fields
-from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.robot.gaits import in_size, own_gait
 from suchus.robot.motion import Gait, check_limits, suits
-from suchus.core.progress import Progress, silent, staged
-from suchus.article.verdict import Reading, Rule, Verdict, compared, judge, listed
-from suchus.experiments.claims import rules_of
 
 __all__ = [
     "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "Simulated", "ends", "estimated", "ranged",
@@ -192,9 +192,9 @@ comes out, and stand in no result."""
 class Experiment(ABC):
     """A question with parameters. Subclasses are frozen dataclasses; their fields are the parameters.
 
-    A run simulates, measures what was recorded, judges the article's claims by the rules of ``suchus.article.verdict``, and
-    says what decided. Subclasses fill in ``simulate``, ``measure`` and ``draw``, and say what decided in
-    ``explanation.md`` beside them, or in ``explain``.
+    A run simulates, measures what was recorded, judges the article's claims by the rules of
+    ``suchus.article.verdict``, and says what decided. Subclasses fill in ``simulate``, ``measure`` and ``draw``,
+    and say what decided in ``explanation.md`` beside them, or in ``explain``.
     """
 
     __slots__ = ()
@@ -443,8 +443,8 @@ def templates(folder: Path) -> Environment:
     """Return the Jinja templates of a folder, whose numbers are filled in by name.
 
     ``{{ m.speed:.3f }}`` is written as Python's format does, or in another unit where the format begins with it, as
-    ``mm.1f`` (``suchus.article.verdict.Reading``); where the format is a variable, ``{{ m.speed | write(form) }}``. Beside
-    ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence,
+    ``mm.1f`` (``suchus.article.verdict.Reading``); where the format is a variable, ``{{ m.speed | write(form) }}``.
+    Beside ``compared`` and ``listed`` there are ``separator(loop)``, which lists the items of a loop in a sentence,
     ``either_sign(m, name)`` and ``spanned(m, name, form)`` for measures whose interval may hold both signs, the filter
     ``sentence`` for parts any of which may be missing, and the test ``is finite``. A name that is not there is an
     error.

@@ -1,5 +1,12 @@
-"""Incompressible flow around bodies that move and bend, in the plane and in space."""
+"""Incompressible flow around bodies that move and bend, in the plane and in space.
 
+A ``Setup`` names grid, sides, fluid and bodies; a ``Simulation`` advances it and keeps a ``Record``. Nothing here
+knows a robot or draws a picture.
+
+Start reading with ``flow.setup``, then ``flow.simulation``.
+"""
+
+from suchus.core.isosurface import IsoSurface, isosurface
 from suchus.flow.added import added_mass
 from suchus.flow.bent import BentMesh, BentOutline, bent
 from suchus.flow.body import Body
@@ -32,7 +39,6 @@ from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
-from suchus.core.isosurface import IsoSurface, isosurface
 
 __all__ = [
     "ALONG_THE_SKIN",

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.compiled import PAD, Window, compiled, part, unsigned
 from suchus.flow.farfield import Fading, FarField, OpenWater
 from suchus.flow.grid import Grid
 from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
-from suchus.core.kinds import show
 
 LOST = 1e-6
 """Share of the water that enters which may find no way out [-]: what rounding leaves in single precision."""

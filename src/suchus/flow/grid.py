@@ -9,9 +9,9 @@ import numpy as np
 
 from suchus.core import large
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import misfits, show
 from suchus.flow.compiled import PAD
 from suchus.flow.multigrid import COARSEST, LONGEST
-from suchus.core.kinds import misfits, show
 
 if TYPE_CHECKING:
     from suchus.flow.sides import Sides
@@ -257,7 +257,7 @@ def needed_memory(grid: Grid, dtype: type) -> int:
 
 
 def check_memory(grid: Grid, dtype: type) -> None:
-    """Refuse a grid whose fields the machine cannot hold, or hardly and nobody said that it may, see ``suchus.core.large``.
+    """Refuse a grid whose fields the machine cannot hold, or hardly and nobody said that it may, see ``core.large``.
 
     Raises:
         InvalidDesign: with both numbers, and the cell that would do.

@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.midline import MidlineState
@@ -13,7 +14,6 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 from suchus.flow.solid import SpaceField
 from suchus.flow.trunk import Trunk, in_world
-from suchus.core.kinds import show
 
 _ACROSS = 28
 """Points across a capsule and along it at least, over which its volume is summed [-]."""

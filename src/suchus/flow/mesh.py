@@ -16,14 +16,14 @@ from numba import prange
 from scipy.spatial import KDTree
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.isosurface import isosurface
+from suchus.core.reading import read_mesh
 from suchus.flow.compiled import part, signed, threaded
 from suchus.flow.markers import Markers
 from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
 from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
-from suchus.core.isosurface import isosurface
-from suchus.core.reading import read_mesh
 
 _ALIKE = 1e-6
 """Distance of corners from their mirror images, over the mesh's size, up to which it is symmetric [-]."""

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign, UnreadableFile
-from suchus.flow.fields import Fields
 from suchus.core.writing import new_file
+from suchus.flow.fields import Fields
 
 _UNITS = {"velocity": "m s-1", "pressure": "Pa", "vorticity": "s-1", "fluid_share": "1"}
 _NAMES = {

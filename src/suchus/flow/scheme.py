@@ -15,9 +15,9 @@ import numba
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.compiled import part
 from suchus.flow.grid import check_kinds
-from suchus.core.kinds import show
 
 TRIED = -1.0, 0.0, 3.0
 """Uniform velocities that a scheme has to carry on as they are [m/s]."""

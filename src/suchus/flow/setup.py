@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from suchus.core.errors import Doubtful, InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.body import Body, cuts, thin_share, window_of
 from suchus.flow.compiled import PAD
 from suchus.flow.contact import BodyContact
@@ -22,7 +23,6 @@ from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import Sides
 from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
-from suchus.core.kinds import show
 
 LAYER_CELLS = needed(REFUSED)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re), of a body that is not blunt and in space [-]."""

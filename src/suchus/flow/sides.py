@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
-from suchus.flow.grid import check_kinds
 from suchus.core.kinds import show
+from suchus.flow.grid import check_kinds
 
 
 class Side:

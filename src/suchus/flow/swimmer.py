@@ -19,10 +19,10 @@ import numpy as np
 
 from suchus.core import rotation
 from suchus.core.errors import Diverged, InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.free import FreeBody
 from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, turned
-from suchus.core.kinds import show
 
 
 def spread(given: Sequence[float], axes: int) -> np.ndarray:

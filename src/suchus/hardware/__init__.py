@@ -1,4 +1,10 @@
-"""From a gait to the servos of a robot that stands on a table: angles, pulses, loads, sizes, limits, files, driving."""
+"""From a gait to the servos of a robot that stands on a table: angles, pulses, loads, sizes, limits, files, driving.
+
+``hardware.bus`` has packets, control tables and ports, ``hardware.emulator`` servos that are simulated behind a bus.
+Nothing here knows an experiment.
+
+Start reading with ``hardware.commands``, then ``hardware.drive``.
+"""
 
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.commands import Commands, commands, csv_text, trajectory_text

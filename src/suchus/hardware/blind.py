@@ -6,10 +6,10 @@ import numpy as np
 
 from suchus.hardware.bus import Bus, ServoPlace
 from suchus.hardware.bus.pca9685 import Pulses
-from suchus.robot.control import Sensed
-from suchus.robot.design import Robot, layout
 from suchus.hardware.rig import RigReading
 from suchus.hardware.servo_map import ServoMap
+from suchus.robot.control import Sensed
+from suchus.robot.design import Robot, layout
 
 
 class BlindRig:

@@ -7,8 +7,8 @@ from math import radians
 import numpy as np
 import xarray as xr
 
-from suchus.hardware.bus import Wiring
 from suchus.core.errors import BusFailure, IncompatibleRecord, InvalidDesign
+from suchus.hardware.bus import Wiring
 from suchus.hardware.drive import TickClock
 from suchus.hardware.rig import Rig
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import Crank, Robot, layout
 from suchus.core.checks import require
 from suchus.core.errors import OutsideLimits
 from suchus.hardware.servo_map import ServoLine, ServoMap
+from suchus.robot.design import Crank, Robot, layout
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import START, Gait, check_limits, intended
 

@@ -9,19 +9,19 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import Control, Controller, OpenLoop, needs
-from suchus.robot.design import layout
 from suchus.core.checks import Checks
 from suchus.core.errors import BusFailure, OutsideLimits, SuchusError, UnsuitedRobot
+from suchus.core.files import digest, versions
+from suchus.core.progress import Progress, silent
 from suchus.hardware.blind import BlindRig
 from suchus.hardware.guard import DriveLimits, Guard
 from suchus.hardware.log import DriveLog
 from suchus.hardware.rig import Rig
+from suchus.robot.control import Control, Controller, OpenLoop, needs
+from suchus.robot.design import layout
+from suchus.robot.motion import Gait, check_limits, cycle_targets
 from suchus.sim.land import Run
 from suchus.sim.land.loop import start
-from suchus.robot.motion import Gait, check_limits, cycle_targets
-from suchus.core.progress import Progress, silent
-from suchus.core.files import digest, versions
 
 Stop = Literal["sag", "hold", "off"]
 _EARLY = 0.005  # [rad]; a servo so near to where it begins needs no way there

@@ -5,11 +5,11 @@ from math import isnan
 
 import numpy as np
 
-from suchus.robot.design import Robot, layout
 from suchus.core.errors import OutsideLimits
 from suchus.hardware.commands import Commands
 from suchus.hardware.loads import AT_LIMIT, ServoLoad
 from suchus.hardware.servo_map import ServoMap
+from suchus.robot.design import Robot, layout
 from suchus.robot.motion import Gait
 
 TRACKING = 0.35

@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from suchus.core.progress import Progress, portion, silent
 from suchus.robot.control import Control, OpenLoop, Standing, Swimming
 from suchus.robot.design import STANDING, Robot, Servo, check_needs, layout, with_servos
 from suchus.robot.design.ground import Ground
+from suchus.robot.motion import START, Gait
 from suchus.sim.fault import Fault
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import between, whole
-from suchus.robot.motion import START, Gait
-from suchus.core.progress import Progress, portion, silent
 from suchus.swim.water import swim_of
 
 AT_LIMIT = 0.02

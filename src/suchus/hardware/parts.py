@@ -6,9 +6,9 @@ from math import nan, pi
 
 import numpy as np
 
+from suchus.core.checks import require
 from suchus.robot.design import Cable, Motor, Robot, Rod, Servo, layout
 from suchus.robot.design.body import servos_of
-from suchus.core.checks import require
 from suchus.robot.design.measures import leg_of, spine_of, tail_of
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import foam_centres, volumes

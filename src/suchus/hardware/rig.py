@@ -7,6 +7,7 @@ from time import monotonic
 
 import numpy as np
 
+from suchus.core.errors import BusFailure, InvalidDesign, SuchusError
 from suchus.hardware.bus import (
     FRAMINGS,
     STEPS,
@@ -22,11 +23,10 @@ from suchus.hardware.bus import (
     latency_timer,
     open_port,
 )
+from suchus.hardware.wiring import wiring_text
 from suchus.robot.control import Sensed
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import BusFailure, InvalidDesign, SuchusError
-from suchus.hardware.wiring import wiring_text
 
 BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from suchus.robot.design import Robot, layout
 from suchus.core.errors import UnsuitedRobot
+from suchus.robot.design import Robot, layout
 from suchus.sim.model.export.urdf import urdf
 
 PLUGIN = "dynamixel_hardware_interface/DynamixelHardware"

@@ -4,12 +4,12 @@ from dataclasses import dataclass, fields
 from math import pi
 from pathlib import Path
 
-from suchus.robot import blueprint
-from suchus.robot.design import Robot, layout
 from suchus.core.checks import Checks
-from suchus.robot.design.meaning import meanings
 from suchus.core.errors import InvalidDesign
 from suchus.core.files import write
+from suchus.robot import blueprint
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.meaning import meanings
 
 CHANNELS = 16
 """Of the usual servo board [-]; 19 servos need two of them."""

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Motor, Robot, Servo, layout, with_named_servos
-from suchus.robot.design.scale import coarse_step
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.progress import Progress, silent, staged
 from suchus.hardware.loads import (
     AT_LIMIT,
     FULL_WOUND,
@@ -23,8 +22,9 @@ from suchus.hardware.loads import (
     records_of_each,
     strong,
 )
+from suchus.robot.design import Motor, Robot, Servo, layout, with_named_servos
+from suchus.robot.design.scale import coarse_step
 from suchus.robot.motors import motors as shipped
-from suchus.core.progress import Progress, silent, staged
 
 FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 """How many times as long a gait's period is tried, where no servo of a family is fast or strong enough [-]."""

@@ -4,11 +4,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from suchus.robot.blueprint import described
+from suchus.core.files import read_toml, write
 from suchus.hardware.bus import BoardPlace, BusPlace, ServoPlace, Wiring
+from suchus.robot.blueprint import described
 from suchus.robot.design import Robot
 from suchus.robot.design.meaning import meanings
-from suchus.core.files import read_toml, write
 
 
 def read_wiring(path: str | Path, robot: Robot) -> Wiring:

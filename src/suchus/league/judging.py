@@ -6,9 +6,9 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from suchus.article.verdict import Clause
 from suchus.league.contestant import Interval
 from suchus.league.sealing import Measured, Prediction
-from suchus.article.verdict import Clause
 
 Word = Literal["within", "within, wide", "missed"]
 """``within``: what was measured, in its own interval, meets that of the prediction. ``within, wide``: so, but the

@@ -12,13 +12,13 @@ import numpy as np
 from matplotlib import colormaps
 
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.core.files import read_json, there, write
+from suchus.core.files.provenance import plain
 from suchus.league.contestant import Contestant, Interval, Value
 from suchus.league.judging import WIDEST, WORDS, Judgement, Word, judged
 from suchus.league.sealing import SEAL, Measured, Prediction, Seal, opened, read_prediction, read_seal
 from suchus.league.spread import COVERED
-from suchus.core.files import read_json, there, write
-from suchus.core.files.provenance import plain
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
 """Files of the page."""

@@ -16,20 +16,19 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.errors import InvalidDesign, NotConverged, SuchusError, UnreadableFile
-from suchus.core.jobs import conduct_sweep
-from suchus.league.contestant import Contestant, Found, Interval, Quantity, Value
-from suchus.league.spread import drawn, of_answers, of_draws, widest
-from suchus.core.progress import Progress, silent
 from suchus.core.files import check_replaceable, package_digest, read_json, there, versions, write
 from suchus.core.files.provenance import plain
+from suchus.core.jobs import conduct_sweep
+from suchus.core.progress import Progress, silent
+from suchus.league.contestant import Contestant, Found, Interval, Quantity, Value
+from suchus.league.spread import drawn, of_answers, of_draws, widest
 
 PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
 """Files of a contestant's folder."""
 _ANSWERS = "answers"
 """Folder beside them of what the rungs answered, from which an interrupted prediction goes on."""
 _ROOMS = (
-    "league", "contestants", "water", "land", "hydro", "model", "flow", "design", "motion", "control", "kinematics",
-    "robots", "gaits", "motors",
+    "league", "contestants", "swim/water", "sim/land", "sim/hydro", "sim/model", "flow", "robot",
 )  # fmt: skip
 """Rooms whose source decides a prediction."""
 

@@ -12,16 +12,16 @@ from typing import NamedTuple
 import numpy as np
 
 from suchus.core import rotation
+from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.core.progress import Progress, portion
+from suchus.flow.setup import LAYER_CELLS
+from suchus.league.contestant import Found, Numbers, Predictor
 from suchus.robot.control import Swimming
 from suchus.robot.design import WATER_DENSITY, Robot, layout
 from suchus.robot.design.scale import control_period
 from suchus.robot.design.water import Water
-from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
-from suchus.flow.setup import LAYER_CELLS
-from suchus.sim.land import Lake, Run, simulate
-from suchus.league.contestant import Found, Numbers, Predictor
 from suchus.robot.motion import Curve, Gait, cycle_targets, servo_parts
-from suchus.core.progress import Progress, portion
+from suchus.sim.land import Lake, Run, simulate
 from suchus.swim.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
 from suchus.swim.water.slender import Effort, Model

@@ -8,9 +8,9 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from suchus.robot.design import Robot, servo_names
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.core.kinds import misfits
+from suchus.robot.design import Robot, servo_names
 
 SENSORS = (
     "servo_position",

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot
+from suchus.article.verdict import Clause, Rule
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.experiment import Experiment, Measure, Simulated, silent
-from suchus.visual.figures import LINES, captioned, panels
+from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.article.verdict import Clause, Rule
+from suchus.visual.figures import LINES, captioned, panels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

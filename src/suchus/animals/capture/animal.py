@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 
 from suchus.animals.capture.film import Camera, tracked
 from suchus.animals.capture.tracks import Tracks
-from suchus.robot.design import LEGS
 from suchus.core.checks import Checks
+from suchus.robot.design import LEGS
 
 Swing = Literal["cosine", "jerk_free", "ramp", "hasty"]
 """How far a foot has gone over the time of its swing: half a cosine, with the least jerk, at a constant speed that is

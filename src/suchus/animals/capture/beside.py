@@ -8,8 +8,8 @@ from jaxtyping import Complex, Float
 
 from suchus.animals.capture.retarget import mean_of
 from suchus.animals.capture.walk import Walk
-from suchus.robot.design import LEGS, Robot, hips_ahead, layout, servo_ranges
 from suchus.core.errors import NotConverged, Unreachable
+from suchus.robot.design import LEGS, Robot, hips_ahead, layout, servo_ranges
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
 

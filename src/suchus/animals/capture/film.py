@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from suchus.core import rotation
 from suchus.animals.capture.tracks import Tracks
-from suchus.robot.design import Layout, Robot, check_needs, hips_ahead, layout
+from suchus.core import rotation
 from suchus.core.checks import Checks
+from suchus.robot.design import Layout, Robot, check_needs, hips_ahead, layout
 from suchus.robot.kinematics.tree import BodyFrames, frames, landmarks
 from suchus.robot.motion import START
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, renamed
-from suchus.robot.design import LEGS
 from suchus.core.errors import UnreadableFile
 from suchus.core.reading import read_text
+from suchus.robot.design import LEGS
 
 SUFFIXES = (".trc", ".c3d")
 """How the names of marker files end."""

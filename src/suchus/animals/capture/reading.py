@@ -12,15 +12,15 @@ from typing import Any
 import h5py
 import numpy as np
 
-from suchus.robot import blueprint
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, renamed
 from suchus.animals.capture.walk import Walk
-from suchus.robot.design import LEGS
 from suchus.core.errors import UnknownName, UnreadableFile
 from suchus.core.files import check_file, write
+from suchus.robot import blueprint
+from suchus.robot.design import LEGS
 
 SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
 """Software whose files can be read."""

@@ -12,8 +12,8 @@ from suchus.animals.capture.angles import STANDING
 from suchus.animals.capture.table import AngleCycle
 from suchus.animals.capture.tracks import UnusableTracks
 from suchus.animals.capture.walk import UNSURE, Walk
-from suchus.robot.design import LEGS, Layout, LimbPlace, Robot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.robot.design import LEGS, Layout, LimbPlace, Robot, check_needs, hips_ahead, layout, servo_ranges
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import (
     Bend,

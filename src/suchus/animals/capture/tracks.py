@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import LEGS
 from suchus.core.errors import SuchusError
+from suchus.robot.design import LEGS
 
 NEEDED = ("shoulder", "hip", "tail_base", "tail_tip", *LEGS)
 """Keypoints that a gait is read from, besides ``neck`` or ``snout``; measurements do with fewer."""

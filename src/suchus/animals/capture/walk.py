@@ -15,8 +15,8 @@ from suchus.animals.capture.screen import screened
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
 from suchus.animals.capture.swings import Clock, paced
 from suchus.animals.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking
-from suchus.robot.design import LEGS
 from suchus.core.checks import require
+from suchus.robot.design import LEGS
 
 UNSURE = 0.1
 """Half the width of the interval of a duty factor from which on a foot does not count for the gait's [-]."""

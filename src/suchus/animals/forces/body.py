@@ -9,8 +9,8 @@ import xarray as xr
 from scipy.stats import norm, qmc
 
 from suchus.animals.capture import Seen, UnusableTracks, Walk
-from suchus.robot.design import Robot, Rod, Segment, Shell
 from suchus.core.checks import Checks
+from suchus.robot.design import Robot, Rod, Segment, Shell
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.scale import scaled
 

@@ -15,19 +15,19 @@ from jaxtyping import Float
 from suchus.animals.capture import AngleCycle, UnusableTracks, Walk, to_curves, to_gait
 from suchus.animals.capture.retarget import NEEDED, Duty, mean_of
 from suchus.animals.capture.strides import PHASES
+from suchus.animals.forces.body import Quantities, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
+from suchus.article.paper.walking_salamanders import ANIMAL
+from suchus.core.errors import OutsideLimits
+from suchus.core.progress import Progress, silent
 from suchus.robot.design import GRAVITY, LEGS, Girdle, Robot, Servo, check_needs, hips_ahead, layout
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import scaled
 from suchus.robot.design.servos import with_full_torque, with_servos
-from suchus.core.errors import OutsideLimits
-from suchus.animals.forces.body import Quantities, Unknown, choices, drawn, errors, even, middle, put, sized, unsure
 from suchus.robot.gaits import own_gait
+from suchus.robot.motion import START, Curve, Gait, suits
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import mean_cycle, whole
 from suchus.sim.metrics.foot_forces import PARTS, FootStep, Window, advance, stance_forces, step, weight
-from suchus.robot.motion import START, Curve, Gait, suits
-from suchus.article.paper.walking_salamanders import ANIMAL
-from suchus.core.progress import Progress, silent
 
 SETTLE, CYCLES = 1, 3
 """Cycles that are walked before anything is measured, and that are [-]."""

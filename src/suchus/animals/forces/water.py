@@ -16,13 +16,6 @@ from jaxtyping import Complex, Float
 from suchus import flow
 from suchus.animals.capture import UnusableTracks, Walk
 from suchus.animals.capture.strides import PHASES
-from suchus.robot.design import Robot, check_needs, layout
-from suchus.robot.design.physics import WATER_DENSITY
-from suchus.robot.design.pieces import volumes
-from suchus.robot.design.water import Water
-from suchus.core.errors import UnknownName
-from suchus.flow.immerse import THINNEST
-from suchus.flow.setup import LAYER_CELLS
 from suchus.animals.forces.body import (
     RUNGS,
     Quantities,
@@ -37,13 +30,20 @@ from suchus.animals.forces.body import (
     unsure,
     widened,
 )
-from suchus.sim.land.lake import Lake
-from suchus.sim.land.prescribed import free_sections
-from suchus.sim.metrics import SIMILARITY, swim_numbers
+from suchus.core.errors import UnknownName
+from suchus.core.progress import Progress, portion, silent
+from suchus.flow.immerse import THINNEST
+from suchus.flow.setup import LAYER_CELLS
+from suchus.robot.design import Robot, check_needs, layout
+from suchus.robot.design.physics import WATER_DENSITY
+from suchus.robot.design.pieces import volumes
+from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, swimming_gait
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.motion.swim import lateral_servos
-from suchus.core.progress import Progress, portion, silent
+from suchus.sim.land.lake import Lake
+from suchus.sim.land.prescribed import free_sections
+from suchus.sim.metrics import SIMILARITY, swim_numbers
 from suchus.swim.water import Outline, cycle, displaced, recoil, undulation
 from suchus.swim.water.setting import SwimSetting
 from suchus.swim.water.swim_setup import ResolvedSwim

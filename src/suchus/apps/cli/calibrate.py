@@ -11,16 +11,16 @@ import tyro
 from rich.console import Console
 from rich.table import Table
 
-from suchus.hardware.bus import TABLES, BusPlace, Wiring, straight
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.robot.design import Robot, layout
 from suchus.core.errors import UnknownName
-from suchus.robot.gaits import gait_of
-from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
-from suchus.hardware.calibrate import find_wiring, find_zeros, fit_log, fits_text
-from suchus.robot.motion import intended
 from suchus.core.files import check_replaceable, check_writable, load, write
+from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
+from suchus.hardware.bus import TABLES, BusPlace, Wiring, straight
+from suchus.hardware.calibrate import find_wiring, find_zeros, fit_log, fits_text
+from suchus.robot.design import Robot, layout
+from suchus.robot.gaits import gait_of
+from suchus.robot.motion import intended
 from suchus.robot.robots import ROBOTS
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import tyro
 import xarray as xr
 
-from suchus.robot import blueprint
 from suchus.animals.capture import (
     NEEDED,
     ReadingOptions,
@@ -30,25 +29,26 @@ from suchus.animals.capture import (
     to_gait,
     write_gait,
 )
+from suchus.animals.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, said, walked_forces
+from suchus.animals.overlay import overlay
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.run import run_it
 from suchus.apps.cli.terminal import working
 from suchus.apps.cli.word_checks import check_toml
+from suchus.core.files import check_replaceable, check_writable, write
+from suchus.core.files.store import packed
+from suchus.core.files.tables import COLUMNS, write_tables
+from suchus.core.progress import Progress
+from suchus.robot import blueprint
 from suchus.robot.design import Robot, check_needs
+from suchus.robot.gaits import own_gait
+from suchus.robot.motion import Gait, check_limits
+from suchus.robot.robots import ROBOTS
 from suchus.visual.figures import captioned, places, save
 from suchus.visual.figures.forces import ground_forces_figure, water_forces_figure
 from suchus.visual.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.visual.figures.measured import curvature_figure, strides_figure
-from suchus.animals.overlay import overlay
-from suchus.animals.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, said, walked_forces
-from suchus.robot.gaits import own_gait
-from suchus.robot.motion import Gait, check_limits
-from suchus.core.progress import Progress
-from suchus.core.files import check_replaceable, check_writable, write
-from suchus.core.files.store import packed
-from suchus.core.files.tables import COLUMNS, write_tables
-from suchus.robot.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,8 +14,8 @@ from rich.table import Table
 from suchus.apps.cli.entry import BadCommand, printable
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.word_checks import check_page
-from suchus.core.files import check_replaceable, check_writable
 from suchus.apps.report import OUTCOME, Comparison, compare, load_result, number, quantity, write_comparison
+from suchus.core.files import check_replaceable, check_writable
 
 _MOST = 24
 """Measures that the terminal shows; the page has all of them [-]."""

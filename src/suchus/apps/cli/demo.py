@@ -16,13 +16,13 @@ from suchus.apps.cli.terminal import working
 from suchus.apps.cli.view import ViewWalkOptions, serve_walk
 from suchus.apps.cli.word_checks import check_page
 from suchus.core.checks import require
+from suchus.core.files import check_replaceable, check_writable
+from suchus.core.progress import Progress, staged
 from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import displacement, speed
-from suchus.core.progress import Progress, staged
-from suchus.core.files import check_replaceable, check_writable
 from suchus.visual.replay import replay, save
-from suchus.robot.robots import ROBOTS
 
 ROBOT, GAITS_SHOWN = "caiman", ("belly_crawl", "limbs_only")
 """Robot and gaits that are shown: live the first gait, on a page both side by side."""

@@ -21,8 +21,8 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from suchus.core import machine, threads
 from suchus.apps.cli.entry import BadCommand
+from suchus.core import machine, threads
 from suchus.core.errors import SuchusError
 
 _USAGE = """usage: suchus doctor

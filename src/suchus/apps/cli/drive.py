@@ -17,27 +17,36 @@ import tyro
 import xarray as xr
 from rich.console import Console
 
-from suchus.hardware.bus import FRAMINGS, Instruction, Packet, Port, Wiring
-from suchus.hardware.bus.packets import Framing
-from suchus.hardware.bus.pca9685 import Pulses, open_wires
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import gait_first, parse
 from suchus.apps.cli.terminal import working
-from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator, Standing, Swimming, needs
-from suchus.robot.design import Robot
-from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort
-from suchus.core.errors import BusFailure, UnknownName
-from suchus.experiments.catalog._driven import Driven
-from suchus.visual.figures import styled
-from suchus.robot.gaits import gait_of, own_gait, suits
-from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
-from suchus.robot.motion import START, Gait
-from suchus.core.files import check_writable, save, there
 from suchus.apps.report import PAGE, check_place, save_outcome
 from suchus.apps.report.result import RECORD
-from suchus.robot.robots import ROBOTS
+from suchus.core.errors import BusFailure, UnknownName
+from suchus.core.files import check_writable, save, there
 from suchus.core.stopping import Stopped, finishing
+from suchus.experiments.catalog._driven import Driven
+from suchus.hardware import BlindRig, BusClock, DriveSettings, Rig, WallClock, check_drive, drive, read_map, read_wiring
+from suchus.hardware.bus import FRAMINGS, Instruction, Packet, Port, Wiring
+from suchus.hardware.bus.packets import Framing
+from suchus.hardware.bus.pca9685 import Pulses, open_wires
+from suchus.hardware.emulator import EmulatedBody, Emulator, MemoryPort
+from suchus.robot.control import (
+    Control,
+    Coordinated,
+    HeadingRule,
+    OpenLoop,
+    PatternGenerator,
+    Standing,
+    Swimming,
+    needs,
+)
+from suchus.robot.design import Robot
+from suchus.robot.gaits import gait_of, own_gait, suits
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.swim.water import swim_of
+from suchus.visual.figures import styled
 
 SWIM = "swim"
 """Gait that is the robot's own wave, as in suchus view --lake."""

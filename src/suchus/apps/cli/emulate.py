@@ -9,20 +9,20 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from suchus.hardware.bus import BusPlace, BusProtocol, Wiring, straight
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.view import pages_of_viewer
-from suchus.robot.design import Robot
-from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, Server, Trouble
-from suchus.sim.faults import FAULTS, from_table
-from suchus.robot.gaits import own_gait
-from suchus.hardware import read_wiring, write_wiring
-from suchus.sim.land import Ground, Lake
-from suchus.robot.motion import Gait
 from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
+from suchus.hardware import read_wiring, write_wiring
+from suchus.hardware.bus import BusPlace, BusProtocol, Wiring, straight
+from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, Server, Trouble
+from suchus.robot.design import Robot
+from suchus.robot.gaits import own_gait
+from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import FAULTS, from_table
+from suchus.sim.land import Ground, Lake
 
 _BAUD = {
     "dynamixel": 1_000_000,

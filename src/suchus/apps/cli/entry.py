@@ -72,7 +72,9 @@ class Subcommand:
 
 
 COMMANDS = (
-    Subcommand("demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.apps.cli.demo:demo", output="page"),
+    Subcommand(
+        "demo", "[--no-browser] [--out FILE.html]", "see a first walk", "suchus.apps.cli.demo:demo", output="page"
+    ),
     Subcommand(
         "reproduce",
         "[--out DIR] [--jobs N]",

@@ -9,13 +9,13 @@ import tyro
 
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.word_checks import given
-from suchus.robot.design import Robot
 from suchus.core.errors import UnknownName
-from suchus.robot.gaits import own_gait
-from suchus.sim.model.export import Format, export
-from suchus.robot.motion import Gait
 from suchus.core.files import check_name, check_writable
+from suchus.robot.design import Robot
+from suchus.robot.gaits import own_gait
+from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.model.export import Format, export
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,13 +8,12 @@ from typing import Annotated
 
 import tyro
 
-from suchus.robot import blueprint
 from suchus.apps.cli.options import gait_first, parse
 from suchus.apps.cli.terminal import working
-from suchus.robot.design import Robot
 from suchus.core.checks import require
 from suchus.core.errors import OutsideLimits
-from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
+from suchus.core.progress import staged
 from suchus.hardware import (
     ServoLoad,
     cases,
@@ -32,9 +31,10 @@ from suchus.hardware import (
 )
 from suchus.hardware.limits import TRACKING
 from suchus.hardware.loads import AT_LIMIT
+from suchus.robot import blueprint
+from suchus.robot.design import Robot
+from suchus.robot.gaits import GAITS, own_gait, suits
 from suchus.robot.motion import Gait
-from suchus.core.progress import staged
-from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.robot.robots import ROBOTS
 
 MARK = "suchus_commands.json"

@@ -8,14 +8,14 @@ from typing import Annotated
 
 import tyro
 
-from suchus.core import threads
-from suchus.atlas import CASES, GRIDS, LONGEST, Case, FlowOutcome, chosen, compute_all, finished_outcome
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import SCHEDULER, parse
 from suchus.apps.cli.terminal import working
-from suchus.visual.figures.atlas import atlas_files, entries, summary, write_atlas
-from suchus.core.jobs import at_scheduler
+from suchus.atlas import CASES, GRIDS, LONGEST, Case, FlowOutcome, chosen, compute_all, finished_outcome
+from suchus.core import threads
 from suchus.core.files import check_replaceable, check_writable
+from suchus.core.jobs import at_scheduler
+from suchus.visual.figures.atlas import atlas_files, entries, summary, write_atlas
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,15 +7,15 @@ from typing import Annotated
 
 import tyro
 
-from suchus.robot import blueprint
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.run import run_it
 from suchus.apps.cli.word_checks import check_toml
-from suchus.robot.design import layout
 from suchus.core.errors import OutsideLimits
-from suchus.sim.model.importing import Draft, Words, import_robot
-from suchus.robot.motion import Gait, draft_gait
 from suchus.core.files import check_replaceable, check_writable
+from suchus.robot import blueprint
+from suchus.robot.design import layout
+from suchus.robot.motion import Gait, draft_gait
+from suchus.sim.model.importing import Draft, Words, import_robot
 
 _METRES = Annotated[float | None, tyro.conf.arg(metavar="METRES")]
 

@@ -7,16 +7,16 @@ from typing import Annotated
 
 import tyro
 
-from suchus.core import threads
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
 from suchus.contestants import CONTESTANTS, measured_file
+from suchus.core import threads
 from suchus.core.errors import UnreadableFile
+from suchus.core.files import check_replaceable, check_writable, there
 from suchus.league import every, find
 from suchus.league.page import FIGURE, OUTCOMES, PAGE, LeagueEntry, all_standings, shown, standing, write_page
 from suchus.league.sealing import sealed_prediction
-from suchus.core.files import check_replaceable, check_writable, there
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,8 +9,8 @@ import tyro
 
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
-from suchus.core.files import check_replaceable, check_writable
 from suchus.apps.report.lessons import lesson_files, write_lessons
+from suchus.core.files import check_replaceable, check_writable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

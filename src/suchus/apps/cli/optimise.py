@@ -11,12 +11,12 @@ import tyro
 from suchus.apps.cli.options import SCHEDULER, parse
 from suchus.apps.cli.terminal import working
 from suchus.core.errors import UnknownName
+from suchus.core.files import check_name, check_replaceable, check_writable, there
 from suchus.core.jobs import at_scheduler
 from suchus.experiments.optimise import AIMS, READY, Optimisation, read_optimisation, write_results
 from suchus.experiments.optimise import optimise as conduct
 from suchus.experiments.optimise.conduct import run_files
 from suchus.experiments.optimise.results import RESULT
-from suchus.core.files import check_name, check_replaceable, check_writable, there
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

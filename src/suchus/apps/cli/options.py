@@ -14,9 +14,9 @@ from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, Pri
 
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.word_checks import given
-from suchus.robot.design import Robot
 from suchus.core.errors import SuchusError, UnknownName
 from suchus.experiments.experiment import Experiment
+from suchus.robot.design import Robot
 from suchus.robot.gaits import gait_of
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS

@@ -9,18 +9,18 @@ from typing import Annotated
 
 import tyro
 
-from suchus.robot import blueprint
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
-from suchus.robot.design import Robot
-from suchus.robot.gaits import own_gait
+from suchus.apps.report.building_sheet import PAGE, floats_said, mass_said, write_parts
+from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.hardware import commands, straight
 from suchus.hardware.outlines import libraries
 from suchus.hardware.parts import PLASTIC, WALL, sheet
 from suchus.hardware.ros import unfit
+from suchus.robot import blueprint
+from suchus.robot.design import Robot
+from suchus.robot.gaits import own_gait
 from suchus.robot.motion import Gait
-from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
-from suchus.apps.report.building_sheet import PAGE, floats_said, mass_said, write_parts
 from suchus.robot.robots import ROBOTS
 
 MARK = "suchus_parts.json"

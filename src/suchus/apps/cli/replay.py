@@ -8,15 +8,15 @@ from typing import Annotated
 import tyro
 import xarray as xr
 
-from suchus.core import files as record
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.word_checks import check_page
-from suchus.robot.design import Robot
-from suchus.hardware import held
+from suchus.core import files as record
 from suchus.core.files import check_file, check_replaceable
-from suchus.visual.replay import replay, save
+from suchus.hardware import held
+from suchus.robot.design import Robot
 from suchus.robot.robots import ROBOTS
+from suchus.visual.replay import replay, save
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,19 +12,19 @@ import tyro
 
 import suchus
 import suchus.experiments.catalog
-from suchus.core import threads
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import OUT, QUICK, parse
 from suchus.apps.cli.run import perform
 from suchus.apps.cli.terminal import Bars, working
+from suchus.apps.report import Failure, Result, check_place, load_result, whole, write_page
+from suchus.core import threads
 from suchus.core.errors import SuchusError
-from suchus.experiments.experiment import Experiment
-from suchus.experiments.catalog import EXPERIMENTS
+from suchus.core.files import check_replaceable, check_writable, made_alike, sweep
 from suchus.core.jobs import Job, finish, place_for
 from suchus.core.progress import Progress
-from suchus.core.files import check_replaceable, check_writable, made_alike, sweep
-from suchus.apps.report import Failure, Result, check_place, load_result, whole, write_page
 from suchus.core.writing import asked_to_replace, replacing
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Experiment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,17 +16,17 @@ from suchus.apps.cli.entry import PROJECT
 from suchus.apps.cli.options import TABLES, choose
 from suchus.apps.cli.shelves import entry, title
 from suchus.apps.cli.terminal import working
-from suchus.robot.design import Robot, lacking
-from suchus.core.errors import plain_warnings
-from suchus.experiments.experiment import Experiment, Outcome
-from suchus.experiments.catalog import EXPERIMENTS
-from suchus.visual.figures import styled
-from suchus.robot.gaits import DRAFTED, GAITS
-from suchus.core.progress import Progress
-from suchus.core.files import check_writable, write_tables
 from suchus.apps.report import OUTCOME, PAGE, answer, carried, check_place, quantity, save_outcome
-from suchus.core.sources import current
 from suchus.article.verdict import Verdict, listed
+from suchus.core.errors import plain_warnings
+from suchus.core.files import check_writable, write_tables
+from suchus.core.progress import Progress
+from suchus.core.sources import current
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Experiment, Outcome
+from suchus.robot.design import Robot, lacking
+from suchus.robot.gaits import DRAFTED, GAITS
+from suchus.visual.figures import styled
 
 _COLOURS = {
     "reproduced": "green",

@@ -10,19 +10,19 @@ from typing import Annotated
 
 import tyro
 
-from suchus.robot import blueprint
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
-from suchus.robot.design import Motor, Robot
+from suchus.apps.report.size_page import PAGE, answer, write_size
 from suchus.core.checks import require
+from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
+from suchus.hardware import cases, size
+from suchus.robot import blueprint
+from suchus.robot.design import Motor, Robot
+from suchus.robot.gaits import gait_of, own_gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
 from suchus.sim.faults import FAULTS, from_table
-from suchus.robot.gaits import gait_of, own_gait
-from suchus.hardware import cases, size
-from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
-from suchus.apps.report.size_page import PAGE, answer, write_size
-from suchus.robot.robots import ROBOTS
 
 MARK = "suchus_size.json"
 

@@ -11,15 +11,15 @@ import xarray as xr
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import CSV, SCHEDULER, TABLES, parse
 from suchus.apps.cli.terminal import working
+from suchus.article.verdict import listed
 from suchus.core.errors import UnreadableFile
-from suchus.experiments.catalog import EXPERIMENTS
+from suchus.core.files import check_name, check_replaceable, there, write_tables
 from suchus.core.jobs import at_scheduler
 from suchus.core.jobs.store import RESULTS, TABLE
-from suchus.core.files import check_name, check_replaceable, there, write_tables
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.study import Claims, answer_finished, conduct, conduct_claims, read_study
 from suchus.experiments.study.claims_page import SHARES, write_claims, write_renewed
 from suchus.experiments.study.varied import conduct_varied, varied_finished, varied_study
-from suchus.article.verdict import listed
 
 CLAIMS = "claims"
 

@@ -11,15 +11,15 @@ import tyro
 from suchus.animals.capture import ReadingOptions, read_tracks
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.robot.design import Robot, check_needs
-from suchus.core.checks import require
-from suchus.robot.gaits import own_gait
-from suchus.robot.motion import Gait
-from suchus.core.files import there
-from suchus.robot.robots import ROBOTS
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.replay import FilmedAnimal, Take, beside, takes
 from suchus.apps.viewer.swim import films, vortex_film
+from suchus.core.checks import require
+from suchus.core.files import there
+from suchus.robot.design import Robot, check_needs
+from suchus.robot.gaits import own_gait
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
 from suchus.swim.water import swim_of
 
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")

@@ -13,18 +13,20 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Bool, Float
 
-from suchus.core import rotation
-from suchus.robot.control import Standing
-from suchus.robot.control.standing import BALANCE
-from suchus.robot.design import Robot, layout, servo_ranges
-from suchus.robot.design.scale import control_period, scaled
 from suchus.apps.envs.actor import Actor
 from suchus.apps.envs.senses import Observer, turning
 from suchus.apps.envs.tanks import Tanks
 from suchus.apps.envs.task import AnyGoal, Task, Terms, remaining
+from suchus.core import rotation
 from suchus.core.errors import Diverged, InvalidDesign
-from suchus.sim.fault import Fault, check_faults
+from suchus.robot.control import Standing
+from suchus.robot.control.standing import BALANCE
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.robot.design.scale import control_period, scaled
 from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.robot.motion import check_limits, check_speeds, cycle_targets, hip_height
+from suchus.robot.motion.rising import size_of, stretched
+from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land import Ground, Push, Run
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.batch import Beginning
@@ -33,8 +35,6 @@ from suchus.sim.land.loop import Loop
 from suchus.sim.land.run import check_pushes
 from suchus.sim.model import activations, compile_model, standing
 from suchus.sim.model.export import home
-from suchus.robot.motion import check_limits, check_speeds, cycle_targets, hip_height
-from suchus.robot.motion.rising import size_of, stretched
 
 STILL = 3.0
 """How long a robot has stood before an episode of standing begins [s]; it has settled after two."""

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.robot.control import Control, Controller, HeadingHold, Runs
-from suchus.robot.design import layout
-from suchus.robot.design.scale import control_period
 from suchus.apps.envs.senses import felt, part, turning
 from suchus.apps.envs.shelf import STEPS
 from suchus.apps.envs.task import Task
 from suchus.apps.envs.vector import CrocodileVectorEnv
+from suchus.robot.control import Control, Controller, HeadingHold, Runs
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period
 from suchus.robot.motion import Gait, Steer, cycle_targets, movement
 
 Policy = Callable[[Float[np.ndarray, "run n"]], Float[np.ndarray, "run servo"]]

@@ -11,9 +11,9 @@ from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
 from suchus.core import rotation
+from suchus.core.errors import UnknownName
 from suchus.robot.control import Sensed
 from suchus.robot.design import GRAVITY, Robot, layout, servo_ranges
-from suchus.core.errors import UnknownName
 from suchus.robot.robots import ROBOTS, beside_article
 
 _CAIMAN = ROBOTS["caiman"]

@@ -7,14 +7,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
-from suchus.robot.design import Robot
 from suchus.apps.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task
 from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
+from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS, gait_of
-from suchus.sim.land import Ground, Lake
-from suchus.sim.land.waters import Slice, Space
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Lake
+from suchus.sim.land.waters import Slice, Space
 
 
 class NoGymnasium(SuchusError, ImportError):

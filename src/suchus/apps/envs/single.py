@@ -12,16 +12,16 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.patches import Circle
 
-from suchus.robot.design import Robot, layout
 from suchus.apps.envs.pack import Pack
 from suchus.apps.envs.senses import senses
 from suchus.apps.envs.shelf import chosen
 from suchus.apps.envs.task import TERMS, AnyGoal, Landing, Task, Terms
 from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.robot.design import Robot, layout
+from suchus.robot.robots import beside_article
+from suchus.sim.land.lake import up
 from suchus.visual.figures import COLOURS, new, styled
 from suchus.visual.figures.posture import draw_posture
-from suchus.sim.land.lake import up
-from suchus.robot.robots import beside_article
 
 RENDER_MODES = ("rgb_array",)
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.robot.design import layout
 from suchus.apps.envs.actor import Actor
 from suchus.core.errors import Diverged, InvalidDesign, NotConverged, OutsideLimits
+from suchus.core.progress import silent
+from suchus.robot.design import layout
 from suchus.sim.fault import Fault
 from suchus.sim.land import Push, Run
 from suchus.sim.land.batch import Beginning, SimulationBatch
-from suchus.core.progress import silent
 from suchus.swim.water import Outline
 
 if TYPE_CHECKING:

@@ -9,6 +9,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.design import (
     STANDING,
     Robot,
@@ -19,18 +21,16 @@ from suchus.robot.design import (
     with_servos,
     with_speed_lines,
 )
-from suchus.core.checks import Checks
 from suchus.robot.design.scale import control_period, scaled, scaled_fields
-from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.gaits import GAITS, own_gait, suits
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
 from suchus.sim.faults import FAULTS
-from suchus.robot.gaits import GAITS, own_gait, suits
 from suchus.sim.land import Ground, Lake
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import FORMS, Form, Slice, Space
-from suchus.robot.motion import Gait
-from suchus.robot.robots import ROBOTS
 from suchus.swim.water import swim_of
 
 

@@ -9,7 +9,6 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from suchus.core.checks import require
 from suchus.apps.envs.pack import Pack
 from suchus.apps.envs.shelf import chosen
 from suchus.apps.envs.single import (
@@ -22,6 +21,7 @@ from suchus.apps.envs.single import (
     step_info,
 )
 from suchus.apps.envs.task import Task
+from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
 
 _AT_RESET = ("time", "fault")  # what is said when an episode begins

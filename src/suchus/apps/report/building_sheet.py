@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from math import degrees, isfinite
 from pathlib import Path
 
-from suchus.visual import figures
-from suchus.robot.design import Robot
+from suchus.apps.report.rendering import embedded, render
+from suchus.core.files import write
 from suchus.hardware.commands import Commands, trajectory_text
 from suchus.hardware.outlines import plates_dxf, stl, top_dxf
 from suchus.hardware.parts import BodyPart, Sheet
 from suchus.hardware.ros import controllers, described, note, unfit
+from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
-from suchus.core.files import write
-from suchus.apps.report.rendering import embedded, render
+from suchus.visual import figures
 
 PAGE = "index.html"
 

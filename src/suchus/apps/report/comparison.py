@@ -6,10 +6,10 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-from suchus.core.errors import IncompatibleRecord
-from suchus.core.files import write
 from suchus.apps.report.rendering import render
 from suchus.apps.report.result import Moving, Picture, Result
+from suchus.core.errors import IncompatibleRecord
+from suchus.core.files import write
 
 _SHOWN = 80
 """Letters of a setting that the page shows [-]."""

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
+from suchus.core.files import versions, write
+from suchus.core.progress import Progress, silent, staged
 from suchus.robot.control import Swimming
 from suchus.robot.design.ground import Ground
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
 from suchus.robot.motion import START
-from suchus.core.progress import Progress, silent, staged
-from suchus.core.files import versions, write
-from suchus.visual.replay.page import environment, rendered
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
+from suchus.visual.replay.page import environment, rendered
 
 _TIMESTEP, _EVERY = 0.005, 2  # of the physics [s], and of the samples: a page is to be light, and replays are smoothed
 _DEEP = 1.0

@@ -12,12 +12,12 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
-from suchus.core.errors import UnreadableFile
-from suchus.experiments.experiment import Measure
-from suchus.experiments.catalog import EXPERIMENTS
-from suchus.core.files import read_text, write
 from suchus.apps.report.rendering import number, quantity, render, tied
 from suchus.apps.report.result import Result, load_result
+from suchus.core.errors import UnreadableFile
+from suchus.core.files import read_text, write
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.experiment import Measure
 
 PAGE = "index.html"
 """Name of the page in the folder of an outcome."""

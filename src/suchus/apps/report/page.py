@@ -10,21 +10,21 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from suchus.visual import figures
-from suchus.robot.blueprint import described_robot
-from suchus.robot.design import Chosen, Robot, tables_of, unit_at, value_at
-from suchus.robot.design.meaning import meanings, unit
-from suchus.core.errors import SuchusError
-from suchus.robot.gaits import GAITS
-from suchus.sim.metrics.energy import METRES
-from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
-from suchus.core.files import versions, write
 from suchus.apps.report.beside import beside
 from suchus.apps.report.outcome_page import MARKS, PAGE, told, write_outcome_page
 from suchus.apps.report.rendering import embedded, number, quantity, render, tied
 from suchus.apps.report.result import Failure, Result
-from suchus.robot.robots import ROBOTS
+from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
+from suchus.core.errors import SuchusError
+from suchus.core.files import versions, write
 from suchus.experiments.claims import counted, standings
+from suchus.robot.blueprint import described_robot
+from suchus.robot.design import Chosen, Robot, tables_of, unit_at, value_at
+from suchus.robot.design.meaning import meanings, unit
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics.energy import METRES
+from suchus.visual import figures
 
 _ENOUGH = 60
 """Letters that say something [-]."""

@@ -9,11 +9,11 @@ from typing import Any
 from markupsafe import Markup
 from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 
-from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.visual.figures import WIDTH
-from suchus.core.files import read_json, read_text
 from suchus.apps.report.rendering import embedded
 from suchus.article.verdict import Word
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.core.files import read_json, read_text
+from suchus.visual.figures import WIDTH
 
 OUTCOME = "outcome.json"
 RECORD = "record.nc"

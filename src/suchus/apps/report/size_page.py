@@ -7,14 +7,14 @@ from math import degrees, isfinite
 from pathlib import Path
 from typing import Any
 
-from suchus.robot import blueprint
-from suchus.visual import figures
-from suchus.robot.design import Motor, layout
-from suchus.visual.figures.servos import Used, draw_use
+from suchus.apps.report.rendering import embedded, number, render
+from suchus.core.files import write
 from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
 from suchus.hardware.sizing import ServoFamily, Sizing, fitted, use, why
-from suchus.core.files import write
-from suchus.apps.report.rendering import embedded, number, render
+from suchus.robot import blueprint
+from suchus.robot.design import Motor, layout
+from suchus.visual import figures
+from suchus.visual.figures.servos import Used, draw_use
 
 PAGE, SERVOS, FAMILIES, ROBOT = "size.html", "servos.csv", "families.csv", "robot.toml"
 _COLUMNS = (

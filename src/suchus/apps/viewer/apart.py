@@ -7,13 +7,13 @@ from contextlib import suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 
-from suchus.robot.design import Robot
-from suchus.core.errors import SuchusError
-from suchus.core.jobs.processes import deaf
-from suchus.core.stopping import end_with_parent
 from suchus.apps.viewer.server import CannotServe, Viewer
 from suchus.apps.viewer.stage import camera
 from suchus.apps.viewer.watch_page import WatchedRobot, WatchPage
+from suchus.core.errors import SuchusError
+from suchus.core.jobs.processes import deaf
+from suchus.core.stopping import end_with_parent
+from suchus.robot.design import Robot
 
 _PICTURE = 1 / 25  # [s]; between two pictures that are handed over
 _GONE = (EOFError, OSError)  # what a pipe says when the other end has ended

@@ -6,12 +6,12 @@ from typing import Any, Literal
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.robot.design import Robot
-from suchus.robot.design.ground import Relief
-from suchus.sim.fault import Fault
-from suchus.robot.robots import beside_article
 from suchus.apps.viewer.bodies import BodyPoses, pieces
 from suchus.apps.viewer.replay import FilmedAnimal
+from suchus.robot.design import Robot
+from suchus.robot.design.ground import Relief
+from suchus.robot.robots import beside_article
+from suchus.sim.fault import Fault
 
 Look = Literal["skin", "collision geoms"]
 _MARK, _WORD = 0.026, 0.035  # [m]; radius of a mark on the article's robot, and how far above it its word is

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from math import isfinite, radians
 from types import MappingProxyType
 
-from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait, check_limits
 from suchus.robot.robots import beside_article
 

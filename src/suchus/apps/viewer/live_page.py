@@ -8,16 +8,16 @@ from typing import Any, NamedTuple
 
 from viser import uplot
 
-from suchus.robot.blueprint import render
-from suchus.robot.design import Robot
-from suchus.sim.faults import FAULTS, Limp, numbers
-from suchus.robot.gaits import GAITS, suits
-from suchus.robot.motion import Gait
 from suchus.apps.viewer.knobs import Knob, knobs_of, shown
 from suchus.apps.viewer.plots import Plots
 from suchus.apps.viewer.server import BrowserPage
 from suchus.apps.viewer.session import Instant, Session, Settings, Switch, plain_knobs
 from suchus.apps.viewer.stage import WalkScene
+from suchus.robot.blueprint import render
+from suchus.robot.design import Robot
+from suchus.robot.gaits import GAITS, suits
+from suchus.robot.motion import Gait
+from suchus.sim.faults import FAULTS, Limp, numbers
 
 
 class SavedFile(NamedTuple):

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from suchus.robot.design import GRAVITY, Robot
+from suchus.sim.metrics.gait import LOADED_SHARE
 from suchus.visual.figures import COLOURS
 from suchus.visual.figures.style import limb_colours
-from suchus.sim.metrics.gait import LOADED_SHARE
 
 _POINTS = 400  # of a line; more are not seen
 _LIGHT = 0.1  # [kg]; the loads of lighter bodies are shown in millinewtons

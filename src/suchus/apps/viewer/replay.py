@@ -9,15 +9,15 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus.animals.capture import Tracks, UnusableTracks, observe
+from suchus.apps.viewer.history import table_of
+from suchus.core.errors import IncompatibleRecord, UnknownName
+from suchus.core.files import load
+from suchus.hardware import held
 from suchus.robot.design import LEGS, Robot, joint_names
 from suchus.robot.design.ground import Ground
-from suchus.core.errors import IncompatibleRecord, UnknownName
-from suchus.hardware import held
 from suchus.robot.motion import START
-from suchus.sim.record import VARIABLES, check_land, ground_of
-from suchus.core.files import load
 from suchus.robot.robots import ROBOTS
-from suchus.apps.viewer.history import table_of
+from suchus.sim.record import VARIABLES, check_land, ground_of
 
 _NEEDED = ("position", "orientation", "joint_angle", "centre_of_mass", "foot_position", "foot_force", "belly_force",
            "tail_force")  # fmt: skip

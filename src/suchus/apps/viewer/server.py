@@ -26,9 +26,9 @@ from websockets.asyncio import server
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from suchus.core.errors import SuchusError
 from suchus.apps.viewer.plots import PLOTS
 from suchus.apps.viewer.stage import CAMERA, LOOKS_AT
+from suchus.core.errors import SuchusError
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 """Names of this computer that no other one reaches."""

@@ -7,16 +7,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from suchus.robot.control import LAWS, Coordinated, HeadingRule, Swimming
-from suchus.robot.design import Robot, front_segment, layout
-from suchus.robot.design.ground import BEFORE, Bumps
-from suchus.robot.design.scale import coarse_step, control_period
-from suchus.core.errors import Diverged, SuchusError
-from suchus.sim.fault import Fault
-from suchus.sim.faults import from_table
-from suchus.sim.land import Ground, Lake, Live, Push, Run
-from suchus.robot.motion import START, Gait, check_limits, divided
-from suchus.robot.robots import beside_article
 from suchus.apps.viewer.history import History
 from suchus.apps.viewer.knobs import (
     AIR_FRACTION,
@@ -32,6 +22,16 @@ from suchus.apps.viewer.knobs import (
     push_on,
     tuned,
 )
+from suchus.core.errors import Diverged, SuchusError
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Swimming
+from suchus.robot.design import Robot, front_segment, layout
+from suchus.robot.design.ground import BEFORE, Bumps
+from suchus.robot.design.scale import coarse_step, control_period
+from suchus.robot.motion import START, Gait, check_limits, divided
+from suchus.robot.robots import beside_article
+from suchus.sim.fault import Fault
+from suchus.sim.faults import from_table
+from suchus.sim.land import Ground, Lake, Live, Push, Run
 
 Switch = Literal["spine", "tail", "coordination", "heading", "swims"]
 

@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 from mjviser.conversions import create_primitive_mesh
 
-from suchus.robot.design import GRAVITY, Robot, front_segment, layout
-from suchus.robot.design.ground import Relief, heights, slope
-from suchus.sim.fault import Fault
-from suchus.visual.figures import COLOURS
-from suchus.visual.figures.style import limb_colours
-from suchus.sim.metrics.gait import LOADED_SHARE
-from suchus.sim.model import compile_model
-from suchus.robot.robots import beside_article
-from suchus.core.rotation import rotate
 from suchus.apps.viewer.bodies import support
 from suchus.apps.viewer.drawn import DrawnRobot, Look
+from suchus.core.rotation import rotate
+from suchus.robot.design import GRAVITY, Robot, front_segment, layout
+from suchus.robot.design.ground import Relief, heights, slope
+from suchus.robot.robots import beside_article
+from suchus.sim.fault import Fault
+from suchus.sim.metrics.gait import LOADED_SHARE
+from suchus.sim.model import compile_model
+from suchus.visual.figures import COLOURS
+from suchus.visual.figures.style import limb_colours
 
 _SIDES = 12  # of a rod's section
 

@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord
-from suchus.visual.figures import vortices
 from suchus.core.files import load
+from suchus.visual.figures import vortices
 from suchus.visual.skin.mesh import Mesh
 
 _FIELDS = ("vorticity", "pressure")

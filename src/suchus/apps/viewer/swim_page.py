@@ -11,12 +11,12 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 from viser import uplot
 
-from suchus.visual.figures import COLOURS, vortices
-from suchus.visual.skin.mesh import Mesh
 from suchus.apps.viewer.plots import AXIS, PLOTS, Line, legend, series
 from suchus.apps.viewer.server import BrowserPage
 from suchus.apps.viewer.stage import light, rgb
 from suchus.apps.viewer.swim import Film, PlottedCurve, VortexFilm, colours
+from suchus.visual.figures import COLOURS, vortices
+from suchus.visual.skin.mesh import Mesh
 
 _CYCLE = 4.0  # [s]; in which a cycle is played at speed 1
 _INKS = (COLOURS["ours"], COLOURS["limbs_only"], COLOURS["tail"], COLOURS["limbs_tail_lifted"])

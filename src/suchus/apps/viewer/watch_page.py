@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from viser import uplot
 
-from suchus.robot.design import Robot, layout
 from suchus.apps.viewer.history import History
 from suchus.apps.viewer.plots import Plots
 from suchus.apps.viewer.server import BrowserPage
 from suchus.apps.viewer.stage import WalkScene
+from suchus.robot.design import Robot, layout
 
 _DRAWN = 3  # frames for one renewal of numbers and track
 _PLOT = 0.3  # [s]; between two redraws of the plots

@@ -12,10 +12,10 @@ from math import isfinite
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar, get_args
 
-from suchus.core.errors import IncompatibleRecord
 from suchus.article.paper import CLAIMS, Claim
 from suchus.article.verdict import ladder
 from suchus.article.verdict.rule import Rule, interval, listed
+from suchus.core.errors import IncompatibleRecord
 
 ROBUST = 0.9
 """A verdict is fragile if fewer plausible designs than this share agree with it [-].

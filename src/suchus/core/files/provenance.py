@@ -65,11 +65,16 @@ def code_digest(*rooms: str) -> str:
     Comments, docstrings and line breaks change nothing.
 
     Args:
-        rooms: names of folders or of modules, as ``land`` or ``study/claims.py``.
+        rooms: paths of folders or of modules, as ``sim/land`` or ``experiments/study/claims.py``.
+
+    Raises:
+        FileNotFoundError: there is no such folder or module.
     """
     text = hashlib.sha256()
     for room in rooms:
         place = _PACKAGE / room
+        if not place.exists():
+            raise FileNotFoundError(f"suchus has no {room}, whose source was to be compared.")
         for file in [place] if place.is_file() else sorted([*place.rglob("*.py"), *place.rglob("*.toml")]):
             source = file.read_bytes() if file.suffix == ".toml" else syntax_of(file.read_bytes())
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + source + b"\0")

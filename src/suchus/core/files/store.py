@@ -13,8 +13,8 @@ from xarray.backends import H5NetCDFStore
 from xarray.backends.locks import HDF5_LOCK
 
 from suchus.core.errors import IncompatibleRecord
-from suchus.core.reading import check_file, unreadable
 from suchus.core.files.provenance import plain
+from suchus.core.reading import check_file, unreadable
 from suchus.core.writing import keep
 
 _SEAL = b"\nsuchus sha256 "

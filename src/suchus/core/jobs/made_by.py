@@ -8,14 +8,16 @@ from suchus.core.sources import current
 
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 MADE_BY = (
-    "blueprint", "catalog.py", "control", "design", "fault.py", "faults", "gaits", "hydro", "kinds.py", "kinematics",
-    "land", "metrics", "model", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py",
-    "sources.py", *(f"study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
+    "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/kinds.py", "core/reading.py",
+    "core/rotation.py", "core/sources.py", "robot", "sim",
+    *(f"experiments/study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )  # fmt: skip
 """Whose code decides the numbers of a run on land."""
 FLOW = (
-    "blueprint", "catalog.py", "design", "fingerprint.py", "flow", "hydro", "isosurface.py", "kinds.py", "kinematics",
-    "metrics", "motion", "motors", "paper", "reading.py", "record", "robots", "rotation.py", "sources.py", "water",
+    "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/fingerprint.py", "core/isosurface.py",
+    "core/kinds.py", "core/reading.py", "core/rotation.py", "core/sources.py", "flow", "robot/blueprint",
+    "robot/design", "robot/kinematics", "robot/motion", "robot/motors", "robot/robots", "sim/hydro", "sim/metrics",
+    "sim/record", "swim/water",
 )  # fmt: skip
 """Whose code decides the numbers of a swim by CFD."""
 

@@ -18,9 +18,9 @@ import xarray as xr
 
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.core.jobs.made_by import deciding
 from suchus.core.files import check_writable, load, read_json, save, there
 from suchus.core.files.store import packed as packed_record
+from suchus.core.jobs.made_by import deciding
 from suchus.core.writing import keep, write
 
 _NUMBERS, _COLUMN, _ABOUT, _ORDER = "numbers", "column", "about", "order"  # of a table that is packed

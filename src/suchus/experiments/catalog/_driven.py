@@ -8,14 +8,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.robot.design import Robot
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments.catalog._replayed import replayed
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.robot.gaits import own_gait
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.hardware import about, held
+from suchus.robot.design import Robot
+from suchus.robot.gaits import own_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _DEGREES = 180.0 / np.pi
 

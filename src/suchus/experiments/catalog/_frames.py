@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.robot.kinematics import dh
 from suchus.article.paper.tables import Chain
+from suchus.robot.kinematics import dh
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _AZIMUTH, _ELEVATION = -0.32 * pi, 0.16 * pi
 """From where the chain is seen: about the vertical from straight ahead, and above the level [rad]."""

@@ -6,8 +6,8 @@ from typing import Any
 
 import xarray as xr
 
-from suchus.robot.design import Robot
 from suchus.experiments.experiment import Replay
+from suchus.robot.design import Robot
 from suchus.visual.replay import replay
 
 

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from suchus.core.progress import Progress, silent
 from suchus.robot.control import Swimming
 from suchus.robot.design import Robot, with_values
 from suchus.robot.design.flotation import float_hull
+from suchus.robot.motion import LIMBS_UP, Gait, with_limbs
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import capacity
-from suchus.robot.motion import LIMBS_UP, Gait, with_limbs
-from suchus.core.progress import Progress, silent
 from suchus.swim.water import Outline, Undulation, taken, undulation, unevenness
 
 AS_TAKEN = " as taken"

@@ -6,15 +6,15 @@ from typing import ClassVar
 
 import xarray as xr
 
-from suchus.robot.design import Robot
-from suchus.core.checks import Checks
-from suchus.robot.design.scale import coarse_step
-from suchus.experiments.experiment import Experiment, Measures, Progress, estimated
-from suchus.robot.gaits import GAITS, control_group
-from suchus.sim.land import Run, Tolerances, simulate
-from suchus.robot.motion import Gait
 from suchus.article.paper import CYCLES
+from suchus.core.checks import Checks
+from suchus.experiments.experiment import Experiment, Measures, Progress, estimated
+from suchus.robot.design import Robot
+from suchus.robot.design.scale import coarse_step
+from suchus.robot.gaits import GAITS, control_group
+from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, Tolerances, simulate
 
 Numbers = Callable[[xr.Dataset], Mapping[str, xr.DataArray]]
 

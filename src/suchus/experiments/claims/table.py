@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from types import MappingProxyType
 
-from suchus.core.errors import InvalidDesign
-from suchus.experiments.catalog import EXPERIMENTS
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Rule, Varied
+from suchus.core.errors import InvalidDesign
+from suchus.experiments.catalog import EXPERIMENTS
 
 
 def rules_of(experiment: str) -> tuple[Rule, ...]:

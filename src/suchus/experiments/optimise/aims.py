@@ -8,11 +8,11 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from suchus.sim import metrics
-from suchus.robot.control import Standing
-from suchus.sim.land import Run
-from suchus.robot.motion import START
 from suchus.experiments.optimise.clearance import clearance
+from suchus.robot.control import Standing
+from suchus.robot.motion import START
+from suchus.sim import metrics
+from suchus.sim.land import Run
 
 Measured = Callable[[Sequence[Run], xr.Dataset], np.ndarray]
 """From runs and their record to one number for each run."""

@@ -14,23 +14,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot import blueprint
 from suchus.core import large
-from suchus.robot.design import with_values
-from suchus.robot.design.scale import physics_step
 from suchus.core.errors import IncompatibleRecord, NotConverged
 from suchus.core.jobs import MADE_BY, InMemory, Job, Place, Store, Tally, deciding, finish, place_for
-from suchus.sim.land import Run, Tolerances, simulate
-from suchus.sim.land.extent import processor_seconds
+from suchus.core.progress import Progress, portion, silent
 from suchus.experiments.optimise.aims import AIMS
 from suchus.experiments.optimise.evaluate import allowed, columns, evaluate, losses, measure, score, units
 from suchus.experiments.optimise.search import SearchResult, search, titled
 from suchus.experiments.optimise.spec import Optimisation
-from suchus.core.progress import Progress, portion, silent
+from suchus.robot import blueprint
+from suchus.robot.design import with_values
+from suchus.robot.design.scale import physics_step
+from suchus.sim.land import Run, Tolerances, simulate
+from suchus.sim.land.extent import processor_seconds
 
 LIBRARIES = ("cma", "comocma", "moarchiving")
 """Packages whose versions decide which candidates are tried."""
-ROOMS = (*MADE_BY, *(f"optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
+ROOMS = (*MADE_BY, *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
 """Whose code decides what a candidate reaches."""
 _DECIDING = partial(deciding, ROOMS, LIBRARIES)
 _CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added

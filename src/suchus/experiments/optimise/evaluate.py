@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus.core.errors import SuchusError
+from suchus.core.progress import Progress, silent
+from suchus.experiments.optimise.aims import AIMS, LIMITS, Kind
+from suchus.experiments.optimise.spec import Limit, Optimisation
 from suchus.robot.control import Runs
 from suchus.robot.design import with_values
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import SuchusError
-from suchus.sim.land import Run, simulate
 from suchus.robot.motion import check_limits, excess
-from suchus.experiments.optimise.aims import AIMS, LIMITS, Kind
-from suchus.experiments.optimise.spec import Limit, Optimisation
-from suchus.core.progress import Progress, silent
+from suchus.sim.land import Run, simulate
 
 WALKED, REFUSED, APART = "walked", "refused", "diverged"
 _EVERY = 2  # control periods; 50 looks a second

@@ -8,16 +8,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.robot.control import Standing
-from suchus.robot.design import unit_at
-from suchus.visual.figures import COLOURS, LINES, captioned, panels, styled
-from suchus.visual.figures.posture import draw_posture, draw_strip
-from suchus.sim.land import Run
-from suchus.robot.motion import START
 from suchus.experiments.optimise.aims import AIMS, Kind
 from suchus.experiments.optimise.evaluate import allowed
 from suchus.experiments.optimise.search import SearchResult
 from suchus.experiments.optimise.spec import at_share
+from suchus.robot.control import Standing
+from suchus.robot.design import unit_at
+from suchus.robot.motion import START
+from suchus.sim.land import Run
+from suchus.visual.figures import COLOURS, LINES, captioned, panels, styled
+from suchus.visual.figures.posture import draw_posture, draw_strip
 
 _ROLES = ("coordinated", "limbs_only", "tail_drag", "spine_only", "tail", "water")
 _APART, _GAP = 0.6, 0.06  # [m]; between two robots that stand, between two that walk

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from suchus.experiments.optimise.spec import Aim, Limit, Optimisation
+from suchus.experiments.study import Arm, Vary
 from suchus.robot.control import Standing, Walking
 from suchus.robot.design import value_at
 from suchus.robot.gaits import GAITS, conditions_of
 from suchus.robot.gaits.belly_crawl import FRONT, HIND
-from suchus.sim.land import Run
-from suchus.experiments.optimise.spec import Aim, Limit, Optimisation
 from suchus.robot.robots import ROBOTS
-from suchus.experiments.study import Arm, Vary
+from suchus.sim.land import Run
 
 _LEGS = (
     ("duty_factor", 0.5, 0.8),

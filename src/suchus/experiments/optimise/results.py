@@ -11,15 +11,15 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.core import files as records
-from suchus.robot.design.scale import physics_step
-from suchus.sim.land import Run, simulate
 from suchus.experiments.optimise.aims import AIMS, LIMITS
 from suchus.experiments.optimise.conduct import write_runs
 from suchus.experiments.optimise.pictures import draw_around, draw_convergence, draw_front, draw_gaits, label, scaled
 from suchus.experiments.optimise.search import SearchResult
 from suchus.experiments.optimise.spec import Optimisation
-from suchus.visual.replay import replay
 from suchus.experiments.study.result_table import ResultTable, Section, write_tables
+from suchus.robot.design.scale import physics_step
+from suchus.sim.land import Run, simulate
+from suchus.visual.replay import replay
 
 RESULT, OUTCOME, RECORD = "result", "outcome.json", "record.nc"
 _TOLD = 5  # fields that the sentence names

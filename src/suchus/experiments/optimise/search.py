@@ -10,12 +10,12 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import value_at, with_values
 from suchus.core.errors import SuchusError
-from suchus.sim.land import Run
 from suchus.experiments.optimise.aims import AIMS
 from suchus.experiments.optimise.evaluate import ACTIVE, allowed, losses, over, units
 from suchus.experiments.optimise.spec import Optimisation
+from suchus.robot.design import value_at, with_values
+from suchus.sim.land import Run
 
 _EDGE = 0.02  # how far inside its range a start is moved, where the search could not look to both sides
 

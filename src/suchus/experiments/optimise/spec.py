@@ -7,17 +7,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Literal
 
+from suchus.core.checks import Checks, InvalidFields
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.experiments.optimise.aims import AIMS, LIMITS
+from suchus.experiments.study import Arm, Vary
 from suchus.robot import blueprint
 from suchus.robot.control import Control, OpenLoop, Standing, Walking
 from suchus.robot.design import value_at, with_values
-from suchus.core.checks import Checks, InvalidFields
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.gaits import gait_of
-from suchus.sim.land import Ground, Run
-from suchus.experiments.optimise.aims import AIMS, LIMITS
 from suchus.robot.robots import ROBOTS
-from suchus.experiments.study import Arm, Vary
+from suchus.sim.land import Ground, Run
 
 WHOLE = Arm(name="best")
 """The only condition of a search without a comparison."""

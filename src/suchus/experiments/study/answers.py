@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.sim.metrics.decisive import border, rank_correlation
 from suchus.experiments.study.claim_measures import asked_rules, held, measures_of
+from suchus.sim.metrics.decisive import border, rank_correlation
 
 _BINS, _RESAMPLED, _SURE = 8, 400, 0.95
 

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import unit_at
 from suchus.core.errors import SuchusError
-from suchus.sim.land import Run, simulate
-from suchus.robot.motion import check_limits
 from suchus.core.progress import Progress, silent
 from suchus.experiments.study.measures import measured, unit_of
 from suchus.experiments.study.plan import Plan
 from suchus.experiments.study.study import Study
+from suchus.robot.design import unit_at
+from suchus.robot.motion import check_limits
+from suchus.sim.land import Run, simulate
 
 
 def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Dataset:

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import LEGS
+from suchus.article.verdict import Rule, Word, ladder, word_of
 from suchus.core.errors import IncompatibleRecord
+from suchus.experiments.claims import RULES, varied_of
+from suchus.robot.design import LEGS
 from suchus.robot.gaits import CONDITIONS
 from suchus.sim.land import FAILED_JOINTS
-from suchus.experiments.claims import RULES, varied_of
-from suchus.article.verdict import Rule, Word, ladder, word_of
 
 FAULTY = ("coordinated", "limbs_only")
 """Conditions in which joints fail, too: the article's two groups."""

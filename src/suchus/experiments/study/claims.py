@@ -9,23 +9,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, unit_at, value_at
+from suchus.article.paper import CYCLES
 from suchus.core.checks import Checks
 from suchus.core.errors import UnreadableFile
-from suchus.robot.gaits import GAITS, conditions_of
 from suchus.core.jobs import deciding
 from suchus.core.jobs.store import made_by
-from suchus.sim.land import FAILED_JOINTS, Run, joint_failure
-from suchus.robot.motion import START, Gait
-from suchus.article.paper import CYCLES
 from suchus.core.progress import Progress, silent
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study.answers import agreement, answers
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.claim_measures import FAULTY, METRICS, RUNS, asked_rules, held, measures_of
 from suchus.experiments.study.conduct import conduct, finished
 from suchus.experiments.study.plan import only_forbids
 from suchus.experiments.study.study import Study, Vary
+from suchus.robot.design import Robot, unit_at, value_at
+from suchus.robot.gaits import GAITS, conditions_of
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import FAILED_JOINTS, Run, joint_failure
 
 FINE = 0.002  # [s]; the time step of results
 _TRUNK = ("trunk_bend", "tail_bend", "tail_pitch")  # what the conditions differ in; the rest of a gait is its legs

@@ -9,12 +9,12 @@ from typing import Any
 
 import xarray as xr
 
-from suchus.core import files as records
-from suchus.visual.figures.sensitivity import draw_claim, draw_shares, spoken
 from suchus.article.paper import CLAIMS
+from suchus.article.verdict import listed
+from suchus.core import files as records
 from suchus.experiments.study.claims_table import became, claim_row, finite, renewed, shipped, table, turned
 from suchus.experiments.study.result_table import ResultTable, Section, write_tables
-from suchus.article.verdict import listed
+from suchus.visual.figures.sensitivity import draw_claim, draw_shares, spoken
 
 OUTCOME, TABLE, RECORD, SHARES = "outcome.json", "claims.csv", "claims.nc", "claims.json"
 

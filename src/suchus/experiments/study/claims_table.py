@@ -10,23 +10,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.visual.figures.sensitivity import spoken
+from suchus.article.verdict.judging import ROBUST, digest
 from suchus.core.files import code_digest
+from suchus.experiments.claims import RULES
 from suchus.experiments.study.answers import Index, first_order, share_interval
 from suchus.experiments.study.varied import LEAST
-from suchus.experiments.claims import RULES
-from suchus.article.verdict.judging import ROBUST, digest
+from suchus.visual.figures.sensitivity import spoken
 
 _NAMED = 3  # parameters that a row names
 _TOGETHER = 0.1  # of the variance of one parameter; another that explains more could pass for it [-]
 _ANSWERED_BY = (
-    "paper",
-    "verdict",
-    "metrics/decisive.py",
-    "study/answers.py",
-    "study/claim_measures.py",
-    "study/claims.py",
-    "study/varied.py",
+    "article",
+    "experiments/claims",
+    "sim/metrics/decisive.py",
+    "experiments/study/answers.py",
+    "experiments/study/claim_measures.py",
+    "experiments/study/claims.py",
+    "experiments/study/varied.py",
 )
 
 
@@ -160,7 +160,7 @@ def became(record: xr.Dataset) -> dict[str, int]:
 
 
 def shipped(record: xr.Dataset, rows: Sequence[Mapping[str, Any]], varied: Mapping[str, xr.Dataset]) -> str:
-    """Return the table of shares as ``suchus.article.verdict`` ships it: JSON with the digest of its rows and what made it.
+    """Return the table of shares that ``suchus.article.verdict`` ships: JSON, with its rows' digest and what made it.
 
     Args:
         record: of ``claims.conduct_claims``.

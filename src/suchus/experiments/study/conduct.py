@@ -10,11 +10,11 @@ from suchus.core import large
 from suchus.core.errors import UnreadableFile
 from suchus.core.jobs import InMemory, Job, Store, ThisProcess, finish, place_for
 from suchus.core.jobs.store import together
-from suchus.sim.land.extent import processor_seconds
 from suchus.core.progress import Progress, silent
 from suchus.experiments.study.chunk import run_chunk
 from suchus.experiments.study.plan import Plan
 from suchus.experiments.study.study import Study
+from suchus.sim.land.extent import processor_seconds
 
 HERE = ThisProcess(at_once=2)
 """How this process runs batches: while the physics steps one, the other is built, measured or packed."""

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.catalog import Catalog
-from suchus.robot.design.meaning import unit
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
+from suchus.robot.design.meaning import unit
 
 Metric = Callable[[xr.Dataset], xr.DataArray]
 MEASURES: Catalog[Metric] = Catalog("measure", "suchus.sim.metrics", "collections.abc:Callable", scattered=True)

@@ -5,18 +5,18 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
+from suchus.experiments.study.arm import Arm
+from suchus.experiments.study.study import Design, Study, Vary
 from suchus.robot import blueprint
 from suchus.robot.control import CONTROLLERS, Control
 from suchus.robot.design import Robot
-from suchus.core.errors import InvalidDesign
+from suchus.robot.gaits import gait_of
+from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
 from suchus.sim.faults import from_table
-from suchus.robot.gaits import gait_of
-from suchus.core.kinds import show
 from suchus.sim.land import Ground, Run
-from suchus.robot.robots import ROBOTS
-from suchus.experiments.study.arm import Arm
-from suchus.experiments.study.study import Design, Study, Vary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,11 +9,11 @@ import numpy as np
 from scipy import stats
 from scipy.stats import qmc
 
-from suchus.robot.design import with_values
 from suchus.core.errors import InvalidDesign
-from suchus.sim.land import Run
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.study import Study, Vary
+from suchus.robot.design import with_values
+from suchus.sim.land import Run
 
 _MOST = 10_000_000
 

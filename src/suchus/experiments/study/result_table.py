@@ -8,8 +8,8 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
-from suchus.visual import figures
 from suchus.core.files import versions
+from suchus.visual import figures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any, Literal, get_args
 
-from suchus.robot.design import value_at, with_values
 from suchus.core.checks import Checks, InvalidFields
-from suchus.robot.design.scale import control_period
 from suchus.core.errors import InvalidDesign, UnknownName
-from suchus.sim.land import Run
-from suchus.robot.motion import START
 from suchus.experiments.study.arm import Arm
 from suchus.experiments.study.measures import MEASURES
+from suchus.robot.design import value_at, with_values
+from suchus.robot.design.scale import control_period
+from suchus.robot.motion import START
+from suchus.sim.land import Run
 
 Design = Literal["factorial", "sobol", "latin"]
 """How values are put together: every combination, a Sobol sequence, or a Latin hypercube."""

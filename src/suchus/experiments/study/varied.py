@@ -10,20 +10,20 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, unit_at, value_at, with_values
+from suchus.article.verdict import Rule, listed
 from suchus.core.checks import Checks
 from suchus.core.errors import IncompatibleRecord, SuchusError
-from suchus.robot.gaits import GAITS
 from suchus.core.jobs import Job, Store, finish, place_for
 from suchus.core.jobs.store import MARK, made_by, together
 from suchus.core.progress import Progress, silent
-from suchus.robot.robots import ROBOTS
+from suchus.experiments.claims import RULES, varied_of
 from suchus.experiments.study.answers import answered
 from suchus.experiments.study.claim_measures import held, words
 from suchus.experiments.study.plan import evenly, only_forbids, value_of
 from suchus.experiments.study.study import Vary
-from suchus.experiments.claims import RULES, varied_of
-from suchus.article.verdict import Rule, listed
+from suchus.robot.design import Robot, unit_at, value_at, with_values
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
 
 LEAST = 8
 """Fewer points than these make no share: its interval would be half of the whole [-]."""

@@ -4,11 +4,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from time import monotonic
 
+from suchus.core.errors import BusFailure
 from suchus.hardware.bus.packets import Framing, Packet
 from suchus.hardware.bus.ports import Port
 from suchus.hardware.bus.tables import Register
 from suchus.hardware.bus.wiring import CLOCK
-from suchus.core.errors import BusFailure
 
 WAIT = 0.008
 """How long replies are waited for [s]; the bytes of a tick come on top."""

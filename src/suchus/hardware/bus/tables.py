@@ -11,8 +11,8 @@ from math import pi
 from types import MappingProxyType
 from typing import Literal
 
-from suchus.robot.design import Motor
 from suchus.core.errors import UnknownName
+from suchus.robot.design import Motor
 from suchus.robot.motors import motors
 
 Sign = Literal["none", "two", "bit"]

@@ -8,15 +8,15 @@ from typing import Literal, TypeVar
 
 import numpy as np
 
+from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.core.files import digest
 from suchus.hardware.bus.dynamixel import Dynamixel
 from suchus.hardware.bus.feetech import Feetech
 from suchus.hardware.bus.line import PlainLine
 from suchus.hardware.bus.packets import LAST_ID, Framing
 from suchus.hardware.bus.tables import STEPS, TABLES, BusProtocol, Table, imu_board, load_board
 from suchus.robot.design import Crank, Robot, layout, servo_ranges
-from suchus.core.checks import Checks
-from suchus.core.errors import InvalidDesign, UnsuitedRobot
-from suchus.core.files import digest
 
 T = TypeVar("T")
 CLOCK = 250
@@ -87,7 +87,7 @@ class ServoPlace:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardPlace:
-    """One board for sensors, which speaks the protocol of its bus; see ``suchus.hardware.bus.tables`` for what it must do."""
+    """One board for sensors, which speaks the protocol of its bus; see ``bus.tables`` for what it must do."""
 
     kind: Kind
     """``imu``, ``feet``, ``belly`` or ``tail``."""

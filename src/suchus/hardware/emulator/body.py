@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from suchus.core.errors import Diverged
 from suchus.robot.control import Command, OpenLoop, Runs, Sensed
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import check_step, control_period, physics_step
-from suchus.core.errors import Diverged
+from suchus.robot.motion import Gait, check_limits
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.faults import Limp, Weak
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.loop import Loop
 from suchus.sim.land.readings import Recorder
-from suchus.robot.motion import Gait, check_limits
 
 _ROOM = 1000  # samples of a block of the record
 _FOR_EVER = 86400.0  # [s]

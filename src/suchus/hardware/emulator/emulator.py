@@ -6,12 +6,12 @@ from random import Random
 
 import numpy as np
 
+from suchus.core.errors import Diverged
 from suchus.hardware.bus import BROADCAST, CLOCK, FRAMINGS, BusGone, Decoder, Framing, Instruction, Packet, Wiring
-from suchus.robot.control import Sensed
 from suchus.hardware.emulator.body import EmulatedBody
 from suchus.hardware.emulator.devices import OK, Board, Device, EmulatedServo
 from suchus.hardware.emulator.trouble import Trouble
-from suchus.core.errors import Diverged
+from suchus.robot.control import Sensed
 
 BITS = 10
 """Bits that a byte takes on the wire, start and stop bit included [-]."""

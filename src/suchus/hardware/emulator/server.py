@@ -11,9 +11,9 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from suchus.core.errors import Unwritable
 from suchus.hardware.bus import bit_rate
 from suchus.hardware.emulator.emulator import BITS, Emulator
-from suchus.core.errors import Unwritable
 
 try:
     import pty

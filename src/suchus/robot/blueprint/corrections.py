@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from suchus.core.reading import read_toml
 from suchus.robot.blueprint.read import described
 from suchus.robot.design import SectionCorrection
-from suchus.core.reading import read_toml
 
 
 def read_correction(path: str | Path) -> SectionCorrection:

@@ -5,12 +5,21 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnreadableFile
+from suchus.core.files import read_toml
 from suchus.robot.blueprint.mistakes import MistakenFile, Place
 from suchus.robot.blueprint.read import merged, plain, validated
 from suchus.robot.design import Robot
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnreadableFile
-from suchus.robot.motion import AxialWave, Gait, GaitByPlaces, GaitInMetres, form_of, in_metres, limb_reaches, servo_parts
-from suchus.core.files import read_toml
+from suchus.robot.motion import (
+    AxialWave,
+    Gait,
+    GaitByPlaces,
+    GaitInMetres,
+    form_of,
+    in_metres,
+    limb_reaches,
+    servo_parts,
+)
 
 _WAVE = ("amplitude", "waves", "phase")
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+from suchus.core.reading import read_toml
 from suchus.robot.blueprint.mistakes import MistakenFile, Place
 from suchus.robot.blueprint.read import validated
 from suchus.robot.design import Motor
 from suchus.robot.motors import split
-from suchus.core.reading import read_toml
 
 
 def read_motors(path: str | Path) -> Mapping[str, Motor]:

@@ -13,10 +13,10 @@ from typing import Any, TypeVar, get_args, overload
 
 from pydantic import TypeAdapter, ValidationError
 
-from suchus.robot.blueprint.mistakes import MistakenFile, Place, closest, explain
-from suchus.robot.design import Robot, Tables, crocodile
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import read_toml
+from suchus.robot.blueprint.mistakes import MistakenFile, Place, closest, explain
+from suchus.robot.design import Robot, Tables, crocodile
 
 T = TypeVar("T")
 

@@ -8,13 +8,13 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign
 from suchus.robot.control.controller import Command, Controller, Runs, united
 from suchus.robot.control.heading import Heading, HeadingRule
 from suchus.robot.control.sensed import Sensed, finite, keep
 from suchus.robot.control.swimming import Swimming
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.core.checks import Checks
-from suchus.core.errors import InvalidDesign
 from suchus.robot.motion import START, Batch, Bend, Gait, Held, Steer, check_limits
 
 _SLACK = 1e-9  # [s]

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper import LIMB_REACH
 from suchus.core import rotation
+from suchus.core.checks import Checks
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import Robot, hips_ahead, layout
-from suchus.core.checks import Checks
-from suchus.article.paper import LIMB_REACH
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

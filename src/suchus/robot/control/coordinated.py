@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks, require
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.control.controller import Command, Runs, united
 from suchus.robot.control.heading import Heading, HeadingRule, Steering
 from suchus.robot.control.limbs import LAWS, LimbLaw, Limbs, in_pairs
@@ -14,8 +16,6 @@ from suchus.robot.control.shared import silence
 from suchus.robot.control.spine import SpineController, SpineRule
 from suchus.robot.control.tail import TailController, TailRule
 from suchus.robot.design import Robot, layout
-from suchus.core.checks import Checks, require
-from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.motion import START, Batch, Gait, Steer
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding

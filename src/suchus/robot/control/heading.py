@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.facing import Facing
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import Robot, layout
-from suchus.core.checks import Checks
 from suchus.robot.motion import Gait, longest_strokes
 
 

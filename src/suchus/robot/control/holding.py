@@ -7,10 +7,10 @@ from math import pi
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.facing import Facing
 from suchus.robot.control.sensed import Sensed, finite, keep
 from suchus.robot.design import Robot
-from suchus.core.checks import Checks
 from suchus.robot.design.pieces import chambers
 from suchus.robot.kinematics.trim import spare_volume
 

@@ -8,11 +8,11 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
+from suchus.core.errors import OutsideLimits
 from suchus.robot.control.sensed import Sensed, finite, keep
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import GRAVITY, Layout, Robot, layout
-from suchus.core.checks import Checks
-from suchus.core.errors import OutsideLimits
 from suchus.robot.motion import Gait
 
 _DIAGONAL = 0.02  # [cycle]; how far from diagonal pairs a gait may be that a law with pairs coordinates

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.controller import Command, Runs
 from suchus.robot.control.sensed import Sensed
-from suchus.core.checks import Checks
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.motion import START, intended
 

@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks, Course, require
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.core.progress import Progress, silent
 from suchus.robot.control.controller import Command, Runs, united
 from suchus.robot.control.limbs import LAWS, LimbLaw, Loads
 from suchus.robot.control.oscillators import Oscillators, Rhythm, couple, cut
@@ -17,11 +20,8 @@ from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.spine import SpineController, SpineRule
 from suchus.robot.control.tail import TailController, TailRule
 from suchus.robot.design import Robot, layout
-from suchus.core.checks import Checks, Course, require
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.robot.motion import START, Gait, check_limits
-from suchus.core.progress import Progress, silent
 
 
 class Courses:

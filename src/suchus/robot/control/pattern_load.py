@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.sensed import Sensed, finite, keep
 from suchus.robot.design import GRAVITY, Robot
-from suchus.core.checks import Checks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

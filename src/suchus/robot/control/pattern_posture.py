@@ -7,9 +7,9 @@ from math import pi, radians
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.errors import UnsuitedRobot
 from suchus.robot.control.oscillators import AxisPart
 from suchus.robot.design import Crank, Layout, Robot, hips_behind_snout, layout, servo_ranges
-from suchus.core.errors import UnsuitedRobot
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion import Gait, Held, Sweep, limb_movement, middle_stance, movement
 

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core import rotation
+from suchus.core.checks import Checks
 from suchus.robot.control.controller import Command, Runs
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.design import Layout, Robot, layout
-from suchus.core.checks import Checks
 from suchus.robot.design.measures import LegMeasures
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.motion import Gait, intended

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.controller import Command, Runs, united
 from suchus.robot.control.holding import DepthHold, Depths, HeadingHold, Headings
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.trim import Pitches, PitchHold
 from suchus.robot.design import Robot
-from suchus.core.checks import Checks
 from suchus.robot.motion import Batch, Bend, Gait, Steer, check_limits, check_speeds
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core import rotation
-from suchus.robot.control.sensed import Sensed
-from suchus.robot.design import GRAVITY, Robot
 from suchus.core.checks import Checks
 from suchus.core.errors import UnknownName
+from suchus.robot.control.sensed import Sensed
+from suchus.robot.design import GRAVITY, Robot
 from suchus.robot.motion import Gait
 
 _WASHOUT = 3.0  # [s]; over which tilt is compared with its own mean

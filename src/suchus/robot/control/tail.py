@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks
 from suchus.robot.control.sensed import Sensed, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
-from suchus.core.checks import Checks
 from suchus.robot.motion import Batch, Gait
 
 _LEAST = 1e-9  # [rad]; a trunk that bends less does not bend

@@ -8,11 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus.core import rotation
+from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign
 from suchus.robot.control.sensed import Sensed, finite, keep
 from suchus.robot.design import Robot
-from suchus.core.checks import Checks
 from suchus.robot.design.pieces import chambers
-from suchus.core.errors import InvalidDesign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,10 +7,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from suchus.robot.control.attitude import AttitudeRule
-from suchus.robot.control.walking import Walking
 from suchus.core.checks import Checks
 from suchus.core.errors import OutsideLimits
+from suchus.robot.control.attitude import AttitudeRule
+from suchus.robot.control.walking import Walking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

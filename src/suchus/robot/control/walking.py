@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.checks import Checks, require
+from suchus.core.errors import OutsideLimits
 from suchus.robot.control.attitude import Attitude, AttitudeRule
 from suchus.robot.control.controller import Command, Runs, united
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.switching import Switcher, SwitchRule
 from suchus.robot.design import Robot, layout, servo_ranges
-from suchus.core.checks import Checks, require
-from suchus.core.errors import OutsideLimits
 from suchus.robot.motion import START, Batch, Gait, Steer, trunk_amplitude
 from suchus.robot.motion.transition import Transition, transition
 

@@ -5,13 +5,13 @@ from dataclasses import fields, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hinge import Cable, Hinge, LinearActuator, Servo, Spring
 from suchus.robot.design.limb import Foot, Girdle, Limb, Link
 from suchus.robot.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.robot.design.segment import Rod, Segment, Shell
 from suchus.robot.design.tables import LEG_SHARES, Head, Leg, Pelvis, Spine, Tables, Tail, Thorax, tail_segments
-from suchus.core.errors import InvalidDesign
 
 T = TypeVar("T")
 

@@ -7,6 +7,8 @@ from math import fsum
 from typing import TypeVar
 
 from suchus.core.checks import Checks
+from suchus.core.errors import UnsuitedRobot
+from suchus.core.kinds import show
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import Cable, Hinge, Servo
 from suchus.robot.design.hull import Hull
@@ -27,8 +29,6 @@ from suchus.robot.design.measures import (
 )
 from suchus.robot.design.segment import Segment
 from suchus.robot.design.tables import Tables
-from suchus.core.errors import UnsuitedRobot
-from suchus.core.kinds import show
 
 M = TypeVar("M")
 _TRUNK_YAW = "spine_yaw_"

@@ -6,10 +6,10 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
+from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.design.article import crocodile, tables_of
 from suchus.robot.design.body import Robot
 from suchus.robot.design.meaning import meanings, unit
-from suchus.core.errors import InvalidDesign, UnknownName
 
 T = TypeVar("T")
 _STEP = re.compile(r"(\w+)|\[(\d+)\]")

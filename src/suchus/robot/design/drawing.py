@@ -6,14 +6,14 @@ from math import pi, radians
 
 import numpy as np
 
-from suchus.robot.design.body import Robot
 from suchus.core.checks import Checks
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design.body import Robot
 from suchus.robot.design.hinge import Hinge, Servo
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.scale import contact_for, swim_servo_for
 from suchus.robot.design.segment import Rod, Segment, Shell
-from suchus.core.errors import InvalidDesign
 
 _OVERLAP = 1.6
 """Half-length of an ellipsoid over the distance to the next one: they overlap, so that the outline closes [-]."""

@@ -1,11 +1,11 @@
 """How much foam a robot needs to float, body by body, so that it floats level however it bends."""
 
-from suchus.robot.design.body import Robot
 from suchus.core.checks import require
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design.body import Robot
 from suchus.robot.design.hull import Foam, Hull
 from suchus.robot.design.physics import WATER_DENSITY
 from suchus.robot.design.pieces import masses, volumes
-from suchus.core.errors import InvalidDesign
 
 THICKEST = 9.0
 """Greatest volume of a body with its foam over that without [-]; three times as thick."""

@@ -11,11 +11,11 @@ from typing import Literal
 
 import numpy as np
 
+from suchus.core.errors import UnknownName
 from suchus.robot.design.body import Robot, bends_trunk
 from suchus.robot.design.hinge import Cable, Hinge
 from suchus.robot.design.limb import Girdle, Limb
 from suchus.robot.design.segment import Inertia
-from suchus.core.errors import UnknownName
 
 Axis = tuple[float, float, float]
 _AHEAD: dict[str, Axis] = {"yaw": (0.0, 0.0, 1.0), "pitch": (0.0, 1.0, 0.0), "roll": (1.0, 0.0, 0.0)}

@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
+from suchus.core.errors import UnsuitedRobot
 from suchus.robot.design.article import tables_of
 from suchus.robot.design.body import Robot
 from suchus.robot.design.layout import layout
 from suchus.robot.design.measures import head_of, leg_of, pelvis_of, spine_of, tail_of, thorax_of
 from suchus.robot.design.tables import ARTICLE_JOINTS
-from suchus.core.errors import UnsuitedRobot
 
 
 class Need(NamedTuple):

@@ -9,11 +9,11 @@ from math import ceil, hypot, pi, sqrt
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design.body import Robot
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.layout import Layout, LimbPlace, layout
 from suchus.robot.design.profile import profile, stations
-from suchus.core.errors import InvalidDesign
 from suchus.robot.design.water_table import BALL, COLUMNS, DISC, WIDTH, column
 
 FINENESS = 20

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple
 
-from suchus.robot.design.chosen import Chosen
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design.chosen import Chosen
 
 
 class Reason(NamedTuple):

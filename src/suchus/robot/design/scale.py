@@ -11,14 +11,14 @@ from dataclasses import fields, is_dataclass, replace
 from math import floor, log10, sqrt, tau
 from typing import Any, TypeVar
 
-from suchus.robot.design.body import Robot
 from suchus.core.checks import require
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design.body import Robot
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import Servo, Spring
 from suchus.robot.design.meaning import meanings, unit
 from suchus.robot.design.motor import Winding
 from suchus.robot.design.physics import GRAVITY
-from suchus.core.errors import InvalidDesign
 
 T = TypeVar("T")
 PERIODS = 20.0

@@ -9,10 +9,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from suchus.core.checks import Checks
+from suchus.core.kinds import show
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import LinearActuator, Servo
 from suchus.robot.design.hull import Hull
-from suchus.core.kinds import show
 
 LEG_SHARES = (0.60, 0.35, 0.05)
 """How a leg's mass is spread over femur, tibia and foot [-]."""

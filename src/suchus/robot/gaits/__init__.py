@@ -6,13 +6,13 @@ from operator import attrgetter
 from pathlib import Path
 
 from suchus.core.catalog import Catalog
+from suchus.core.errors import OutsideLimits, SuchusError, UnreadableFile, UnsuitedRobot
+from suchus.core.files import read_toml
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period, gravity_time
-from suchus.core.errors import OutsideLimits, SuchusError, UnreadableFile, UnsuitedRobot
 from suchus.robot.gaits._animal_swim import ANIMAL_SWIM
 from suchus.robot.gaits.limbs_tail_lifted import LIFTED
 from suchus.robot.motion import Gait, divided, draft_gait, form_of, suits
-from suchus.core.files import read_toml
 from suchus.robot.robots import ROBOTS
 
 
@@ -31,7 +31,9 @@ def _read(path: Path) -> Gait:
     return blueprint.read_gait(path, ROBOTS[made_for[0] if made_for else "caiman"], GAITS)
 
 
-GAITS: Catalog[Gait] = Catalog("gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read)
+GAITS: Catalog[Gait] = Catalog(
+    "gait", "suchus.robot.gaits", "suchus.robot.motion:Gait", named=attrgetter("name"), read=_read
+)
 """The gaits of the shelf."""
 
 CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted", "tail_still", "spine_only", "tail_drag")

@@ -2,9 +2,9 @@
 
 from math import radians
 
+from suchus.article.paper import CYCLE_PERIOD
 from suchus.robot.design import Chosen
 from suchus.robot.motion import GaitInMetres
-from suchus.article.paper import CYCLE_PERIOD
 
 LIMBS = (0.1575, 0.175)
 """Lengths of the front and hind limbs for which the metres of the crawls are, those of the robot ``caiman`` [m]."""

@@ -3,9 +3,9 @@
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper.tables import Chain
 from suchus.robot.kinematics.given import number, numbers, rows
 from suchus.robot.kinematics.links import Numbers
-from suchus.article.paper.tables import Chain
 
 
 def transform(a: float, alpha: float, d: float, theta: Numbers) -> Float[np.ndarray, "*batch 4 4"]:

@@ -11,9 +11,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.errors import NotConverged, Unreachable
 from suchus.robot.design import Girdle, Limb
 from suchus.robot.design.layout import LIMB_AXES
-from suchus.core.errors import NotConverged, Unreachable
 from suchus.robot.kinematics import leg as closed
 from suchus.robot.kinematics.given import rows, spread_over
 from suchus.robot.kinematics.tree import rotation

@@ -40,7 +40,7 @@ class SpineLinks(Protocol):
 
 @runtime_checkable
 class Cords(Protocol):
-    """The measures of a cable over several joints; ``suchus.robot.design.Tail`` and ``suchus.robot.design.Cable`` have them."""
+    """The measures of a cable over several joints; ``Tail`` and ``Cable`` of ``robot.design`` have them."""
 
     @property
     def joints(self) -> int:

@@ -6,10 +6,10 @@ Nothing else in suchus may compute with them. Where a printed formula has no val
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper.tables import LEG_CHAIN, Chain
 from suchus.robot.kinematics import dh
 from suchus.robot.kinematics.given import numbers, rows
 from suchus.robot.kinematics.links import LegLinks, Numbers, SpineLinks, TailPlates
-from suchus.article.paper.tables import LEG_CHAIN, Chain
 
 LOST_TERM = 0.0005
 """The 0.5 mm of (15) where 60.5 mm C4 belong [m]."""

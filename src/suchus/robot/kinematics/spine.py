@@ -10,11 +10,11 @@ from collections.abc import Callable
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper.tables import SPINE_CHAIN, Chain
 from suchus.core.errors import Unreachable
 from suchus.robot.kinematics import dh
 from suchus.robot.kinematics.given import check_sign, number, numbers, rows, spread_over, together
 from suchus.robot.kinematics.links import Numbers, SpineLinks
-from suchus.article.paper.tables import SPINE_CHAIN, Chain
 
 ROUNDING = 1e-12
 """How far a cosine may exceed one by rounding alone [-]."""

@@ -14,12 +14,12 @@ from types import MappingProxyType
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper.tables import C1, C2, K
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.core.kinds import show
 from suchus.robot.kinematics.given import number, numbers, together
 from suchus.robot.kinematics.links import Numbers
-from suchus.article.paper.tables import C1, C2, K
 
 MILLIMETRE, CENTIMETRE = 1e-3, 1e-2
 _MOST = 1e12  # of a wave's numbers in SI units

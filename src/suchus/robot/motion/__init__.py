@@ -32,7 +32,16 @@ from suchus.robot.motion.movement import (
 from suchus.robot.motion.parts import Bend, Curve, FootPath, Held, Sweep
 from suchus.robot.motion.posture import Keyed, Planned, Posture, plan
 from suchus.robot.motion.rising import stand_up, stretched, tallest
-from suchus.robot.motion.swim import LIMBS_BACK, LIMBS_UP, held, lateral_servos, limbs_back, still, swimming_gait, with_limbs
+from suchus.robot.motion.swim import (
+    LIMBS_BACK,
+    LIMBS_UP,
+    held,
+    lateral_servos,
+    limbs_back,
+    still,
+    swimming_gait,
+    with_limbs,
+)
 
 __all__ = [
     "LIMBS_BACK",

@@ -8,9 +8,9 @@ from math import cos, pi, radians
 import numpy as np
 from scipy.spatial import cKDTree
 
+from suchus.core.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.robot.design import Crank, Girdle, Limb, Robot, layout, servo_ranges
 from suchus.robot.design.scale import gravity_time
-from suchus.core.errors import NotConverged, OutsideLimits, Unreachable
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.motion.draft_table import is_upright, table_walk

@@ -11,8 +11,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from suchus.robot.design import Crank, Girdle, Limb, Robot, layout
 from suchus.core.errors import OutsideLimits
+from suchus.robot.design import Crank, Girdle, Limb, Robot, layout
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limits import servo_parts, suits

@@ -12,9 +12,9 @@ from typing import Any, Literal, Self
 
 import numpy as np
 
-from suchus.robot.design import LEGS, Robot, check_needs
 from suchus.core.checks import Checks
 from suchus.core.errors import OutsideLimits
+from suchus.robot.design import LEGS, Robot, check_needs
 from suchus.robot.motion.axis import Waves, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limits import check_limits, check_speeds

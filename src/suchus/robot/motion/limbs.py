@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import Crank, Girdle, Layout, Robot, layout
 from suchus.core.errors import OutsideLimits, UnknownName, Unreachable
+from suchus.robot.design import Crank, Girdle, Layout, Robot, layout
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.kinematics.limb import PlainLeg

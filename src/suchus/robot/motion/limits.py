@@ -5,8 +5,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits, UnknownName, Unreachable
+from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion.axis import at_knot, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.movement import Movement, cycle_targets, movement

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from jaxtyping import Complex, Float
 
+from suchus.article.paper import CRAWL_START
 from suchus.robot.design import Layout, Robot, layout, servo_ranges
 from suchus.robot.design.skeleton import skeleton
 from suchus.robot.kinematics import limb as limb_kinematics
@@ -20,7 +21,6 @@ from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limbs import LimbMotion, Steer, check_limbs, girdles, quarter
 from suchus.robot.motion.parts import FootPath, Part
-from suchus.article.paper import CRAWL_START
 
 START = CRAWL_START
 """A robot stands still until then, so that it has settled on the ground [s]."""

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import STANDING, Hinge, Robot, Rod, Shell, check_needs, layout, servo_ranges
 from suchus.core.checks import Checks
-from suchus.robot.design.measures import LegMeasures, leg_of
 from suchus.core.errors import InvalidDesign, OutsideLimits, Unreachable
+from suchus.robot.design import STANDING, Hinge, Robot, Rod, Shell, check_needs, layout, servo_ranges
+from suchus.robot.design.measures import LegMeasures, leg_of
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics.tree import centre_of_mass
 

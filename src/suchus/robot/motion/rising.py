@@ -6,6 +6,7 @@ from math import radians
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper import LIMB_REACH
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.kinematics.tree import body_masses, frames, landmarks
 from suchus.robot.motion.posture import (
@@ -19,7 +20,6 @@ from suchus.robot.motion.posture import (
     tail_down,
     upright,
 )
-from suchus.article.paper import LIMB_REACH
 
 PELVIS_PITCH = radians(80)
 """Of the pelvis when standing [rad]; it settles at 85 degrees, where the tail's joint reaches the end of its range."""

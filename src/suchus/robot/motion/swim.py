@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import Limb, Robot, layout
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import Limb, Robot, layout
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import Bend, Held, Part

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus.article.paper import LIMB_REACH
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.design.scale import gravity_time
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.limbs import Steer
 from suchus.robot.motion.movement import movement
-from suchus.article.paper import LIMB_REACH
 
 MEETING = 0.090 / LIMB_REACH
 """Least height of the hips at which limbs change their posture [limb reach]: a folded limb needs room."""

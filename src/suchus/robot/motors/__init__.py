@@ -7,9 +7,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from suchus.robot.design import Motor
 from suchus.core.errors import UnknownName
 from suchus.core.reading import read_toml
+from suchus.robot.design import Motor
 
 SHIPPED = Path(__file__).with_name("motors.toml")
 """The servos that suchus knows."""

@@ -24,7 +24,9 @@ def _read(path: Path) -> Robot:
     return robot
 
 
-ROBOTS: Catalog[Any] = Catalog("robot", "suchus.robot.robots", "suchus.robot.design:Robot", named=attrgetter("name"), read=_read)
+ROBOTS: Catalog[Any] = Catalog(
+    "robot", "suchus.robot.robots", "suchus.robot.design:Robot", named=attrgetter("name"), read=_read
+)
 """Robots by name."""
 
 

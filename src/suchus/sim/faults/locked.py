@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from suchus.robot.design import Robot
 from suchus.core.errors import OutsideLimits
-from suchus.sim.fault import Plant, ServoFault
+from suchus.robot.design import Robot
 from suchus.robot.motion import servo_range
+from suchus.sim.fault import Plant, ServoFault
 
 
 @dataclass(frozen=True, slots=True)

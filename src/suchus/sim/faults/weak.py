@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from suchus.robot.design import Robot
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import Robot
 from suchus.sim.fault import Plant, ServoFault
 
 

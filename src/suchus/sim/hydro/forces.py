@@ -14,9 +14,9 @@ from math import cos, exp, pi, sin, sqrt
 
 import numpy as np
 
+from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
 from suchus.sim.hydro import lanes as at
 from suchus.sim.hydro.lanes import WaterProperties
-from suchus.robot.design.water_table import BALL, CURRENT, DISC, LANES, LEVEL, WAVE
 from suchus.sim.hydro.vectors import Vector, blend, compiled, cross, dot, lane, part, plus, put, three, times, turned
 
 _TURBULENT = 5e5

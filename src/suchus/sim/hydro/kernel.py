@@ -7,11 +7,11 @@ it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of m
 import numpy as np
 from numba import carray
 
+from suchus.robot.design.water_table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
 from suchus.sim.hydro import lanes, memory
 from suchus.sim.hydro.forces import added_mass, flow, meet, place, press, rub
 from suchus.sim.hydro.lanes import MIXED, PUSHED, ROWS, SPUN, SUMS, WaterProperties
 from suchus.sim.hydro.memory import Bodies, Motion, pointer, read_bodies, read_given, read_motion, read_water
-from suchus.robot.design.water_table import COLUMNS, FORCE, HEADER, LANES, MAGIC, NUMBERS, POWER, UNDER, WAVE, WIDTH
 from suchus.sim.hydro.vectors import Vector, compiled, dot, part, plus, put, three, times, write
 
 _BODY, _REACH = COLUMNS["body"][0], COLUMNS["reach"][0]

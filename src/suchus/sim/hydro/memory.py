@@ -8,8 +8,18 @@ from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from suchus.robot.design.water_table import (
+    ADDED,
+    AIR_FRACTION,
+    CROSS_DRAG,
+    DENSITY,
+    LEVEL,
+    NUMBERS,
+    SHEDDING,
+    THICKENING,
+    VISCOSITY,
+)
 from suchus.sim.hydro.lanes import WaterProperties
-from suchus.robot.design.water_table import ADDED, AIR_FRACTION, CROSS_DRAG, DENSITY, LEVEL, NUMBERS, SHEDDING, THICKENING, VISCOSITY
 from suchus.sim.hydro.vectors import dot, part, three, times
 
 FIELDS = (

@@ -9,17 +9,17 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
+from suchus.core.errors import Doubtful, InvalidDesign
+from suchus.core.rotation import about, multiply
 from suchus.robot.design import Robot
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.pieces import chambers, pieces, volumes
-from suchus.core.errors import Doubtful, InvalidDesign
 from suchus.robot.design.water_table import column, unpacked
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.land import wetting
 from suchus.sim.land.lake import Lake
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.sim.model.wet import wet_model
-from suchus.core.rotation import about, multiply
 
 HEAVIER = 1e-3
 """Share of its mass by which a swimmer may be heavier than its water; the water holds one that swims so slowly down."""

@@ -9,12 +9,13 @@ import numpy as np
 from jaxtyping import Float
 from mujoco.batch import Batch, SimulationError
 
-from suchus.robot.design import water_table as hydro
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
+from suchus.robot.design import water_table as hydro
 from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Ground, Relief
 from suchus.robot.design.pieces import pieces
+from suchus.robot.motion import hip_height
 from suchus.sim.land import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.corrected import correct
@@ -22,7 +23,6 @@ from suchus.sim.land.lake import Waters, gravity, up
 from suchus.sim.land.run import Afloat, Run
 from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
 from suchus.sim.model.wet import wet_model
-from suchus.robot.motion import hip_height
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
 _CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state

@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 
 from suchus.robot.design.correction import SectionCorrection
-from suchus.robot.design.water_table import column, packed, unpacked
-from suchus.robot.design.water_table import HEADER, WIDTH
+from suchus.robot.design.water_table import HEADER, WIDTH, column, packed, unpacked
 
 _ADDED, _DRAG = ("added", "shed"), ("area", "roll", "skin", "end")
 """Columns of the table of pieces that each factor is on."""

@@ -4,11 +4,11 @@ from typing import Literal
 
 import numpy as np
 
-from suchus.robot.design import Robot, layout
 from suchus.core.errors import UnknownName
+from suchus.robot.design import Robot, layout
+from suchus.robot.motion import Gait, cycle_targets
 from suchus.sim.fault import Fault
 from suchus.sim.faults import Limp, Locked
-from suchus.robot.motion import Gait, cycle_targets
 
 Joint = Literal["front_yaw", "hind_yaw", "front_pitch", "hind_pitch", "front_knee", "hind_knee"]
 Kind = Literal["limp", "locked"]

@@ -9,12 +9,11 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
-from suchus.robot.design import GRAVITY
 from suchus.core.checks import Checks
 from suchus.core.errors import Diverged
-from suchus.robot.design.water_table import BALL, DISC, SLAB, column, unpacked
+from suchus.robot.design import GRAVITY
+from suchus.robot.design.water_table import BALL, COLUMNS, DISC, SLAB, WIDTH, column, unpacked
 from suchus.sim.hydro.forces import hydrostatic
-from suchus.robot.design.water_table import COLUMNS, WIDTH
 from suchus.sim.land import wetting
 from suchus.sim.land.lake import Lake
 from suchus.sim.model.wet import with_pieces

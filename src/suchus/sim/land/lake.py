@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from suchus.robot.design import water_table as hydro
-from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.core.checks import Checks, Course
+from suchus.core.errors import InvalidDesign
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.robot.design import water_table as hydro
 from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.water import Water
-from suchus.core.errors import InvalidDesign
 
 STEEPEST = 0.142
 """Height over length beyond which waves on deep water break [-]. Source: Michell 1893."""

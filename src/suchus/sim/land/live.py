@@ -5,16 +5,16 @@ from math import inf
 
 import numpy as np
 
+from suchus.core.errors import Diverged, InvalidDesign
 from suchus.robot.control import Coordinated, Swimming
 from suchus.robot.control.coordinated import Coordinator
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import check_step, control_period, physics_step
-from suchus.core.errors import Diverged, InvalidDesign
+from suchus.robot.motion import START, Gait, check_limits
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.loop import Loop, start
 from suchus.sim.land.run import Push, Run, check_pushes
-from suchus.robot.motion import START, Gait, check_limits
 
 
 class Live:

@@ -9,17 +9,17 @@ from math import floor
 import numpy as np
 from jaxtyping import Bool, Int
 
-from suchus.robot.control import Amphibious, Command, Control, Controller, Runs, Sensed, Swimming
 from suchus.core.checks import require
-from suchus.robot.design.scale import control_period
 from suchus.core.errors import InvalidDesign
+from suchus.robot.control import Amphibious, Command, Control, Controller, Runs, Sensed, Swimming
+from suchus.robot.design.scale import control_period
+from suchus.robot.motion import hip_height
 from suchus.sim.fault import Fault
 from suchus.sim.land.afloat import check_afloat
 from suchus.sim.land.batch import Beginning, SimulationBatch
 from suchus.sim.land.injector import Disturbances
 from suchus.sim.land.readings import Recorder, Sensors
 from suchus.sim.land.run import Push, Run
-from suchus.robot.motion import hip_height
 
 CONTROL_PERIOD = 0.01
 """Of the article's robot [s]: 100 Hz, what a bus of hobby servos sustains; ``design.scale`` has those of others."""

@@ -9,9 +9,9 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.progress import Progress, silent, staged
 from suchus.sim.land.run import Push, Run
 from suchus.sim.land.simulation import simulate
-from suchus.core.progress import Progress, silent, staged
 
 
 def smallest_pushes(

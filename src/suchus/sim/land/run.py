@@ -3,19 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from suchus.core.checks import Checks, require
+from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.kinds import show
 from suchus.robot.control import Control, OpenLoop
 from suchus.robot.design import WATER_DENSITY, WATER_VISCOSITY, Robot, servo_names
-from suchus.core.checks import Checks, require
 from suchus.robot.design.ground import Ground
-from suchus.core.errors import InvalidDesign, UnknownName
-from suchus.sim.fault import Fault
 from suchus.robot.gaits import gait_of
-from suchus.core.kinds import show
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
+from suchus.sim.fault import Fault
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.waters import FORMS, AnyWater, Form, Sections, Slice, Space
 from suchus.sim.model import compile_model
-from suchus.robot.motion import Gait
-from suchus.robot.robots import ROBOTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +89,7 @@ class Run:
     """The water that it walks and swims in, section by section; None on dry land."""
     water: AnyWater | Form | None = None
     """The water, rung by rung: ``Sections`` of a lake, which is then ``lake``; or a ``Slice`` or a ``Space``, a flow
-    that ``suchus.swim.coupling.simulate`` solves together with the robot. Short forms: "sections", two body lengths deep,
+    that ``swim.coupling.simulate`` solves together with the robot. Short forms: "sections", two body lengths deep,
     "slice" and "space"."""
     faults: tuple[Fault, ...] = ()
     """Faults, each with the time at which it begins; none by default."""

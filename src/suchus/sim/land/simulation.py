@@ -6,23 +6,23 @@ from math import ceil
 import numpy as np
 import xarray as xr
 
+from suchus.core.checks import require
+from suchus.core.errors import Diverged, InvalidDesign, out_of_memory
+from suchus.core.progress import Progress, portion, silent
 from suchus.robot.control import Control, OpenLoop
 from suchus.robot.design import Robot
-from suchus.core.checks import require
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import check_step, control_period, physics_step
-from suchus.core.errors import Diverged, InvalidDesign, out_of_memory
-from suchus.sim.fault import Fault, check_faults
 from suchus.robot.gaits import gait_of
+from suchus.robot.motion import START, Gait, check_limits
+from suchus.robot.robots import ROBOTS
+from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.loop import Loop, physics_steps
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Push, Run, check_pushes
 from suchus.sim.model import longest_step, topology
-from suchus.robot.motion import START, Gait, check_limits
-from suchus.core.progress import Progress, portion, silent
-from suchus.robot.robots import ROBOTS
 
 
 def simulate(

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from jaxtyping import Bool, Float
 
-from suchus.robot.design import Robot, layout
 from suchus.core.errors import Diverged, InvalidDesign, UnknownName
+from suchus.robot.design import Robot, layout
 from suchus.sim.model import activations, build
 
 _HEIGHT = 2.0  # [m]; of the stand: nothing touches the ground

@@ -6,8 +6,8 @@ from math import radians
 
 import numpy as np
 
-from suchus.robot.design import Robot, servo_names
 from suchus.core.checks import Checks
+from suchus.robot.design import Robot, servo_names
 from suchus.robot.design.limb import Girdle
 from suchus.robot.design.segment import Inertia, Segment
 from suchus.sim.land.run import Run

@@ -18,10 +18,9 @@ from llvmlite import binding
 from numba import cfunc, types
 
 from suchus.core.errors import OtherMuJoCo
-from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, UNDER, column
+from suchus.robot.design.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, UNDER, WIDTH, column
 from suchus.sim.hydro.kernel import wet
 from suchus.sim.hydro.memory import DATA_FIELDS, FIELDS
-from suchus.robot.design.water_table import WIDTH
 from suchus.sim.land.structs import offset, plugin_struct, verify
 from suchus.sim.model.wet import PLUGIN, with_pieces
 

@@ -27,7 +27,16 @@ from suchus.sim.metrics.gait import (
     two_feet_share,
 )
 from suchus.sim.metrics.loads import swing_height, swing_lift, swing_loads, swing_unloaded, tail_load_share
-from suchus.sim.metrics.progress import displacement, heading, heading_change, loss, path_length, path_speed, slip, speed
+from suchus.sim.metrics.progress import (
+    displacement,
+    heading,
+    heading_change,
+    loss,
+    path_length,
+    path_speed,
+    slip,
+    speed,
+)
 from suchus.sim.metrics.reach import held, lead, reach, static_margin
 from suchus.sim.metrics.rolling import roll_angle, roll_rate
 from suchus.sim.metrics.similarity import SIMILARITY, SwimNumbers, swim_numbers

@@ -6,9 +6,9 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from suchus.sim.metrics.window import between
-from suchus.robot.motion import START
 from suchus.article.paper.signs import spine_lateral
+from suchus.robot.motion import START
+from suchus.sim.metrics.window import between
 
 
 def tail_joint_spread(angles: xr.DataArray, joints: Sequence[str]) -> xr.DataArray:

@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from suchus.sim.metrics.gait import diagonals
 from suchus.robot.motion import Gait
+from suchus.sim.metrics.gait import diagonals
 
 WITHIN = 0.1
 """A limb this close to its place against another counts as coordinated [cycle]."""

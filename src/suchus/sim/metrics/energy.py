@@ -3,9 +3,9 @@
 import xarray as xr
 
 from suchus.robot.design import GRAVITY
+from suchus.robot.motion import START
 from suchus.sim.metrics.progress import displacement
 from suchus.sim.metrics.window import between
-from suchus.robot.motion import START
 
 METRES = {
     "land": "on level dry land",

@@ -4,8 +4,8 @@ import numpy as np
 import xarray as xr
 
 from suchus.robot.design import GRAVITY
-from suchus.sim.metrics.window import between
 from suchus.robot.motion import START
+from suchus.sim.metrics.window import between
 
 LOADED_SHARE = 0.0145
 """Least normal force of a foot that counts as standing [weight of the robot]."""

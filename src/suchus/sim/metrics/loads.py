@@ -4,9 +4,9 @@ import numpy as np
 import xarray as xr
 
 from suchus.robot.design import GRAVITY
+from suchus.robot.motion import START
 from suchus.sim.metrics.gait import loaded
 from suchus.sim.metrics.window import between
-from suchus.robot.motion import START
 
 
 def swing_loads(record: xr.Dataset, leg: str, start: float = START, end: float | None = None) -> xr.DataArray:

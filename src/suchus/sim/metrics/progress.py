@@ -6,8 +6,8 @@ import xarray as xr
 from suchus.core import rotation
 from suchus.robot.design import GRAVITY
 from suchus.robot.design.body import bends_trunk
-from suchus.sim.metrics.window import between
 from suchus.robot.motion import START
+from suchus.sim.metrics.window import between
 
 
 def displacement(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

@@ -6,9 +6,9 @@ from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
 from suchus.core import rotation
+from suchus.robot.motion import START
 from suchus.sim.metrics.gait import loaded, threshold_of
 from suchus.sim.metrics.window import between
-from suchus.robot.motion import START
 
 
 def height_std(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:

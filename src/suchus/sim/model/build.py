@@ -8,14 +8,14 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from suchus.core.errors import InvalidDesign
+from suchus.core.rotation import about
 from suchus.robot.design import GRAVITY, Contact, Hinge, Layout, LimbPlace, Robot, Rod, Segment, Spring, layout
 from suchus.robot.design.body import servos_of
 from suchus.robot.design.ground import ASIDE, REACH, Bumps, Relief, Step, Stone, field
 from suchus.robot.design.pieces import foam_centres, masses
 from suchus.robot.design.segment import Point, together
-from suchus.core.errors import InvalidDesign
 from suchus.sim.model.actuators import add_servo, warms
-from suchus.core.rotation import about
 
 TIMESTEP = 0.002  # [s]; of the article's robot; 0.5 to 8 ms were measured to give the same displacement within 1 %
 

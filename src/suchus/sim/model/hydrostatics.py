@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
-from suchus.robot.design import WATER_DENSITY, Robot, layout, servo_names
 from suchus.core.checks import require
-from suchus.robot.design.pieces import pieces
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import WATER_DENSITY, Robot, layout, servo_names
+from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water_table import column, unpacked
 from suchus.sim.hydro.forces import hydrostatic
 from suchus.sim.model.build import TIMESTEP, joint_addresses

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.ground import Relief
 from suchus.robot.design.pieces import pieces
-from suchus.core.errors import InvalidDesign
 from suchus.robot.design.water_table import NUMBERS, column, packed
 from suchus.sim.model.build import build
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus.core.errors import IncompatibleRecord, SuchusError
 from suchus.robot.design.ground import Bumps, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
-from suchus.core.errors import IncompatibleRecord, SuchusError
 
 _LARGEST, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
 XYZ = ("x", "y", "z")

@@ -14,8 +14,8 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.robot.design.profile import stations
 from suchus.flow.twist import Twists
+from suchus.robot.design.profile import stations
 from suchus.swim.water.outline import Outline
 
 RECENT = 8

@@ -8,16 +8,16 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
+from suchus.core.progress import Progress
 from suchus.robot.control import Swimming
-from suchus.swim.coupling.swim import Swim, check_swim
 from suchus.robot.design import GRAVITY, Robot, with_values
 from suchus.robot.design.flotation import float_hull
 from suchus.robot.design.scale import control_period
+from suchus.robot.motion import LIMBS_BACK, Gait, with_limbs
 from suchus.sim.land.afloat import floats
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Space
-from suchus.robot.motion import LIMBS_BACK, Gait, with_limbs
-from suchus.core.progress import Progress
+from suchus.swim.coupling.swim import Swim, check_swim
 from suchus.swim.water.samples import Samples
 from suchus.swim.water.setting import GROWS, SwimSetting
 from suchus.swim.water.space_record import FreeInSpace

@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, field, fields
 import numpy as np
 import xarray as xr
 
-from suchus.swim.coupling.chain import MidlineChain
-from suchus.swim.coupling.linked import LinkChain
 from suchus.sim.land.run import Run
 from suchus.sim.record import COUPLED, WATER
+from suchus.swim.coupling.chain import MidlineChain
+from suchus.swim.coupling.linked import LinkChain
 
 
 @dataclass(slots=True)

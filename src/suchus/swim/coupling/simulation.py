@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from suchus.sim import land
-from suchus.swim.coupling.swim import Swim
 from suchus.core.errors import Diverged, InvalidDesign
 from suchus.core.fingerprint import fingerprint
+from suchus.core.progress import Progress, portion, silent
+from suchus.sim import land
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Run
-from suchus.core.progress import Progress, portion, silent
+from suchus.swim.coupling.swim import Swim
 from suchus.swim.water.samples import check_kept
 
 

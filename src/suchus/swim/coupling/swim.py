@@ -23,26 +23,26 @@ from jaxtyping import Float
 from scipy.linalg import eigh
 
 from suchus import flow
-from suchus.robot.control import Controller
-from suchus.swim.coupling.chain import ChainState, MidlineChain
-from suchus.swim.coupling.linked import LinkChain, LinkWay
-from suchus.swim.coupling.recorded import Series, recorded
-from suchus.robot.design import layout
-from suchus.robot.design.scale import control_period, physics_step
-from suchus.robot.design.water import Water
 from suchus.core.errors import Diverged, Doubtful, InvalidDesign, NotConverged, OutsideLimits
-from suchus.sim.fault import check_faults
+from suchus.core.progress import Progress
 from suchus.flow import checkpoint as store
 from suchus.flow.progress import Bar
 from suchus.flow.simulation import LANDING
+from suchus.robot.control import Controller
+from suchus.robot.design import layout
+from suchus.robot.design.scale import control_period, physics_step
+from suchus.robot.design.water import Water
+from suchus.robot.motion import check_limits, cycle_targets
+from suchus.sim.fault import check_faults
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.batch import Beginning
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.run import Run, check_pushes
 from suchus.sim.land.stepper import CoordinateState, Stepper, Stretch
 from suchus.sim.land.waters import Slice, Space
-from suchus.robot.motion import check_limits, cycle_targets
-from suchus.core.progress import Progress
+from suchus.swim.coupling.chain import ChainState, MidlineChain
+from suchus.swim.coupling.linked import LinkChain, LinkWay
+from suchus.swim.coupling.recorded import Series, recorded
 from suchus.swim.water import Outline, cycle, displaced, recoil
 from suchus.swim.water.immersed import folded, half_heights
 from suchus.swim.water.samples import Samples

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.design import Robot, check_needs, with_values
 from suchus.robot.design.scale import control_period
-from suchus.core.errors import InvalidDesign, OutsideLimits, UnsuitedRobot
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
 from suchus.swim.water.outline import Outline

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.profile import profile
-from suchus.core.errors import InvalidDesign
 from suchus.robot.motion import lateral_servos
 
 STATIONS = 257

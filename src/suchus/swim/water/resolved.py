@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.robot.design import Robot
 from suchus.core.errors import OutsideLimits
 from suchus.core.progress import Progress
+from suchus.robot.design import Robot
 from suchus.swim.water.outline import Outline
 from suchus.swim.water.plane_record import FreeSlice, TetheredSlice
 from suchus.swim.water.samples import Samples, run_on

@@ -15,12 +15,12 @@ import numpy as np
 
 from suchus import flow
 from suchus.core.errors import UnreadableFile
-from suchus.flow import checkpoint as store
-from suchus.flow.progress import Bar
+from suchus.core.files.store import holds, sealed
 from suchus.core.progress import Progress
 from suchus.core.reading import check_file
-from suchus.core.files.store import holds, sealed
 from suchus.core.writing import check_writable, keep
+from suchus.flow import checkpoint as store
+from suchus.flow.progress import Bar
 
 _KEPT, _SAMPLES = ".kept-swim", ".samples"  # how the files of an unfinished swim end
 

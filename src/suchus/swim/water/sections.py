@@ -20,10 +20,10 @@ from scipy.interpolate import RegularGridInterpolator
 from suchus.atlas import sections
 from suchus.atlas.case import published
 from suchus.atlas.outcome import FlowOutcome
-from suchus.robot.design.water import Water
 from suchus.core.errors import InvalidDesign, UnreadableFile
-from suchus.flow import morison
 from suchus.core.files import write
+from suchus.flow import morison
+from suchus.robot.design.water import Water
 
 TABLE = Path(__file__).parent / "data" / "sections.csv"
 """The table that is shipped."""

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from suchus import flow
-from suchus.robot.design import WATER_DENSITY, Robot
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 from suchus.flow.immerse import THINNEST
+from suchus.robot.design import WATER_DENSITY, Robot
 
 DENSITY = WATER_DENSITY
 """Of the water [kg/m3]."""

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq
 
-from suchus.robot.design.water import Water
 from suchus.core.errors import NotConverged
+from suchus.robot.design.water import Water
 from suchus.swim.water.outline import MidlineCurve, Outline, summed
 from suchus.swim.water.undulation import Motion, undulation
 

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Float
 
 from suchus import flow
-from suchus.robot.design import Robot
-from suchus.robot.design.water import Water
 from suchus.core.errors import InvalidDesign
 from suchus.flow.setup import LAYER_CELLS
+from suchus.robot.design import Robot
+from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, check_limits, check_speeds
 from suchus.swim.water.immersed import half_heights, immersed, trunk
 from suchus.swim.water.outline import Outline

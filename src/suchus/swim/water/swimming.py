@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from suchus.core.errors import OutsideLimits
 from suchus.robot.design import GRAVITY, WATER_DENSITY, Robot
 from suchus.robot.design.water import Water
-from suchus.core.errors import OutsideLimits
-from suchus.sim.metrics import SIMILARITY, swim_numbers
 from suchus.robot.motion import Gait, check_limits, check_speeds
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import SIMILARITY, swim_numbers
 from suchus.swim.water.measures import efficiency
 from suchus.swim.water.outline import MidlineCurve, Outline
 from suchus.swim.water.slender import Model, cruise, cycle, reactive, recoil, resistive

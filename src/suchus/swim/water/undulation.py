@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Complex, Float
 
-from suchus.robot.design import layout
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import layout
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
 from suchus.swim.water.outline import MidlineCurve, Outline, summed

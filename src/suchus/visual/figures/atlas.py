@@ -29,9 +29,9 @@ from suchus.atlas import (
 )
 from suchus.atlas.convergence import FORMAL, SAFETY
 from suchus.core.errors import SuchusError
-from suchus.visual.figures.style import COLOURS, new, styled
-from suchus.flow import ALONG_THE_SKIN
 from suchus.core.files import write
+from suchus.flow import ALONG_THE_SKIN
+from suchus.visual.figures.style import COLOURS, new, styled
 
 _COLUMNS = 3
 _OURS = COLOURS["ours"]

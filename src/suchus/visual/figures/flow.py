@@ -14,15 +14,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
 from suchus.core.errors import InvalidDesign, UnknownName
-from suchus.visual.figures.data import carry
-from suchus.visual.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth, span
-from suchus.visual.figures.film import film
-from suchus.visual.figures.style import COLOURS, WIDTH, panels, styled
+from suchus.core.writing import write
 from suchus.flow import ALONG_THE_SKIN, Record, Simulation, Surface
 from suchus.flow.fields import Fields
 from suchus.flow.pose import speeds
 from suchus.flow.rake import due_after
-from suchus.core.writing import write
+from suchus.visual.figures.data import carry
+from suchus.visual.figures.fields import EDGE, PRESSURE, SKIN, VORTICITY, smooth, span
+from suchus.visual.figures.film import film
+from suchus.visual.figures.style import COLOURS, WIDTH, panels, styled
 
 _PIXELS = 900
 """About how many pixels the longer side of a field has [-]."""

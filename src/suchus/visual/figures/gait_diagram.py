@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from suchus.robot.design import LEGS
 from suchus.core.errors import InvalidDesign
+from suchus.robot.design import LEGS
 from suchus.visual.figures.style import COLOURS, WIDTH, panels, styled
 
 GAIT_LINES: Mapping[str, Mapping[str, Any]] = MappingProxyType(

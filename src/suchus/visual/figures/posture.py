@@ -13,11 +13,11 @@ from matplotlib.path import Path
 
 from suchus.core import rotation
 from suchus.robot.design import GRAVITY, Layout, LimbPlace, Robot, layout
-from suchus.visual.figures.silhouette import Silhouette, silhouette
-from suchus.visual.figures.style import COLOURS
 from suchus.robot.kinematics.tree import BodyFrames, frames, landmarks
 from suchus.sim.metrics import loaded, support_polygon
 from suchus.sim.metrics.gait import LOADED_SHARE
+from suchus.visual.figures.silhouette import Silhouette, silhouette
+from suchus.visual.figures.style import COLOURS
 from suchus.visual.skin import poses, skin
 
 View = Literal["above", "side"]

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy import stats
 
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.sim.metrics.decisive import SURE
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict.judging import ROBUST
+from suchus.sim.metrics.decisive import SURE
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _TRUE, _FALSE = "#0072B2", "#D55E00"
 _SHOWN = 8

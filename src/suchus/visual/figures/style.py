@@ -16,10 +16,10 @@ import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
+from suchus.core.files import write
 from suchus.robot.design import LEGS, Robot, layout
 from suchus.visual.figures.data import table
 from suchus.visual.figures.uncover import Uncovering
-from suchus.core.files import write
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {

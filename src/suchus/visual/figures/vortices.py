@@ -14,11 +14,11 @@ from matplotlib.transforms import IdentityTransform
 from scipy.ndimage import map_coordinates
 
 from suchus.core.errors import IncompatibleRecord
+from suchus.core.isosurface import IsoSurface, isosurface
+from suchus.core.progress import Progress, silent
 from suchus.visual.figures.fields import VORTICITY
 from suchus.visual.figures.film import film
 from suchus.visual.figures.style import captioned, panels, styled
-from suchus.core.isosurface import IsoSurface, isosurface
-from suchus.core.progress import Progress, silent
 from suchus.visual.skin.mesh import Mesh, joined, loft, normals
 
 _LIGHT = np.array([-0.35, 0.75, 0.56])  # to the right, up, towards the camera; of length 1

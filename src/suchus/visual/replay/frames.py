@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, joint_names, layout
 from suchus.core.errors import IncompatibleRecord
+from suchus.robot.design import Robot, joint_names, layout
 from suchus.sim.record import check_land
 from suchus.visual.skin import Poses, poses
 

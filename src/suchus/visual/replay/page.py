@@ -15,13 +15,13 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from PIL import Image
 
+from suchus.core.errors import InvalidDesign
+from suchus.core.files import versions, write
 from suchus.robot.design import Robot
 from suchus.robot.design.ground import Ground
-from suchus.core.errors import InvalidDesign
+from suchus.sim.record import ground_of
 from suchus.visual.figures import limb_colours, panels, styled, vortices
 from suchus.visual.figures.posture import draw_posture
-from suchus.sim.record import ground_of
-from suchus.core.files import versions, write
 from suchus.visual.replay.frames import Frames, checked, frames
 from suchus.visual.replay.scene import ARROW, KEYS, PackedArrays, quantised, scene
 

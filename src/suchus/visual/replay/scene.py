@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from suchus.core.rotation import rotate
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.design.ground import ASIDE, REACH, Bumps, Ground, Relief, Step, field, slope
-from suchus.visual.figures import COLOURS, limb_colours
 from suchus.sim.metrics.gait import LOADED_SHARE
+from suchus.visual.figures import COLOURS, limb_colours
 from suchus.visual.replay.frames import Frames
-from suchus.core.rotation import rotate
 from suchus.visual.skin import Skin, ankles, footed
 
 _KINDS = {"int8", "uint8", "int16", "uint16", "uint32", "float32"}

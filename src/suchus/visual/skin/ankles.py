@@ -9,9 +9,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from suchus.core.rotation import about, multiply, rotate
 from suchus.robot.design import LEGS, Robot
 from suchus.robot.design.ground import Relief, heights
-from suchus.core.rotation import about, multiply, rotate
 from suchus.visual.skin.bones import Poses, bone_names
 from suchus.visual.skin.surface import Skin, skin
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suchus.robot.design import Robot, joint_names, layout
 from suchus.core.errors import InvalidDesign
 from suchus.core.rotation import about, multiply, rotate
+from suchus.robot.design import Robot, joint_names, layout
 
 
 class Poses(NamedTuple):

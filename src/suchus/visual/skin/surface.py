@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from suchus.robot.design import MEASURED, Layout, Robot, lacking, layout
 from suchus.core.errors import InvalidDesign
 from suchus.core.rotation import rotate
+from suchus.robot.design import MEASURED, Layout, Robot, lacking, layout
 from suchus.visual.skin.body import body, shape
 from suchus.visual.skin.bones import bone_names, bone_rest
 from suchus.visual.skin.head import eyes, jaw, teeth

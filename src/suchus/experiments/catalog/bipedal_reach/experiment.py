@@ -7,11 +7,26 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import OpenLoop
-from suchus.robot.control.standing import BALANCE, Balance, Standing
-from suchus.robot.design import STANDING, Robot
+from suchus.article.paper import CLAIMS
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period, scaled
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.bipedal_reach.figure import (
+    draw_angles,
+    draw_ceiling,
+    draw_heights,
+    draw_limits,
+    draw_pushes,
+    draw_side_views,
+)
+from suchus.experiments.catalog.bipedal_reach.variants import (
+    PARTS,
+    fitted,
+    heavier,
+    length,
+    lengthened,
+    stand_soon,
+    up_at,
+)
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -24,24 +39,17 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.bipedal_reach.figure import (
-    draw_angles,
-    draw_ceiling,
-    draw_heights,
-    draw_limits,
-    draw_pushes,
-    draw_side_views,
-)
-from suchus.experiments.catalog.bipedal_reach.variants import PARTS, fitted, heavier, length, lengthened, stand_soon, up_at
+from suchus.robot.control import OpenLoop
+from suchus.robot.control.standing import BALANCE, Balance, Standing
+from suchus.robot.design import STANDING, Robot
+from suchus.robot.design.scale import control_period, scaled
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import START, Gait, hip_height
+from suchus.robot.motion.rising import LEAD, cantilever_torque, size_of, stretched, tallest
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.land.push_search import smallest_pushes
 from suchus.sim.metrics import held, lead, peak_torque, reach, static_margin
-from suchus.robot.motion import START, Gait, hip_height
-from suchus.robot.motion.rising import LEAD, cantilever_torque, size_of, stretched, tallest
-from suchus.article.paper import CLAIMS
-from suchus.robot.robots import ROBOTS
 
 _COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
 _UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen

@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from suchus.article.paper import CLAIMS
 from suchus.core import rotation
 from suchus.robot.design import Robot, layout
+from suchus.sim.metrics import loaded, tilt
 from suchus.visual.figures.gait_diagram import stretches
 from suchus.visual.figures.posture import draw_posture, skeleton
 from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
-from suchus.sim.metrics import loaded, tilt
-from suchus.article.paper import CLAIMS
 
 _FEEDBACK = {"on": COLOURS["ours"], "off": COLOURS["limbs_only"]}
 

@@ -4,9 +4,9 @@ from operator import attrgetter
 
 import numpy as np
 
+from suchus.core.errors import OutsideLimits
 from suchus.robot.control.standing import Balance, Standing
 from suchus.robot.design import Robot, with_values
-from suchus.core.errors import OutsideLimits
 from suchus.robot.motion import Gait
 from suchus.robot.motion.posture import plan
 from suchus.robot.motion.rising import stand_up

@@ -7,12 +7,24 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design.scale import coarse_step
-from suchus.experiments.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, estimated, silent, staged
+from suchus.article.paper import SNAPSHOT_TIMES
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
 from suchus.experiments.catalog.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
+from suchus.experiments.experiment import (
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import conditions_of
+from suchus.robot.motion import START, FootPath, longest_strokes
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import (
     displacement,
@@ -29,8 +41,6 @@ from suchus.sim.metrics import (
     tilt,
     two_feet_alone_share,
 )
-from suchus.robot.motion import START, FootPath, longest_strokes
-from suchus.article.paper import SNAPSHOT_TIMES
 
 _EQUAL = "limbs_only_equal_displacement"
 _SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")

@@ -7,11 +7,11 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.robot.design import Robot
+from suchus.robot.motion import START
+from suchus.sim.metrics import between, height_peak_to_peak
 from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, LINES, captioned, panels, styled
 from suchus.visual.figures.timeseries import draw_lines, mark_cycles
-from suchus.sim.metrics import between, height_peak_to_peak
-from suchus.robot.motion import START
 
 
 def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from suchus.core.checks import Checks
+from suchus.core.progress import portion
+from suchus.experiments.catalog.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.robot.control import OpenLoop
 from suchus.robot.design import Robot
-from suchus.core.checks import Checks
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
-from suchus.experiments.catalog.death_roll.figure import draw_cost, draw_rates, draw_roll, servo_groups
+from suchus.robot.motion import Gait, roll
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.sim.metrics import between, peak_torque, roll_rate, whole
 from suchus.sim.model import longest_step
-from suchus.robot.motion import Gait, roll
-from suchus.core.progress import portion
-from suchus.robot.robots import ROBOTS
 
 _NEARLY = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
 _MEDIA = ("vacuum", "water")

@@ -6,12 +6,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch, Polygon
 
+from suchus.article.paper.animals import ANIMAL
 from suchus.core import rotation
 from suchus.robot.design import Robot, layout
+from suchus.sim.metrics import peak_torque, roll_angle
 from suchus.visual.figures.posture import silhouette_at, skeleton, united
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.sim.metrics import peak_torque, roll_angle
-from suchus.article.paper.animals import ANIMAL
 
 _BACK, _BELLY, _EDGE = np.array([0.30, 0.45, 0.35]), np.array([0.95, 0.90, 0.76]), "#3B5545"
 _ARMS = {

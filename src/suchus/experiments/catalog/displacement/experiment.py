@@ -7,20 +7,31 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import layout
+from suchus.article.paper import CLAIMS, CYCLES
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import coarse_step
 from suchus.core.errors import InvalidDesign
-from suchus.experiments.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, ends, estimated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
 from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_decisions, draw_parts
+from suchus.experiments.experiment import (
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    ends,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.robot.design import layout
+from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
+from suchus.robot.motion import START, FootPath, Gait, suits
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
 from suchus.sim.metrics import displacement as displacement_of
-from suchus.robot.motion import START, FootPath, Gait, suits
-from suchus.article.paper import CLAIMS, CYCLES
 
 _GROUPS = CONDITIONS[:2]
 _CRAWL = belly_crawl.metres

@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from suchus.article.paper import CLAIMS
 from suchus.robot.design import Robot
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.visual.figures.data import carry
 from suchus.visual.figures.posture import draw_strip
 from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
 from suchus.visual.figures.timeseries import draw_lines, mark_cycles, mark_printed
-from suchus.robot.motion import START, Gait
-from suchus.article.paper import CLAIMS
-from suchus.robot.robots import ROBOTS
 
 _USUAL = ROBOTS["caiman"].length
 """Length of the robot for which distances between the strips are [m]."""

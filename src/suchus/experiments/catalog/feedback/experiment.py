@@ -8,11 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, Runs
-from suchus.robot.control.topology import topology
-from suchus.robot.design import Robot, layout
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import coarse_step, control_period
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -25,14 +23,16 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, Runs
+from suchus.robot.control.topology import topology
+from suchus.robot.design import Robot, layout
+from suchus.robot.design.scale import coarse_step, control_period
 from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import START, Gait, movement
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances, simulate
 from suchus.sim.metrics import heading
 from suchus.sim.metrics.coordination import WITHIN, cycles_until, phase_error
-from suchus.robot.motion import START, Gait, movement
-from suchus.robot.robots import ROBOTS
 
 _ALONE: Mapping[str, Any] = {"spine": None, "tail": None}
 STARTS: Mapping[str, Coordinated] = {

@@ -17,8 +17,8 @@ from matplotlib.ticker import MultipleLocator
 
 from suchus.robot.control.shared import OWNERS
 from suchus.robot.control.topology import ControlPart
-from suchus.visual.figures.style import COLOURS, DIVERGING, captioned, new, panels, styled
 from suchus.robot.motion import Gait
+from suchus.visual.figures.style import COLOURS, DIVERGING, captioned, new, panels, styled
 
 _LAWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
     {

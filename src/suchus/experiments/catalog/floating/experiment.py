@@ -10,18 +10,28 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.core import rotation
-from suchus.robot.control import Swimming
-from suchus.robot.design import Robot, with_values
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.floating import cases
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.sim.land import Lake, Run, simulate
-from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.control import Swimming
+from suchus.robot.design import Robot, with_values
+from suchus.robot.design.scale import control_period
 from suchus.robot.motion import LIMBS_UP, cycle_targets, still
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.model.hydrostatics import hydrostatics
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _UPRIGHT = 0.035
 """Heel within which it counts as upright [rad]; 2 degrees."""

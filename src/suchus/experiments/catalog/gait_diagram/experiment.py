@@ -8,15 +8,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.article.paper import CYCLES
+from suchus.core.checks import Checks
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.robot import blueprint
 from suchus.robot.design import Robot, layout
-from suchus.core.checks import Checks
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
-from suchus.experiments.catalog._replayed import replayed
-from suchus.visual.figures import captioned
-from suchus.visual.figures.gait_diagram import GaitTrack, gait_diagram
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics.tail import bend_of_servo
+from suchus.robot.motion import START, Gait, as_table, intended
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import (
     bend_swings,
@@ -26,9 +27,8 @@ from suchus.sim.metrics import (
     loaded,
     sensed_phase,
 )
-from suchus.robot.motion import START, Gait, as_table, intended
-from suchus.article.paper import CYCLES
-from suchus.robot.robots import ROBOTS
+from suchus.visual.figures import captioned
+from suchus.visual.figures.gait_diagram import GaitTrack, gait_diagram
 
 _PARTS = ("spine", "tail")
 _ANIMAL_GAIT = GAITS["animal_walk"]

@@ -9,11 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.robot.design import Robot, Servo, layout
-from suchus.robot.design.body import servos_of
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period
-from suchus.robot.design.servos import with_full_torque, with_named_servos, with_speed_line
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS, Searched
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -26,15 +24,17 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.gallop_limits.gaits import BOUNDS, TROTS, Searched
-from suchus.visual.figures import captioned
-from suchus.visual.figures.style import COLOURS, panels, styled
+from suchus.robot.design import Robot, Servo, layout
+from suchus.robot.design.body import servos_of
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.servos import with_full_torque, with_named_servos, with_speed_line
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, Tolerances, simulate
-from suchus.sim.metrics import between, displacement, flight_share
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, Tolerances, simulate
+from suchus.sim.metrics import between, displacement, flight_share
+from suchus.visual.figures import captioned
+from suchus.visual.figures.style import COLOURS, panels, styled
 
 _RUN_UP = 1.0  # [s]; before anything is measured
 _HASTE = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach

@@ -8,16 +8,28 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop
-from suchus.robot.design import layout
+from suchus.article.paper import CLAIMS
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import coarse_step, control_period
-from suchus.experiments.experiment import Measure, Measures, Outcome, Progress, Replay, Simulated, estimated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._two_groups import TwoGroups
 from suchus.experiments.catalog.joint_faults.figure import draw_held, draw_matrix, draw_over_time, draw_tracks
+from suchus.experiments.experiment import (
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    estimated,
+    silent,
+    staged,
+)
+from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop
+from suchus.robot.design import layout
+from suchus.robot.design.scale import coarse_step, control_period
 from suchus.robot.gaits import conditions_of
 from suchus.robot.gaits.limbs_tail_lifted import LIFTED
+from suchus.robot.motion import START, Gait
 from suchus.sim.land import (
     KINDS,
     LEGS_FAILED,
@@ -43,8 +55,6 @@ from suchus.sim.metrics import (
     swing_unloaded,
     whole,
 )
-from suchus.robot.motion import START, Gait
-from suchus.article.paper import CLAIMS
 
 _OF_SUPPORT = ("support_share_", "tail_load_", "foot_", "com_")
 """How the names of the measures begin that are of what carries the body."""

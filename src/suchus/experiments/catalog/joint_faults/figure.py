@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from suchus.experiments.experiment import write
-from suchus.visual.figures.style import COLOURS, LINES, captioned, panels, styled
-from suchus.visual.figures.timeseries import draw_band, mark_cycles
-from suchus.robot.motion import START
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict import listed
+from suchus.experiments.experiment import write
+from suchus.robot.motion import START
+from suchus.visual.figures.style import COLOURS, LINES, captioned, panels, styled
+from suchus.visual.figures.timeseries import draw_band, mark_cycles
 
 _ARMS = ("coordinated", "limbs_only")
 _SHADES = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#B0558A")

@@ -9,20 +9,20 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, layout
+from suchus.article.paper import CYCLES
 from suchus.core.checks import Checks
+from suchus.experiments.catalog.joint_loops import figure as pictures
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import control_period, physics_step
 from suchus.robot.design.servos import with_servos
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
-from suchus.experiments.catalog.joint_loops import figure as pictures
-from suchus.visual.figures import captioned
 from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.land.stand import on_stand
 from suchus.sim.metrics import between, displacement, whole
-from suchus.robot.motion import START, Gait
-from suchus.article.paper import CYCLES
-from suchus.robot.robots import ROBOTS
+from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
 """A step without load, a load without a step, and a step while the joint is clamped, which is then released."""

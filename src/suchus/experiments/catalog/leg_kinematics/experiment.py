@@ -7,17 +7,17 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import LEGS, Robot, leg_joints, servo_names
+from suchus.article.paper import LEG_CHAIN
+from suchus.article.paper.tables import Chain
 from suchus.core.checks import Checks
-from suchus.robot.design.measures import LegMeasures
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments.catalog._frames import draw_frames, frames_of
 from suchus.experiments.catalog.leg_kinematics import figure as pictures
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.robot.design import LEGS, Robot, leg_joints, servo_names
+from suchus.robot.design.measures import LegMeasures
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics import leg, printed
 from suchus.robot.motion import Gait, movement
-from suchus.article.paper import LEG_CHAIN
-from suchus.article.paper.tables import Chain
 from suchus.robot.robots import ROBOTS
 
 _SHOWN = (0.35, 0.3, 0.8, 0.0)

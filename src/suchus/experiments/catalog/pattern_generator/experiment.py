@@ -9,21 +9,31 @@ import numpy as np
 import xarray as xr
 
 from suchus.animals.capture.angles import STANDING, standing_index
-from suchus.robot.control import Oscillators, PatternGenerator, oscillate
-from suchus.robot.control.pattern_posture import axis_segments
-from suchus.robot.design import Robot
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import scaled_fields
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.pattern_generator import one_drive
 from suchus.experiments.catalog.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.control import Oscillators, PatternGenerator, oscillate
+from suchus.robot.control.pattern_posture import axis_segments
+from suchus.robot.design import Robot
+from suchus.robot.design.scale import scaled_fields
 from suchus.robot.gaits import GAITS, own_gait
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.land.afloat import floats
 from suchus.sim.metrics import displacement, heading_change
-from suchus.robot.motion import START, Gait
-from suchus.robot.robots import ROBOTS
 
 _NUMBERS = Oscillators()
 _EDGE = 0.01  # above the limbs' highest drive, where they have just fallen silent

@@ -5,12 +5,12 @@ from math import sin
 import numpy as np
 import xarray as xr
 
+from suchus.experiments.experiment import Measure, Measures
 from suchus.robot.control import LoadRule, PatternGenerator
 from suchus.robot.design import Robot
 from suchus.robot.design.ground import Ground
-from suchus.experiments.experiment import Measure, Measures
-from suchus.sim.land import Lake, Run
 from suchus.robot.motion import START, Gait
+from suchus.sim.land import Lake, Run
 
 ARMS = ("felt", "unfelt")
 """With the load felt, and without."""

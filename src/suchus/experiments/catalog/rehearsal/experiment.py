@@ -9,20 +9,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from suchus.hardware.bus import BusPlace, Wiring, straight
-from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
-from suchus.robot.design import Robot
 from suchus.core.checks import Checks
-from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, MemoryPort, Trouble
 from suchus.core.errors import Diverged
 from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.robot.gaits import GAITS
 from suchus.hardware import BusClock, DriveLimits, DriveSettings, Rig, drive
-from suchus.sim.land import crawl
-from suchus.sim.metrics import displacement, heading_change
+from suchus.hardware.bus import BusPlace, Wiring, straight
+from suchus.hardware.emulator import USUAL, EmulatedBody, Emulator, MemoryPort, Trouble
+from suchus.robot.control import Control, Coordinated, HeadingRule, OpenLoop, PatternGenerator
+from suchus.robot.design import Robot
+from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import crawl
+from suchus.sim.metrics import displacement, heading_change
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 RULES = ("open", "closed", "steered", "pattern")
 LOSES = 0.02

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from suchus.animals.capture import standing_index
+from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.experiments.experiment import Measure, Measures
 from suchus.sim.metrics import each_cycle, first_harmonic, mean_cycle
 from suchus.sim.metrics.foot_forces import PARTS, Window, advance, stance_forces, step, weight
-from suchus.article.paper.walking_salamanders import ANIMAL
 
 PAIRS = ("fore", "hind")
 

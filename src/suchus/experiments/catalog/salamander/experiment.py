@@ -7,21 +7,31 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, layout
+from suchus.article.paper.walking_salamanders import ANIMAL
 from suchus.core.checks import Checks
 from suchus.core.errors import UnsuitedRobot
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.salamander.animal_walk import PAIRS, beside, steps, waves
 from suchus.experiments.catalog.salamander.animal_walk import window as measured_window
 from suchus.experiments.catalog.salamander.figure import draw_angles, draw_feet
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics import displacement, heading_change
 from suchus.sim.metrics.foot_forces import Window, advance, stance_forces, weight
-from suchus.robot.motion import START, Gait
-from suchus.article.paper.walking_salamanders import ANIMAL
-from suchus.robot.robots import ROBOTS
 
 _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 

@@ -8,8 +8,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 from suchus.sim.metrics import mean_cycle
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _COLUMNS = 4
 _LEAST = 0.1  # degrees; a servo that is moved by less is not drawn

@@ -10,21 +10,31 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.core import rotation
-from suchus.robot.design import Robot
 from suchus.core.checks import Checks
-from suchus.robot.design.water import Water
 from suchus.core.errors import SuchusError
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.salamander_swim import animal_swim as animal
 from suchus.experiments.catalog.salamander_swim import own_size
 from suchus.experiments.catalog.salamander_swim.rules import LADDER
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.design import Robot
+from suchus.robot.design.water import Water
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import SwimNumbers, swim_numbers
-from suchus.robot.robots import ROBOTS
 from suchus.swim.water import MODELS, Outline, cruise
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

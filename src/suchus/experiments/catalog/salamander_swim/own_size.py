@@ -7,25 +7,25 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.animals.forces.body import widened
 from suchus.core import rotation
+from suchus.core.progress import Progress, portion
+from suchus.experiments.catalog._similar import similar
+from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, played
+from suchus.experiments.experiment import Measure, Measures
 from suchus.robot.control import Swimming
 from suchus.robot.design import Robot
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.scale import scaled
 from suchus.robot.design.water import Water
-from suchus.experiments.experiment import Measure, Measures
-from suchus.experiments.catalog._similar import similar
-from suchus.experiments.catalog.salamander_swim.animal_swim import FREQUENCIES, played
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.animals.forces.body import widened
+from suchus.robot.motion import Gait, cycle_targets
+from suchus.robot.robots import ROBOTS
+from suchus.robot.robots._animals import catshark, eel, pleurodeles
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.robot.motion import Gait, cycle_targets
-from suchus.core.progress import Progress, portion
-from suchus.robot.robots import ROBOTS
-from suchus.robot.robots._animals import catshark, eel, pleurodeles
 from suchus.swim.water import FilmedWave, fit, swim_of
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 ASTRAY = float(np.radians(90.0))
 """Heel from which on a body has rolled over [rad]."""

@@ -10,21 +10,21 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from suchus.robot.design import Robot
+from suchus.article.paper import CLAIMS, CYCLES
+from suchus.article.verdict import SHARES
+from suchus.article.verdict.judging import ROBUST, Share
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
-from suchus.visual.figures.sensitivity import draw_shares, spoken
-from suchus.robot.gaits import GAITS
-from suchus.robot.motion import Gait
-from suchus.article.paper import CLAIMS, CYCLES
-from suchus.robot.robots import ROBOTS
 from suchus.experiments.study import Claims, conducted
 from suchus.experiments.study.answers import share_interval
 from suchus.experiments.study.claims_table import claim_row, table, turned
-from suchus.article.verdict import SHARES
-from suchus.article.verdict.judging import ROBUST, Share
+from suchus.robot.design import Robot
+from suchus.robot.design.scale import control_period
+from suchus.robot.gaits import GAITS
+from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
+from suchus.visual.figures.sensitivity import draw_shares, spoken
 
 _ALARM = 0.01  # how seldom chance alone may say that this run and the shipped table differ [-]
 _COUNTS = {

@@ -10,25 +10,35 @@ import xarray as xr
 from jaxtyping import Bool, Float
 
 from suchus.core import rotation
-from suchus.robot.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
-from suchus.robot.design import GRAVITY, Robot
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period
-from suchus.robot.design.water import Water
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.shore.figure import draw_ashore, draw_decides
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.control import Amphibious, Control, DepthHold, HeadingHold, HeadingRule, OpenLoop, Swimming
+from suchus.robot.design import GRAVITY, Robot
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.water import Water
 from suchus.robot.gaits import DRAFTED, GAITS, own_gait, suits
 from suchus.robot.gaits.belly_crawl import LIMBS
+from suchus.robot.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.afloat import check_floats, hovers
 from suchus.sim.land.lake import up
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.robot.motion import LIMBS_BACK, Gait, GaitInMetres, cycle_targets, draft_gait, still
-from suchus.robot.robots import ROBOTS
 from suchus.swim.water import swim_of
 
 _DRY, _DEEP = -10.0, 3.0

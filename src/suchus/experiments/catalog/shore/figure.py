@@ -7,12 +7,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suchus.core.rotation import multiply, rotate
 from suchus.robot.design import Robot
 from suchus.robot.design.ground import slope
+from suchus.sim.record import ground_of
 from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
-from suchus.sim.record import ground_of
-from suchus.core.rotation import multiply, rotate
 
 _POSTURES, _APART = 4, 0.5  # of the robot, at most, and the least distance between them over its length [-]
 _POINTS = ("position", "centre_of_mass", "snout", "tail_tip", "foot_position", "foot_force")

@@ -9,12 +9,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from suchus.article.paper.animals import ANIMAL
 from suchus.core import rotation
-from suchus.robot.design import GRAVITY, Robot, Rod, Segment, layout
-from suchus.robot.design.body import servos_of
 from suchus.core.checks import Checks
-from suchus.robot.design.scale import control_period
-from suchus.robot.design.servos import with_full_torque, with_leg_servos, with_speed_line
+from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -27,16 +25,18 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.catalog._replayed import replayed
-from suchus.visual.figures.gait_diagram import gait_lines
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+from suchus.robot.design import GRAVITY, Robot, Rod, Segment, layout
+from suchus.robot.design.body import servos_of
+from suchus.robot.design.scale import control_period
+from suchus.robot.design.servos import with_full_torque, with_leg_servos, with_speed_line
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics.tree import frames
+from suchus.robot.motion import START, Gait, hip_height
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import between, cost_of_transport, displacement, duty_factor, roll_peak_to_peak
-from suchus.robot.motion import START, Gait, hip_height
-from suchus.article.paper.animals import ANIMAL
-from suchus.robot.robots import ROBOTS
+from suchus.visual.figures.gait_diagram import gait_lines
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _TOUCHES = 0.00495  # [body length]; a tail this close to the ground lies on it
 _LOADED = 0.0029  # of the weight; a tail that presses more on the ground touches it

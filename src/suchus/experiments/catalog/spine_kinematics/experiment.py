@@ -8,13 +8,13 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, spine_joints
 from suchus.core.checks import Checks
-from suchus.robot.design.measures import SpineMeasures
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
 from suchus.experiments.catalog._frames import draw_frames, frames_of
 from suchus.experiments.catalog.spine_kinematics import figure as pictures
 from suchus.experiments.catalog.spine_kinematics.rules import EXACT
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
+from suchus.robot.design import Robot, spine_joints
+from suchus.robot.design.measures import SpineMeasures
 from suchus.robot.kinematics import printed, spine
 from suchus.robot.robots import ROBOTS
 

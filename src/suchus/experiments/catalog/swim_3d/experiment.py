@@ -11,22 +11,30 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.swim.coupling import check_on_joints, swim_on_joints
-from suchus.robot.design import GRAVITY, Robot
 from suchus.core.checks import Checks
-from suchus.robot.design.water import Water
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
+from suchus.core.fingerprint import fingerprint
+from suchus.core.jobs import at_scheduler, conduct_sweep
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog._taken import TAKEN, TakenMidline, midlines
 from suchus.experiments.catalog.swim_3d.figure import draw_joints, draw_speeds, draw_tails, draw_wake, how
-from suchus.visual.figures.vortices import draw_vortices, film_vortices
-from suchus.core.fingerprint import fingerprint
-from suchus.core.jobs import at_scheduler, conduct_sweep
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.design import GRAVITY, Robot
+from suchus.robot.design.water import Water
 from suchus.robot.kinematics.wave import READINGS
-from suchus.sim.metrics import swim_numbers
 from suchus.robot.motion import Gait
-from suchus.visual.replay import wake_replay
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import swim_numbers
+from suchus.swim.coupling import check_on_joints, swim_on_joints
 from suchus.swim.water import (
     Motion,
     fit,
@@ -36,6 +44,8 @@ from suchus.swim.water import (
 from suchus.swim.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
 from suchus.swim.water.samples import all_kept, check_kept, kept_in
 from suchus.swim.water.setting import BESIDE
+from suchus.visual.figures.vortices import draw_vortices, film_vortices
+from suchus.visual.replay import wake_replay
 
 MOST_REYNOLDS = 2e4
 """Largest frequency times length squared over viscosity [-]."""

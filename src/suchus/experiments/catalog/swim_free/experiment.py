@@ -10,13 +10,8 @@ import numpy as np
 import xarray as xr
 
 from suchus.core import rotation
-from suchus.robot.blueprint import read_correction, render
-from suchus.robot.control import Swimming
-from suchus.robot.design import GRAVITY, Robot, SectionCorrection, with_spring, with_values
 from suchus.core.checks import Checks
-from suchus.robot.design.water import Water
 from suchus.core.errors import Doubtful
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.swim_free import submerged
@@ -32,19 +27,34 @@ from suchus.experiments.catalog.swim_free.in_flow import (
     swum,
     water_of,
 )
-from suchus.visual.figures.vortices import film_vortices
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
+from suchus.robot.blueprint import read_correction, render
+from suchus.robot.control import Swimming
+from suchus.robot.design import GRAVITY, Robot, SectionCorrection, with_spring, with_values
+from suchus.robot.design.water import Water
+from suchus.robot.motion import LIMBS_BACK, Gait, suits
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import Form
 from suchus.sim.metrics import swim_numbers
-from suchus.robot.motion import LIMBS_BACK, Gait, suits
 from suchus.sim.record import WATER
-from suchus.robot.robots import ROBOTS
 from suchus.swim.water import Outline, swim, swim_of
 from suchus.swim.water.samples import all_kept, check_kept
 from suchus.swim.water.sections import likely
 from suchus.swim.water.slender import cruise, cycle, reactive
+from suchus.visual.figures.vortices import film_vortices
 
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
 """Motions that are compared, in open loop; those of a tail or a trunk alone where both bend."""

@@ -8,16 +8,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import Swimming
-from suchus.swim.coupling import Swim, earned_correction, judgement_text, residual_table
-from suchus.swim.coupling.earned import LinkJudgement
-from suchus.robot.design import GRAVITY, Robot, SectionCorrection, Spring, with_spring
-from suchus.robot.design.water import Water
 from suchus.core.errors import Diverged
 from suchus.experiments.experiment import Measure, Measures, Progress, staged
+from suchus.robot.control import Swimming
+from suchus.robot.design import GRAVITY, Robot, SectionCorrection, Spring, with_spring
+from suchus.robot.design.water import Water
+from suchus.robot.motion import Gait
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.waters import Slice, Space
-from suchus.robot.motion import Gait
+from suchus.swim.coupling import Swim, earned_correction, judgement_text, residual_table
+from suchus.swim.coupling.earned import LinkJudgement
 from suchus.swim.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
 from suchus.swim.water.samples import kept_in
 

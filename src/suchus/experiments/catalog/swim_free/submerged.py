@@ -7,15 +7,15 @@ import numpy as np
 import xarray as xr
 
 from suchus.core import rotation
+from suchus.experiments.experiment import Measure, Measures
 from suchus.robot.control import DepthHold, HeadingHold, PitchHold, Swimming
 from suchus.robot.control.holding import neutral_air_fraction
 from suchus.robot.design import Robot, with_values
 from suchus.robot.design.pieces import chambers
-from suchus.experiments.experiment import Measure, Measures
+from suchus.robot.motion import Gait, cycle_targets
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.afloat import hovers
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.robot.motion import Gait, cycle_targets
 
 DEEP = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",

@@ -11,15 +11,15 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot
 from suchus.core.checks import Checks
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.core.jobs import at_scheduler, conduct_sweep
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.swim_sweep.figure import draw_check, draw_maps
-from suchus.core.jobs import at_scheduler, conduct_sweep
-from suchus.sim.metrics import swim_numbers
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, movement
 from suchus.robot.robots import ROBOTS
+from suchus.sim.metrics import swim_numbers
 from suchus.swim.water import MODELS, Swum, fit, greatest, printed_wave, survey
 from suchus.swim.water.resolved import SwimSetting, resolved_swim
 from suchus.swim.water.samples import check_kept

@@ -8,9 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot
+from suchus.article.verdict import Rule
+from suchus.article.verdict.ladder import Voice, voices
 from suchus.core.checks import Checks
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.core.progress import portion
 from suchus.experiments.catalog._similar import similar
 from suchus.experiments.catalog.swimming.figure import (
     draw_forces,
@@ -24,12 +25,11 @@ from suchus.experiments.catalog.swimming.figure import (
 from suchus.experiments.catalog.swimming.ladder import MOTIONS, Climb, Swims, climbed, measures, motions, swims
 from suchus.experiments.catalog.swimming.ladder import table as ladder_table
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.robot.design import Robot
 from suchus.robot.kinematics.wave import READINGS
-from suchus.sim.metrics import swim_numbers
-from suchus.core.progress import portion
 from suchus.robot.robots import ROBOTS
-from suchus.article.verdict import Rule
-from suchus.article.verdict.ladder import Voice, voices
+from suchus.sim.metrics import swim_numbers
 from suchus.swim.water import (
     ExactWave,
     Fit,

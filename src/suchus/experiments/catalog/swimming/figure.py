@@ -11,6 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from suchus.article.paper import CLAIMS
+from suchus.article.verdict import Reading, Rule
+from suchus.article.verdict.ladder import Voice
+from suchus.flow import ALONG_THE_SKIN
 from suchus.visual.figures.fields import (
     PRESSURE,
     VORTICITY,
@@ -23,10 +27,6 @@ from suchus.visual.figures.fields import (
 )
 from suchus.visual.figures.film import film
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.flow import ALONG_THE_SKIN
-from suchus.article.paper import CLAIMS
-from suchus.article.verdict import Reading, Rule
-from suchus.article.verdict.ladder import Voice
 
 _QUARTERS = ("T/4", "T/2", "3T/4", "T")
 _FILM_DPI = 68

@@ -12,16 +12,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from suchus.article.verdict import ladder
 from suchus.core import rotation
-from suchus.robot.design import Robot
 from suchus.core.errors import IncompatibleRecord, SuchusError, UnreadableFile, Unwritable
-from suchus.experiments.experiment import Measure
+from suchus.core.fingerprint import fingerprint
+from suchus.core.progress import Progress, portion, staged
 from suchus.experiments.catalog._taken import bare, swum_in_sections
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SEEN, SETTLED
-from suchus.core.fingerprint import fingerprint
+from suchus.experiments.experiment import Measure
+from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, check_limits, check_speeds
-from suchus.core.progress import Progress, portion, staged
-from suchus.article.verdict import ladder
 from suchus.swim.water import (
     MODELS,
     Fit,

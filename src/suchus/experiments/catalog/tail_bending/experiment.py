@@ -9,19 +9,19 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from suchus.robot.design import Robot, cable_joints, servo_names
-from suchus.robot.design.measures import TailMeasures
+from suchus.article.paper import CYCLES
 from suchus.core.errors import OutsideLimits
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
 from suchus.experiments.catalog.tail_bending import figure as pictures
 from suchus.experiments.catalog.tail_bending.rules import ALIKE
+from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent, staged
+from suchus.robot.design import Robot, cable_joints, servo_names
+from suchus.robot.design.measures import TailMeasures
 from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics import printed, tail
+from suchus.robot.motion import START, Gait
+from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.sim.metrics import between, tail_joint_spread, whole
-from suchus.robot.motion import START, Gait
-from suchus.article.paper import CYCLES
-from suchus.robot.robots import ROBOTS
 
 SHAPES = (0.0, pi / 2, pi)
 """Bends at which the tail is drawn [rad]."""

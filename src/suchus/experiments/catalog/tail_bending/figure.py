@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from suchus.visual.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 from suchus.sim.metrics import tail_joint_spread
+from suchus.visual.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 
 _MM = 1000.0
 _OURS, _PRINTED, _ALARM = COLOURS["ours"], COLOURS["printed"], COLOURS["alarm"]

@@ -9,12 +9,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import xarray as xr
 
-from suchus.robot.control import AttitudeRule, Change, Control, SwitchRule, Walking
-from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.core.checks import Checks
-from suchus.robot.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
-from suchus.robot.design.scale import control_period
 from suchus.core.errors import UnsuitedRobot
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -27,14 +25,16 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
-from suchus.visual.figures.gait_diagram import GAIT_LINES
+from suchus.robot.control import AttitudeRule, Change, Control, SwitchRule, Walking
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.robot.design.ground import BEFORE, STONE, Bumps, Relief, Step, Stone, profile
+from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS, own_gait
-from suchus.sim.land import Ground, Run, Tolerances, simulate
-from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.robot.motion import START, Gait, suits
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Run, Tolerances, simulate
+from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
+from suchus.visual.figures.gait_diagram import GAIT_LINES
 
 _TOUCH = 0.5 / (ROBOTS["caiman"].mass * GRAVITY)  # of the weight on the belly, half a newton of that robot
 _AT = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suchus.robot.design import Robot
+from suchus.robot.robots import ROBOTS
 from suchus.visual.figures.gait_diagram import GAIT_LINES
 from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
-from suchus.robot.robots import ROBOTS
 
 _KINDS = {"bumps": "random bumps", "step": "a step up", "stone": "a stone in the path"}
 _USUAL = ROBOTS["caiman"].length

@@ -8,19 +8,29 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.core.checks import Checks
+from suchus.experiments.catalog._replayed import replayed
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    Replay,
+    Simulated,
+    silent,
+    staged,
+)
 from suchus.robot.control import TurningCurve, Walking, turn
 from suchus.robot.design import Robot, layout, servo_ranges
-from suchus.core.checks import Checks
 from suchus.robot.design.scale import control_period
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Replay, Simulated, silent, staged
-from suchus.experiments.catalog._replayed import replayed
-from suchus.visual.figures.gait_diagram import gait_lines
-from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 from suchus.robot.gaits import GAITS
-from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import heading_change
 from suchus.robot.motion import START, Gait, trunk_amplitude
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Run, simulate
+from suchus.sim.metrics import heading_change
+from suchus.visual.figures.gait_diagram import gait_lines
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
 

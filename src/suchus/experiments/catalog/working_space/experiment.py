@@ -9,15 +9,15 @@ import xarray as xr
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from suchus.robot.design import LEGS, Robot
 from suchus.core.checks import Checks
 from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, Simulated, silent
-from suchus.visual.figures import captioned
-from suchus.visual.figures.style import COLOURS, panels, styled
+from suchus.robot.design import LEGS, Robot
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import Gait
 from suchus.robot.motion.working_space import Extent, Reached, extent, outline, reached
 from suchus.robot.robots import ROBOTS
+from suchus.visual.figures import captioned
+from suchus.visual.figures.style import COLOURS, panels, styled
 
 STATES = ("crawling", "standing")
 """On four feet; on hind feet and tail."""

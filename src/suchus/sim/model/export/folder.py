@@ -5,16 +5,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal, get_args
 
-from suchus.robot import blueprint
-from suchus.robot.design import Robot
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.core.files import digest, new_folder, versions
+from suchus.robot import blueprint
+from suchus.robot.design import Robot
+from suchus.robot.motion import Gait, check_limits
 from suchus.sim.model.build import TIMESTEP
 from suchus.sim.model.export.mjcf import mjcf
 from suchus.sim.model.export.urdf import BALL, ball, unsaid, urdf
 from suchus.sim.model.export.usd import scene, unsaid_in_usd, usd
-from suchus.robot.motion import Gait, check_limits
-from suchus.core.files import digest, new_folder, versions
 
 Format = Literal["mjcf", "urdf", "usd"]
 MARK = "suchus_export.json"

@@ -7,9 +7,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from suchus.robot.design import Robot
+from suchus.robot.motion import Gait, hip_height, middle_stance
 from suchus.sim.model.actuators import activations
 from suchus.sim.model.build import TIMESTEP, build, standing
-from suchus.robot.motion import Gait, hip_height, middle_stance
 
 _DIGITS = 6  # what MuJoCo prints
 _KINDS = ("body", "geom", "joint", "site", "light", "tendon", "actuator")

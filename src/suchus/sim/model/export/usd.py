@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.core.errors import SuchusError
+from suchus.robot.design import GRAVITY, Robot, layout
+from suchus.robot.motion import Gait
 from suchus.sim.model.build import IMU, compile_model, sites, standing
 from suchus.sim.model.export.mjcf import home
 from suchus.sim.model.export.urdf import ball, filled
-from suchus.robot.motion import Gait
 
 LINK_MASS, LINK_INERTIA = 1e-6, 1e-9
 """Of the link between two joints in one point [kg], [kg m2]: in USD a mass of zero means that it is not known."""

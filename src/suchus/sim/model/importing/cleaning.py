@@ -12,9 +12,9 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 from suchus.core.errors import UnreadableFile
+from suchus.core.files import read_text
 from suchus.sim.model.export.urdf import MUJOCO
 from suchus.sim.model.importing.meshes import Meshes, inside
-from suchus.core.files import read_text
 
 LARGEST = 16 * 2**20
 """Size of a file of a robot [byte]."""

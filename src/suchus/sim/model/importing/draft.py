@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.robot.design import Foot, Girdle, Hinge, Limb, Link, Robot, Rod, Segment, Shell, layout
 from suchus.robot.design.hinge import Turn
 from suchus.robot.design.scale import contact_for
-from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.sim.model.build import compile_model
 from suchus.sim.model.importing.making import (

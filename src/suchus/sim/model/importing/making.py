@@ -6,12 +6,12 @@ from math import degrees, pi
 
 import numpy as np
 
+from suchus.core.errors import UnreadableFile
 from suchus.robot.design import Crank, Hinge, Inertia, Servo, Spring
 from suchus.robot.design.hinge import Turn
 from suchus.robot.design.layout import LIMB_AXES
 from suchus.robot.design.scale import servo_for, spring_for
 from suchus.robot.design.segment import Point, together
-from suchus.core.errors import UnreadableFile
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between
 from suchus.sim.model.importing.tree import Joint, TreePart
 

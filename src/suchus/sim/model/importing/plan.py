@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from suchus.robot.design.segment import together
 from suchus.core.errors import UnknownName, UnreadableFile
+from suchus.robot.design.segment import together
 from suchus.sim.model.importing.tree import Joint, Tree, TreePart
 
 

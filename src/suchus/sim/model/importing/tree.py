@@ -12,8 +12,8 @@ import mujoco
 import numpy as np
 
 from suchus.core.checks import require
-from suchus.robot.design.segment import together
 from suchus.core.errors import UnreadableFile
+from suchus.robot.design.segment import together
 from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.loading import Loaded
 

@@ -1,0 +1,44 @@
+"""The page on the architecture names files and functions that are there, and every wing."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+from pages.code import SOURCE, wings
+
+PAGE = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text(encoding="utf-8")
+ROWS = re.findall(r"^\| [^|]+ \| `([\w/]+\.py)` \| `(\w+)` \|$", PAGE, re.M)
+
+
+def defined(file):
+    """Return the names that a module defines at its top."""
+    names = set()
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            names.add(node.name)
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names |= {target.id for target in targets if isinstance(target, ast.Name)}
+    return names
+
+
+@pytest.mark.parametrize(("file", "name"), ROWS)
+def test_what_the_table_names_is_there(file, name):
+    assert name in defined(SOURCE / file)
+
+
+def test_the_table_has_twenty_rows_and_the_picture_every_wing():
+    assert len(ROWS) == 20
+    picture = PAGE.partition("```")[2].partition("```")[0]
+    beside = {"atlas", "contestants", "league"}
+    assert set(re.findall(r"^   (\w+)|(?<= )(hardware|flow)  ", picture, re.M)) != set()
+    assert {wing for wing in wings() if f" {wing} " not in picture} == beside
+
+
+@pytest.mark.parametrize("wing", wings())
+def test_each_wing_says_what_it_is_for_and_where_to_start(wing):
+    text = ast.get_docstring(ast.parse((SOURCE / wing / "__init__.py").read_text(encoding="utf-8"))) or ""
+    assert 0 < len(text.splitlines()) <= 30
+    if wing not in ("atlas", "contestants", "league"):
+        assert "Start reading with " in text
