@@ -6,13 +6,14 @@ from math import inf, nan
 
 import pytest
 
-from suchus.blueprint import motors, read
+from suchus.blueprint import read
 from suchus.cli import main
 from suchus.design import Robot, layout
 from suchus.gaits import GAITS
 from suchus.hardware import cases
 from suchus.hardware.loads import ServoLoad
 from suchus.hardware.sizing import Sizing
+from suchus.motors import motors
 from suchus.report.size_page import answer
 from suchus.robots import ROBOTS
 
