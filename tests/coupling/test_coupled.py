@@ -136,7 +136,6 @@ def test_steps_of_the_flow_end_at_other_phases_of_the_servos_each_time(most, per
     assert len({k * found % period for k in range(period)}) == period
 
 
-@pytest.mark.slow("robot and flow take a dozen steps together")
 def test_a_light_robot_has_the_momentum_and_the_energy_that_the_water_leaves_it():
     """A fiftieth of its mass: what a step may leave over of the water's force is many times the robot's own."""
     light = scaled(suchus.ROBOTS["swimmer"], length_factor=1.0, mass_factor=0.02)
@@ -305,7 +304,6 @@ def test_a_push_acts_in_each_go_through_a_stretch():
     assert {0.02, 0.05, 0.06} <= ends  # the control periods in which it begins and ends
 
 
-@pytest.mark.slow("a flow that is set up and stepped")
 def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record_so_far(monkeypatch):
     monkeypatch.setattr(coupled, "LOST", 1e-9)
     swim = Swim(swim_run(water=Slice(cells=40, reynolds=600.0)), 0.4)
@@ -323,7 +321,6 @@ def test_a_step_that_does_not_come_to_terms_ends_with_its_numbers_and_the_record
     assert float(record.ended) == pytest.approx(swim.time)
 
 
-@pytest.mark.slow("a flow that is set up and stepped")
 def test_what_ends_a_swim_in_its_first_step_leaves_an_empty_record(monkeypatch):
     """Whoever leaves the plane or the box, or is too fast, keeps what was until then, if it is nothing."""
     swim = Swim(swim_run(water=Slice(cells=40, reynolds=600.0)), 0.1)
@@ -362,7 +359,6 @@ def test_an_added_mass_that_is_less_than_none_is_none():
     assert again == pytest.approx(np.diag(np.diag(again)), abs=1e-12)
 
 
-@pytest.mark.slow("some steps of ten bodies in a slice")
 @pytest.mark.parametrize("body", [*suchus.ROBOTS, eight, giant, hatchling, six])
 def test_any_chain_swims_in_a_slice(body):
     """The giant's tail is lighter than what coarse cells once took from its mass."""

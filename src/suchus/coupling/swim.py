@@ -409,11 +409,11 @@ class Swim:
 
     def _gone(
         self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
-    ) -> tuple[CoordinateState, np.ndarray]:  # fmt: skip
+    ) -> tuple[CoordinateState, np.ndarray, np.ndarray]:  # fmt: skip
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
-        Returns where it comes to, and its mean acceleration on the way, ``guess`` at first. Broyden's updates of
-        ``newton`` are kept in it.
+        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and the force that it got beyond
+        that, since rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
         """
         h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
@@ -422,13 +422,14 @@ class Swim:
             end = self.stepper.go(count, force + self._added @ push - left @ guess)
             found = (end.rate - before) / h
             last, missing = missing, found - guess
+            beyond = left @ missing
             if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
                 break
             if round_:
                 newton += np.outer(last - missing - newton @ change, change) / (change @ change)
             change = np.linalg.solve(newton, missing)
             guess = guess + change
-        return end, found
+        return end, found, beyond
 
     def _size(self, force: np.ndarray) -> float:
         """Return the size of a generalised force, each coordinate's over the root of its inertia."""
@@ -478,8 +479,9 @@ class Swim:
         stepper.begin()
         newton = self._newton()
         foreseen = self._strayed
-        end, push = self._gone(count, self._force + _lessened(self._owed, foreseen) / h, self._push, self._push, newton)
-        told = self._force - self._added @ (push - self._push)
+        asked, at = self._force, self._push
+        end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, at, newton)
+        told = asked - self._added @ (push - at) + beyond
         if not np.isfinite(end.rate).all():
             raise Diverged(
                 f"at t = {self.time:.4g} s the physics of robot {self.run.robot.name!r} no longer has finite numbers "
@@ -499,8 +501,8 @@ class Swim:
             foreseen = stretch.strayed
             asked, at = found, push
             likely = push + np.linalg.solve(mass + self._added, found - told)
-            end, push = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
-            told = asked - self._added @ (push - at)
+            end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
+            told = asked - self._added @ (push - at) + beyond
             other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
             posture = other
