@@ -139,6 +139,7 @@ def test_the_page_has_the_links_of_every_swim_that_came_to_its_end():
     assert "broken_off" not in text
 
 
+@pytest.mark.slow("more than ten seconds: three swims of five cycles in a slice")
 def test_what_swims_in_a_slice_earn_is_a_file_that_is_taken(tmp_path):
     asked = replace(
         EXPERIMENTS["swim_free"].quick(), water="slice", cells=48, reynolds=1500.0, flow_cycles=5,

@@ -6,7 +6,7 @@ changes by one solve of the pressure equation (``flow.twist``). With F the gener
 mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
 were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
 lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
-momentum is the impulse of the water. A is one that answers as the water was seen to answer in each correction, and is
+momentum is the impulse of the water. A is symmetric, answers as the water was seen to answer in each correction, and is
 computed anew as the body bends.
 """
 
@@ -159,23 +159,23 @@ def learned(
     added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
     push: Float[np.ndarray, " coordinate"], answered: Float[np.ndarray, " coordinate"],
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
-    """Return an added mass near another one that answers an acceleration as the water was seen to: Broyden's update.
+    """Return an added mass near another one that answers an acceleration as the water was seen to.
 
-    What would leave less than ``LEAST`` of the inertia along the push, the robot's own with it, is not believed. It
-    need not stay symmetric, since what a step answers is not: a symmetric update (Broyden, Fletcher, Goldfarb and
-    Shanno) ended a swim of the floating caiman in a slice of 48 cells.
+    It is symmetric, and with the robot's own mass positive definite: the update of Broyden, Fletcher, Goldfarb and
+    Shanno of the whole inertia. What would leave less than ``LEAST`` of that inertia along the push is not believed.
 
     Args:
-        added: an added mass.
+        added: symmetric.
         mass: the robot's own.
         push: acceleration more.
         answered: force of the water against it.
     """
-    before, after = float(push @ (mass + added) @ push), float(push @ (mass @ push + answered))
+    whole = (mass + added) @ push
+    seen = mass @ push + answered
+    before, after = float(push @ whole), float(push @ seen)
     if not after > LEAST * before > 0.0:
         return added
-    weighted = np.diag(mass + added) * push
-    return np.asarray(added + np.outer(answered - added @ push, weighted / float(weighted @ push)))
+    return np.asarray(added + np.outer(seen, seen) / after - np.outer(whole, whole) / before)
 
 
 def out_of_step(most: int, period: int) -> int:
