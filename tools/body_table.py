@@ -22,9 +22,9 @@ from time import process_time
 from unittest import mock
 
 import gymnasium
-from evidence import store
 
 from body_files import FILES, write_files
+from evidence import store
 from suchus import blueprint
 from suchus.capture import Camera, SyntheticAnimal, film_animal, write_table
 from suchus.cli.entry import main as suchus

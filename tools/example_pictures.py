@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from evidence import store
 from matplotlib.figure import Figure
 
 import suchus
+from evidence import store
 from lighter import lighten
 from suchus import envs
 from suchus.design import with_values

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 
 from evidence import renew, store
-
 from suchus.contestants import CONTESTANTS, measured_file
 from suchus.league import every, find
 from suchus.league.page import FIGURE, PAGE, LeagueEntry, all_standings, draw, page, standing_of, standing_text

@@ -10,10 +10,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
-from evidence import renew, store
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from evidence import renew, store
 from suchus.errors import IncompatibleRecord, UnreadableFile
 from suchus.figures.style import COLOURS, styled
 from suchus.record import new_file

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from evidence import renew, store
-
 from pages.stated import elsewhere, kept, templates, wrapped
 from suchus.errors import IncompatibleRecord
 from suchus.verdict import RULES, SHARES, TOO_FEW, counted, judge, ladder

@@ -1,6 +1,7 @@
 """The page on capture states what is read of films of the article's crawl."""
 
 import pytest
+
 from evidence import filmed_crawl
 
 

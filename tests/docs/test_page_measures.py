@@ -1,7 +1,6 @@
 """What single pages state and no experiment measures stands on a page."""
 
 from evidence import page_measures
-
 from pages.stated import made, sources
 
 

@@ -1,7 +1,6 @@
 """The page on environments states what policies that nobody trained get."""
 
 from evidence import policies
-
 from pages.stated import kept
 
 KEPT = kept(policies.NAME)

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from evidence.built import HASTY, ITS_OWN, former
-
 from suchus.design import Servo, with_servos
 from suchus.design.body import servos_of
 from suchus.gaits import GAITS

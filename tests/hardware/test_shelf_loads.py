@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from evidence.servo_loads import measured
 
+from evidence.servo_loads import measured
 from suchus import blueprint
 from suchus.design import Robot
 from suchus.gaits import GAITS, suits

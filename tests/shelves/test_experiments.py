@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from evidence import store, tolerance
 
+from evidence import store, tolerance
 from suchus.experiment import Measures
 from suchus.experiments import EXPERIMENTS
 from suchus.figures import caption
