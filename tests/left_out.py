@@ -1,5 +1,6 @@
 """Which tests ``make test`` leaves out, why, and what runs them: read from the marks of all that was collected."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 import pytest
@@ -8,6 +9,14 @@ COMMANDS = {"slow": "make test-all", "validate": "make validate"}
 """What runs the tests with a mark."""
 WHY = "compared with published numbers, or a result that docs state made again"
 """Why a test has the mark ``validate``, which says no more."""
+PURPOSES = (
+    "killed", "die|dies", "stopped", "interrupted", "a signal", "a cluster", "a second run", "a second and a third run",
+    "run twice", "run on twice", "compiled anew", "fresh environments", "browser", "the documentation is built",
+    "the second precision", "every write that can fail", "imitated processors", "emulated processors",
+    "more than ten seconds",
+)  # fmt: skip
+"""What the reason of a ``slow`` test names: what it is for, or that its cost is more than ten seconds of processor
+time; each a regular expression of whole words."""
 COLLECTED = pytest.StashKey[tuple[pytest.Item, ...]]()
 """All tests that were collected, before any was deselected."""
 _HEAD = "| test | why | what runs it |\n|---|---|---|\n"
@@ -21,6 +30,11 @@ def command(item: pytest.Item) -> str:
 def reason(item: pytest.Item) -> str:
     """Return why ``make test`` leaves a test out."""
     return next((mark.args[0] for mark in item.iter_markers("slow")), WHY)
+
+
+def is_enough(said: str) -> bool:
+    """Return whether a reason to be ``slow`` names a purpose or a great cost."""
+    return re.search(rf"\b({'|'.join(PURPOSES)})\b", said) is not None
 
 
 def rows(items: Iterable[pytest.Item]) -> list[str]:

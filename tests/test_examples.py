@@ -15,15 +15,17 @@ import pytest
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
 BENCHES = sorted((ROOT / "bench").glob("bench_*.py"))
-LONG = ("02", "03", "05", "06", "07", "08", "09", "10", "11", "12", "13", "14", "15", "16", "17", "18", "19", "21")
-"""Flows, searches, studies and replays, and walks of 3 s and more of processor time in a process of their own."""
+LONG = ("05", "06", "07", "19")
+"""Those of more than ten seconds of processor time: two of flows, and two of walks and swims."""
 
 
 @pytest.mark.parametrize(
     "example",
     [
         pytest.param(
-            e, id=e.stem, marks=[pytest.mark.slow("a whole walk, flow, search, study or replay")] * (e.name[:2] in LONG)
+            e,
+            id=e.stem,
+            marks=[pytest.mark.slow("more than ten seconds: a whole flow, walk or swim")] * (e.name[:2] in LONG),
         )
         for e in EXAMPLES
     ],
@@ -46,14 +48,13 @@ def test_bench_finds_what_it_times(bench):
         assert [name for name in names.split() if not hasattr(place, name)] == [], place
 
 
-@pytest.mark.slow("a swim in space")
 def test_bench_of_the_flow_times_the_swim_of_the_robot():
     found = runpy.run_path(str(ROOT / "bench" / "bench_flow.py"), run_name="bench_flow")["tell_swim"](60, {1: 10.0})
     assert found["swim_60_1"] > 0.0
     assert found["swim_60_steps"] > 10
 
 
-@pytest.mark.slow("threads of a card, simulated one by one")
+@pytest.mark.slow("imitated processors: threads of a card, simulated one by one")
 def test_bench_of_a_card_gives_what_the_processor_gives(tmp_path):
     bench, out = ROOT / "bench" / "bench_gpu.py", tmp_path / "found.json"
     command = [sys.executable, str(bench), "--cells", "8", "--times", "1", "--out", str(out)]
@@ -84,7 +85,6 @@ def test_what_the_readme_takes_from_suchus_is_there():
     assert [f"{module}.{name}" for module, name in taken if not hasattr(import_module(module), name)] == []
 
 
-@pytest.mark.slow("walks and an experiment, in a process of its own")
 def test_the_python_of_the_readme_prints_what_it_says(tmp_path):
     page = "\n".join(re.findall(r"^```(?:python|text)\n.*?^```$", (ROOT / "README.md").read_text(), re.S | re.M))
     assert page.count("```text") == 1

@@ -28,7 +28,7 @@ WITHOUT_FMA = {
     "OPENBLAS_CORETYPE": "SandyBridge",
 }
 """Environment in which the libraries compute as on a processor of 2011."""
-TOLD = "import json; from suchus import machine; print(json.dumps(machine.arithmetic()))"
+TOLD = "import json; from suchus.core import machine; print(json.dumps(machine.arithmetic()))"
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def test_each_library_that_takes_other_routines_is_seen():
 @LINUX
 @pytest.mark.skipif(shutil.which("qemu-x86_64") is None, reason="qemu-user is not installed")
 @pytest.mark.battery("imitated processors")
-@pytest.mark.slow("processors are emulated")
+@pytest.mark.slow("emulated processors")
 def test_portable_arithmetic_is_the_same_on_emulated_processors(counted):
     """Whole processors, not settings of libraries: without the settings they differ, with them they do not."""
     of = [("qemu-x86_64", "-cpu", cpu) for cpu in ("SandyBridge", "Haswell")]
@@ -103,7 +103,7 @@ def test_portable_arithmetic_is_the_same_on_emulated_processors(counted):
 
 @LINUX
 @pytest.mark.battery("imitated processors")
-@pytest.mark.slow("four studies, in processes of their own")
+@pytest.mark.slow("imitated processors: four studies, in processes of their own")
 def test_a_portable_study_has_the_same_bytes_on_two_imitated_processors(tmp_path, counted):
     file = tmp_path / "s.toml"
     file.write_text(

@@ -264,7 +264,6 @@ def part_of(item, tell):
     return item.part, "tired" in FAULTS
 
 
-@pytest.mark.slow("a process is begun that imports what walks")
 def test_worker_processes_see_the_same_project(lab):
     suchus.project(lab)
     heard = list(processes.side_by_side(part_of, [FAULTS["tired"]("LF_knee")], 1))

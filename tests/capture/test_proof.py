@@ -48,7 +48,7 @@ def filmed(caiman, crawl):
     return read
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(i, marks=pytest.mark.slow("a further film")) for i in (1, 2))])
+@pytest.mark.parametrize("seed", [0, 1, 2])
 def test_our_crawl_comes_back_as_commanded(caiman, filmed, noisy, seed):
     told = GAITS["belly_crawl"]
     rng = np.random.default_rng(seed)
@@ -67,9 +67,7 @@ def test_our_crawl_comes_back_as_commanded(caiman, filmed, noisy, seed):
     np.testing.assert_allclose(metres(caiman, back, "ahead"), metres(caiman, told, "ahead"), atol=0.006)
 
 
-@pytest.mark.parametrize(
-    ("name", "rate"), [("salamander", 200.0), pytest.param("pleurobot", 100.0, marks=pytest.mark.slow("a third body"))]
-)
+@pytest.mark.parametrize(("name", "rate"), [("salamander", 200.0), ("pleurobot", 100.0)])
 def test_the_walk_of_another_body_comes_back_as_commanded(name, rate):
     robot = ROBOTS[name]
     told, step = own_gait(robot), coarse_step(robot)
@@ -129,7 +127,7 @@ def test_what_was_captured_runs_as_far(caiman, crawl, filmed, noisy, tmp_path):
     np.testing.assert_allclose(displacement(again)[0], displacement(crawl)[0], rtol=0.1)
 
 
-@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow("a second film"))])
+@pytest.mark.parametrize("seed", [0, 1])
 def test_a_lateral_sequence_walk_of_a_lizard_comes_back(caiman, lizard, noisy, seed):
     camera = replace(noisy, rate=100.0, noise=0.0008, seed=seed)
     walk = observe(film_animal(lizard, camera, cycles=5))

@@ -110,7 +110,6 @@ def test_the_mean_is_that_of_the_numbers(walk):
         assert str(one.meaning.values)
 
 
-@pytest.mark.slow("a walk is read twice")
 def test_a_walk_in_a_curve_is_as_long_and_turns_as_much_as_it_does(animal, filmed, camera_above):
     straight = film_animal(animal, replace(camera_above, heading=0.0, noise=0.0004), cycles=6)
     bend = TURN / animal.stride  # [rad/m]
@@ -141,7 +140,6 @@ def _camera(**options):
     return Camera(**{**usual, **options})
 
 
-@pytest.mark.slow("three figures are drawn")
 def test_the_command_writes_tables_that_read_back(filmed, tmp_path, capsys):
     file = write_table(filmed, tmp_path / "tracks.csv")
     assert main(["capture", str(file), "--tables", str(tmp_path / "out")]) == 0

@@ -29,7 +29,7 @@ def duties(walk):
     return [walk.numbers[f"duty_{leg}"] for leg in LEGS]
 
 
-@pytest.mark.parametrize("varies", [pytest.param(0.07, marks=pytest.mark.slow("a second film")), 0.10])
+@pytest.mark.parametrize("varies", [0.07, 0.10])
 def test_a_pace_that_varies_does_not_bias_the_duty_factor(walker, sharp, varies):
     pace = 1.0 + varies * np.random.default_rng(0).standard_normal(10).clip(-2, 2)
     for seen in duties(observe(film_animal(walker, sharp, cycles=10, pace=pace))):
@@ -50,8 +50,8 @@ def test_the_period_is_the_mean_of_the_strides_and_its_spread_theirs(walker, sha
     ("start", "share"),
     [
         (0.2, 0.2),
-        pytest.param(0.2, 0.3, marks=pytest.mark.slow("a second film")),
-        pytest.param(0.9, 0.3, marks=pytest.mark.slow("a third film")),
+        (0.2, 0.3),
+        (0.9, 0.3),
         (0.5, 0.3),
     ],
 )
@@ -109,7 +109,6 @@ def test_what_is_exactly_straight_has_no_phase(caiman, walker, clean, bends):
     assert "its phase has no meaning" in notes
 
 
-@pytest.mark.slow("a film of thirty cycles")
 def test_noise_is_not_refused_and_more_cycles_narrow_its_intervals(walker, sharp):
     loud = replace(sharp, noise=0.008, rate=60.0)
     short, long = (observe(film_animal(walker, loud, cycles=n)) for n in (8, 30))

@@ -70,7 +70,6 @@ def test_names_that_are_exchanged_are_refused_with_the_remedy(filmed):
         assert all(f"{one}={other}" in str(caught.value) for one, other in (pair, pair[::-1]))
 
 
-@pytest.mark.slow("three walks are read")
 def test_frames_that_come_late_are_found_on_the_midline_and_at_the_feet(filmed):
     for point in ("neck", "RH"):
         found = told(filmed, delayed(filmed.tracks, point, 5), (point,))

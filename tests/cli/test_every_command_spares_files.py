@@ -33,7 +33,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 
-SLOW = "commands are repeated with each of their places taken"
+SLOW = "more than ten seconds: a command is repeated with each of its places taken"
 MOST = 12
 """Places that are taken one after the other; of more files these are spread over all."""
 
@@ -50,8 +50,8 @@ class Case:
     """Patterns of what suchus keeps to go on with; it is sealed, and what is damaged is made again."""
     doubles: Callable[[pytest.MonkeyPatch], None] = field(default=lambda patch: None)
     """Takes away what takes long and writes nothing."""
-    quick: bool = False
-    """Whether it is fast enough for make test."""
+    long: bool = False
+    """Whether it takes more than ten seconds of processor time."""
 
 
 def short_walks(patch):
@@ -75,15 +75,15 @@ def toys(patch):
 CASES = {
     "demo": [Case(words=("demo", "--no-browser", "--out", "made/page.html"), doubles=short_walks)],
     "reproduce": [Case(words=("reproduce", "--anew", "--jobs", "1", "--out", "made"))],
-    "run": [Case(words=("run", "wave", "--csv", "--out", "made"), quick=True)],
-    "compare": [Case(words=("compare", "one/wave", "one/wave", "--out", "made/it.html"), needs=("one",), quick=True)],
+    "run": [Case(words=("run", "wave", "--csv", "--out", "made"))],
+    "compare": [Case(words=("compare", "one/wave", "one/wave", "--out", "made/it.html"), needs=("one",))],
     "capture": [
         Case(words=("capture", "walk.csv", "--out", "made/walk.toml", "--tables", "made/tables"), needs=("walk.csv",)),
-        Case(words=("capture", "walk.csv", "--forces", "made/forces"), needs=("walk.csv",)),
+        Case(words=("capture", "walk.csv", "--forces", "made/forces"), needs=("walk.csv",), long=True),
     ],
     "view": [],
     "replay": [Case(words=("replay", "walk.nc", "--out", "made/it.html"), needs=("walk.nc",))],
-    "lessons": [Case(words=("lessons", "--out", "made"))],
+    "lessons": [Case(words=("lessons", "--out", "made"), long=True)],
     "study": [
         Case(
             words=("study", "grip.toml", "--csv", "--out", "made"),
@@ -98,16 +98,16 @@ CASES = {
             own=("parts/*", "search.json", "study.json", "*/parts/*", ".*"),
         )
     ],
-    "import": [Case(words=("import", "it.urdf", "--out", "made/it.toml"), needs=("it.urdf",), quick=True)],
+    "import": [Case(words=("import", "it.urdf", "--out", "made/it.toml"), needs=("it.urdf",))],
     "export": [
-        Case(words=("export", "--format", "urdf", "--out", "made/it"), quick=True),
+        Case(words=("export", "--format", "urdf", "--out", "made/it")),
         Case(words=("export", "--format", "mjcf", "--out", "made/it")),
     ],
     "size": [Case(words=("size", "caiman", "belly_crawl", "--family", "Dynamixel XW 12 V RS-485", "--out", "made"))],
     "parts": [Case(words=("parts", "strider", "--out", "made"))],
     "export-commands": [
         Case(words=("export-commands", "limbs_only", "--out", "made")),
-        Case(words=("export-commands", "--write-map", "made/map.toml"), quick=True),
+        Case(words=("export-commands", "--write-map", "made/map.toml")),
     ],
     "emulate": [
         Case(
@@ -325,7 +325,7 @@ def _stays(case, desk, place, taken):
 
 
 def of(case):
-    return pytest.param(case, id=" ".join(case.words[:2]), marks=() if case.quick else pytest.mark.slow(SLOW))
+    return pytest.param(case, id=" ".join(case.words[:2]), marks=pytest.mark.slow(SLOW) if case.long else ())
 
 
 @pytest.mark.parametrize("case", [of(case) for cases in CASES.values() for case in cases])
@@ -338,7 +338,7 @@ def test_what_a_user_has_where_a_command_writes_stays(case, desk, inputs, monkey
     assert spared(case, desk) > 0
 
 
-@pytest.mark.parametrize("name", [pytest.param("doctor", marks=pytest.mark.slow(SLOW)), "list", "view"])
+@pytest.mark.parametrize("name", ["doctor", "list", "view"])
 def test_what_writes_nothing_changes_nothing(name, desk, monkeypatch):
     monkeypatch.setattr(view, "_serve", lambda *_, **__: 0)
     for file in ("out", "notes.md", "hardware.toml", "suchus_demo.html"):

@@ -63,7 +63,6 @@ def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, sa
     assert told == ([] if said is None else [f"As it is designed, {said} if the movement went on for ever."])
 
 
-@pytest.mark.slow("a family of servos is walked with")
 def test_sizing_writes_the_servos_that_are_enough_and_a_robot_that_has_them(tmp_path, capsys):
     family = "Dynamixel XW 12 V RS-485"
     assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0

@@ -106,7 +106,6 @@ def test_the_way_down_is_not_learnt_and_not_overshot():
     assert learning.max() > 0.63
 
 
-@pytest.mark.slow("two minutes in the water, with and without what learns")
 def test_a_weight_that_is_not_known_is_learnt():
     held, _ = depth_after(DepthHold(depth=0.6), 120.0, leak=0.5)
     without, _ = depth_after(DepthHold(depth=0.6, integral_gain=0.0), 120.0, leak=0.5)

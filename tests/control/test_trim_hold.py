@@ -101,7 +101,6 @@ def test_the_pitch_settles_within_a_degree_and_left_alone_it_swings_on():
     assert np.abs(free[-1000:]).max() > 0.1
 
 
-@pytest.mark.slow("eighty seconds in the water, with and without what learns")
 def test_a_moment_that_stays_is_learnt():
     held = pitch_after(PitchHold(), 80.0, moment=0.05)
     without = pitch_after(PitchHold(integral_gain=0.0), 80.0, moment=0.05)

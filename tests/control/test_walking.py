@@ -96,9 +96,7 @@ ON_BUMPS = [("low_crawl", "high_walk", BUMPS), ("high_walk", "low_crawl", BUMPS)
 EVEN = [(a, b, Ground()) for a, b in permutations(POSTURES, 2)]
 
 
-@pytest.mark.parametrize(
-    "cases", [ON_BUMPS, pytest.param(EVEN, marks=pytest.mark.slow("a walk for each pair"))], ids=["bumps", "even"]
-)
+@pytest.mark.parametrize("cases", [ON_BUMPS, EVEN], ids=["bumps", "even"])
 def test_every_posture_turns_into_every_other(robot, cases):
     runs = [
         Run(

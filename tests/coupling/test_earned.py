@@ -85,7 +85,6 @@ def test_factors_are_on_the_two_parts_of_their_link_alone():
     assert np.abs(other.joints - whole.joints).max() > 0.01 * np.abs(whole.joints).max()
 
 
-@pytest.mark.slow("three swims by sections")
 def test_a_run_in_a_corrected_lake_swims_otherwise_and_one_beside_it_does_not():
     gait = swim_of(CAIMAN, frequency=1.0)
     same, other = (correction(dict.fromkeys(range(len(LINKS)), (1.0, drag))) for drag in (1.0, 3.0))

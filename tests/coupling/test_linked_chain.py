@@ -133,7 +133,7 @@ def followed(run, duration):
     return swim.record().isel(run=0), np.abs(np.array(momenta) - impulses).max(axis=0) / greatest
 
 
-@pytest.mark.slow("two half strokes in space: a minute of processor")
+@pytest.mark.slow("more than ten seconds: two half strokes in space")
 def test_limbs_that_sweep_back_push_the_body_forward():
     """Bounds on momentum and energy are those that are asked for of all swims; that on power, 2e-3, is missed.
 
@@ -157,7 +157,7 @@ def test_limbs_that_sweep_back_push_the_body_forward():
     assert ways[1] == pytest.approx(-ways[0], rel=0.05)  # the still limbs and the body are nearly alike fore and aft
 
 
-@pytest.mark.slow("two swims of two cycles in space: two minutes of processor")
+@pytest.mark.slow("more than ten seconds: two swims of two cycles in space")
 def test_limbs_that_are_held_still_swim_as_folded_ones_do():
     """One shape is of rods, one smooth: their swims differ by twice the share of their added masses in that motion.
 
@@ -187,7 +187,6 @@ def test_limbs_that_are_held_still_swim_as_folded_ones_do():
     assert set(folded.link.values) != set(linked.link.values)
 
 
-@pytest.mark.slow("some steps of a whole body in space: 12 s of processor")
 def test_a_gait_that_leaves_the_plane_swims_on_links_alone():
     robot = floating(SALAMANDER)
     lifted = Curve(servo="LF_pitch", part="limb", angles=(0.0, 0.5, 0.0, -0.5))
@@ -201,7 +200,7 @@ def test_a_gait_that_leaves_the_plane_swims_on_links_alone():
     assert abs(heel[-1]) > 1e-3  # one limb alone rolls it over
 
 
-@pytest.mark.slow("a few steps in space, three times: 10 s of processor")
+@pytest.mark.slow("a swim in space is killed, and a second run goes on")
 def test_a_swim_on_links_that_was_killed_goes_on_to_the_same_bytes(tmp_path):
     run, file = paddling(1), tmp_path / "one.kept"
 
@@ -228,7 +227,6 @@ def test_links_have_no_raised_tail_and_are_for_space_alone():
         Slice(linked=True)
 
 
-@pytest.mark.slow("some steps of five bodies in space")
 @pytest.mark.parametrize(
     ("body", "gait", "cells"),
     [("strider", "tripod", 44), (eight, None, 56), (hatchling, None, 56), (rigid, None, 44), ("swimmer", None, 92)],

@@ -78,7 +78,6 @@ def test_the_mass_matrix_is_that_of_body_and_water_in_any_attitude():
     assert tank.momenta()[:3] == pytest.approx(momentum, abs=1e-9)
 
 
-@pytest.mark.slow("walks in the water, in a process of its own")
 def test_the_lines_of_the_page_print_what_it_says(tmp_path):
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from pages import blocks; blocks.follow(open(sys.argv[2]).read())"

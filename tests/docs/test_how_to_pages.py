@@ -11,7 +11,6 @@ from pages.blocks import Block, WrongOutput, blocks, filled, follow
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.slow("each page of the documentation is followed in a process of its own")
 @pytest.mark.parametrize(
     "page",
     [

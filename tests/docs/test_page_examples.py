@@ -81,7 +81,6 @@ def tried(names, folder, paths=(), left_out="not validate", **surroundings):
     }
 
 
-@pytest.mark.slow("six batteries in a process of their own")
 def test_in_a_project(tmp_path):
     """All examples stand in one project, as a user's would; each goes through the battery of its own shelf."""
     lab = tmp_path / "lab"
@@ -94,7 +93,6 @@ def test_in_a_project(tmp_path):
     assert {shelf for shelf, count in passed.items() if count < LEAST[shelf]} == set()
 
 
-@pytest.mark.slow("six batteries in a copy of the package")
 @NAMED
 def test_in_the_package(shelf, name, text, tmp_path):
     copy = tmp_path / "src/suchus"
@@ -109,7 +107,6 @@ def test_in_the_package(shelf, name, text, tmp_path):
     assert passed[shelf] >= LEAST[shelf]
 
 
-@pytest.mark.slow("six batteries with an installed package")
 @NAMED
 def test_in_a_package_with_entry_points(shelf, name, text, tmp_path):
     site = tmp_path / "site"

@@ -100,7 +100,6 @@ def test_none(counted):
 """
 
 
-@pytest.mark.slow("pytest in a process of its own")
 def test_the_fixture_counts_and_tells_who_failed_before_counting(tmp_path):
     file, kept = tmp_path / "test_counting.py", tmp_path / "kept.json"
     file.write_text(COUNTING)

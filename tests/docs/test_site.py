@@ -31,7 +31,7 @@ class Html(HTMLParser):
         self.words.append(data)
 
 
-@pytest.mark.slow("the documentation is built whole")
+@pytest.mark.slow("the documentation is built")
 def test_the_site_builds_strictly_and_is_whole(tmp_path):
     for library in ("mkdocs", "material", "mkdocstrings", "latex2mathml"):
         pytest.importorskip(library)

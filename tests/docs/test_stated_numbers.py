@@ -7,8 +7,8 @@ from itertools import islice
 from typing import Any
 
 import pytest
-from evidence.renew import measures_of
 
+from evidence.renew import measures_of
 from pages.passages import names
 from pages.stated import filled, kept, made, pages, sources, text_of, wrapped
 from suchus.core.errors import IncompatibleRecord

@@ -6,7 +6,6 @@ import wave_fits
 from pages.stated import kept
 
 
-@pytest.mark.slow("eight waves are fitted by least squares")
 def test_what_the_page_states_is_what_the_fits_give():
     """Renew with ``python tools/wave_fits.py``."""
     found, held = wave_fits.stated(), kept(wave_fits.NAME)

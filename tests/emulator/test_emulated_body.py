@@ -82,7 +82,6 @@ def test_in_a_lake_it_floats_and_feels_the_water():
     assert "water_level" in one.record()
 
 
-@pytest.mark.slow("two cycles over each protocol")
 @pytest.mark.parametrize("protocol", ["dynamixel", "feetech", "line"])
 def test_over_ideal_wires_it_walks_as_simulated(protocol):
     duration = START + 2 * GAIT.period
@@ -118,7 +117,6 @@ def test_the_same_trouble_with_the_same_seed_gives_the_same_bytes():
     assert walks[0].servo_heard.values.tobytes() != walks[2].servo_heard.values.tobytes()
 
 
-@pytest.mark.slow("three walks of 1.5 s, of a robot that is built otherwise than its file says")
 def test_a_swapped_pair_of_servos_shows_in_their_angles():
     right = straight(ROBOT, [BusPlace(port="x")], "XM430-W350", boards=True)
     places = {one.name: one for one in right.servo}

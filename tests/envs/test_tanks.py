@@ -18,7 +18,6 @@ WATER = Slice(cells=40, reynolds=600.0)
 ASKED = {"robot": "swimmer", "water": WATER}
 
 
-@pytest.mark.slow("three swims in flows of their own")
 def test_robots_swim_side_by_side_in_flows_of_their_own_as_each_does_alone():
     pair, alone = CrocodileVectorEnv(2, "Swim", **ASKED), gymnasium.make("suchus/Swim-v0", **ASKED)
     pair.reset(seed=[3, 4])

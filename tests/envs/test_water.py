@@ -179,7 +179,6 @@ def test_the_clock_goes_with_the_swimming_motion():
     assert envs.TASKS["Crawl"].period == envs.TASKS["Crawl"].gait.period
 
 
-@pytest.mark.slow("a whole way from the water onto the land")
 def test_a_controller_of_the_shelf_comes_ashore_through_the_actions_and_gets_more_than_who_rests():
     steep = radians(12)  # a shorter way, and less to compute, than that of the task
     near = replace(SHORE, ground=Ground(uphill=steep), lake=Lake(level=1.1 * sin(steep)), goal=envs.Landing(beyond=0.1))

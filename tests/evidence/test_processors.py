@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from evidence.processors import PROCESSORS, ROOT, can_imitate, quick_measures
 
 from evidence import tolerance
+from evidence.processors import PROCESSORS, ROOT, can_imitate, quick_measures
 from suchus.experiments.catalog import EXPERIMENTS
 
 GOLDEN = Path(__file__).parents[1] / "golden"

@@ -4,11 +4,11 @@ import json
 from dataclasses import replace
 
 import pytest
+
+from evidence import renew, store
 from evidence.registry import RESULTS
 from evidence.store import Origin, StoredResult, load, save, save_part
 from evidence.tolerance import bounded
-
-from evidence import renew, store
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 
 RESULT = StoredResult(

@@ -8,12 +8,12 @@ import sys
 from dataclasses import replace
 
 import pytest
+
+from evidence import source, stale, store
 from evidence.registry import RESULTS, Kept
 from evidence.stale import Status, status, table, with_parts
 from evidence.store import ROOT, Origin, StoredResult, save
 from evidence.tolerance import bounded
-
-from evidence import source, stale, store
 
 KEPT = Kept(name="strokes", modules=("suchus.flow.output",), probe=lambda: {"speed": 0.1}, renew="make strokes")
 

@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from evidence.tolerance import bounded, moved, read
 
 from evidence import tolerance
+from evidence.tolerance import bounded, moved, read
 
 NUMBERS = {
     "rise": 1e-3,

@@ -85,7 +85,6 @@ def test_the_pattern_generator_swims_whoever_bends_and_by_the_felt_load_whoever_
         assert ways[2] > 0.3
 
 
-@pytest.mark.slow("whole swims of other bodies")
 @pytest.mark.parametrize(
     ("name", "one"),
     [("swim_free", "swimmer"), ("swim_free", "pleurobot"), ("swim_free", hatchling), ("shore", "pleurobot")],

@@ -77,7 +77,8 @@ def test_what_runs_on_all_walkers_needs_nothing_that_one_of_them_lacks():
 @pytest.mark.parametrize(
     "robot",
     [
-        *(pytest.param(name, marks=pytest.mark.slow("bodies much as others")) for name in ("pleurobot", "salamandra")),
+        "pleurobot",
+        "salamandra",
         "salamander",
         "strider",
         "six",
@@ -87,7 +88,6 @@ def test_it_runs_and_is_not_judged(name, robot):
     answers(name, robot)
 
 
-@pytest.mark.slow("whole experiments on bodies of others")
 @pytest.mark.parametrize(
     ("name", "robot"),
     [("displacement", "strider"), ("crawl_stability", "salamandra"), ("turning", "pleurobot"), ("joint_loops", "six")],
@@ -174,7 +174,6 @@ def test_a_robot_that_floats_goes_ashore_itself_under_the_pattern_generator():
     assert asked.on(ROBOTS["salamander"]) == asked
 
 
-@pytest.mark.slow("a whole experiment on a body of another's")
 def test_a_turn_is_measured_over_cycles_that_are_no_whole_number_of_samples():
     """The path is taken at the samples nearest to the ends of the cycles, so that one cycle is enough."""
     body = eight()

@@ -124,7 +124,6 @@ def test_impossible_settings_are_refused(fields, message):
         replace(EXPERIMENTS["bipedal_reach"], **fields)
 
 
-@pytest.mark.slow("the quick form once more, on another body")
 def test_a_body_of_six_spine_joints_stands_up_in_the_experiment_too():
     longer = with_values(six(), {"spine.pitch_servo.torque": 9.0})
     experiment = EXPERIMENTS["bipedal_reach"].quick().on(longer)

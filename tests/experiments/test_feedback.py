@@ -11,9 +11,6 @@ from suchus.sim.metrics import displacement, heading
 from suchus.sim.metrics.coordination import cycles_until, phase_error
 
 STEP = 0.005
-DISTURBED = pytest.mark.slow(
-    "nine walks of six cycles; the golden numbers of the quick form are of the same disturbances"
-)
 
 
 @pytest.fixture(scope="module")
@@ -64,13 +61,11 @@ def way(record):
     return float(displacement(record, start=5.0).sel(xyz="x"))
 
 
-@DISTURBED
 def test_rules_do_not_distort_a_walk_whose_phases_are_right(disturbed, crawl_gait):
     assert float(phase_error(disturbed["none", "closed"].limb_phase, crawl_gait).max()) < 0.01
     assert way(disturbed["none", "closed"]) > 0.97 * way(disturbed["none", "open"])
 
 
-@DISTURBED
 def test_kicked_limbs_find_back(disturbed, crawl_gait):
     back = cycles_until(phase_error(disturbed["kick", "closed"].limb_phase, crawl_gait), 4.0, start=5.0, hold=1.0)
     assert float(back) <= 2.5
@@ -78,19 +73,16 @@ def test_kicked_limbs_find_back(disturbed, crawl_gait):
     assert way(disturbed["kick", "open"]) < 0.6 * way(disturbed["none", "open"])
 
 
-@DISTURBED
 def test_the_other_spine_joints_make_up_for_a_stuck_one(disturbed):
     assert way(disturbed["locked", "spine"]) > 1.1 * way(disturbed["locked", "open"])
 
 
-@DISTURBED
 def test_the_tail_finds_the_pitch_at_which_the_ground_carries_it(disturbed):
     last = disturbed["tail", "closed"].sel(time=slice(17.0, None))
     assert abs(float(last.servo_torque.sel(servo="tail_pitch").mean())) < 0.1
     assert float(last.servo_target.sel(servo="tail_pitch").mean()) < 0.3
 
 
-@DISTURBED
 def test_the_heading_loop_makes_a_robot_that_circles_walk_straight(disturbed):
     turning = {}
     for arm in ("closed", "steered"):

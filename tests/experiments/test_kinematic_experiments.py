@@ -62,7 +62,6 @@ def test_figures_are_drawn_with_captions(name, outcomes):
         assert len(caption(figure)) > 60
 
 
-@pytest.mark.slow("each figure is written as a drawing and as pixels")
 @pytest.mark.parametrize("name", MODULES)
 def test_figures_are_written(name, outcomes, tmp_path):
     for stem, figure in MODULES[name].draw(outcomes[name]).items():
@@ -195,7 +194,7 @@ def test_sweep_ends_where_the_gaps_close():
 
 @pytest.mark.parametrize(
     ("femur", "tibia", "joints", "gap"),
-    [(0.05, 0.02, 1, 0.005), pytest.param(0.03, 0.2, 30, 0.01, marks=pytest.mark.slow("a second odd robot"))],
+    [(0.05, 0.02, 1, 0.005), (0.03, 0.2, 30, 0.01)],
 )
 def test_odd_robots_are_examined_too(femur, tibia, joints, gap):
     robot = ROBOTS["caiman"]

@@ -149,8 +149,6 @@ def test_the_narrowest_box_that_is_allowed_holds_the_body():
         check_resolved_swim(ROBOT, MOTION, replace(setting, beside=setting.beside - 1e-3))
 
 
-@pytest.mark.slow("a second and a third run of a swim")
-@pytest.mark.slow("a second run of a swim")
 def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
     with pytest.raises(InvalidDesign, match="boundary layer"):
         resolved_swim(ROBOT, MOTION, SwimSetting(axes=3, cells=64, viscosity=1e-6, cycles=1))
@@ -162,7 +160,7 @@ def test_a_motion_that_the_grid_or_the_joints_cannot_follow_is_refused():
         )
 
 
-@pytest.mark.slow("a second and a third run of a swim")
+@pytest.mark.slow("a second run, which goes on from where an interrupt came")
 def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
     setting, seen = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1, frames=4), []
 
@@ -191,7 +189,6 @@ def test_a_swim_that_was_interrupted_goes_on_to_the_same_numbers(tmp_path):
     assert np.isfinite(found.joint_torque.values).all()
 
 
-@pytest.mark.slow("a second and a third run of a swim")
 def test_a_motion_that_is_handed_over_joint_by_joint_swims_to_the_same_numbers():
     setting = SwimSetting(axes=3, cells=54, viscosity=2e-3, cycles=1)
     outline = Outline(ROBOT, setting.cells + 1)

@@ -43,7 +43,6 @@ def test_the_rung_has_the_settings_that_were_asked_for():
     assert water_of("space", 64, 1e3, 0.0, linked=True) == Space(cells=64, reynolds=1e3, linked=True)
 
 
-@pytest.mark.slow("a few steps of a robot from a file in a slice, three times")
 def test_a_robot_and_a_gait_from_files_swim_with_other_passive_tails(tmp_path):
     caiman = ROBOTS["floating_caiman"]
     robot = write(replace(caiman, name="mine"), tmp_path / "mine.toml")
@@ -73,7 +72,6 @@ def test_impossible_settings_are_refused():
         replace(one, water="space", linked=True, tail_height=0.1)
 
 
-@pytest.mark.slow("two cycles of a robot in a flow")
 def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     outcome = replace(EXPERIMENTS["swim_free"].quick(), water="space").run()
     m = {name: measure.value for name, measure in outcome.measures.items()}
@@ -91,7 +89,7 @@ def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     assert "solved together" in outcome.decides
 
 
-@pytest.mark.slow("two cycles of a robot on its links in a flow")
+@pytest.mark.slow("more than ten seconds: two cycles of a robot on its links in a flow")
 def test_a_robot_swims_on_its_links_beside_its_swims_at_the_surface():
     outcome = replace(EXPERIMENTS["swim_free"].quick(), water="space", linked=True).run()
     m = {name: measure.value for name, measure in outcome.measures.items()}
@@ -148,7 +146,7 @@ def test_the_page_has_the_links_of_every_swim_that_came_to_its_end():
     assert "broken_off" not in text
 
 
-@pytest.mark.slow("three swims of five cycles in a slice")
+@pytest.mark.slow("more than ten seconds: three swims of five cycles in a slice")
 def test_what_swims_in_a_slice_earn_is_a_file_that_is_taken(tmp_path):
     asked = replace(
         EXPERIMENTS["swim_free"].quick(), water="slice", cells=48, reynolds=1500.0, flow_cycles=5,
@@ -181,7 +179,6 @@ def test_forces_that_are_nearer_do_not_earn_a_correction_whose_speeds_are_not():
     assert not nearer([0.02], [0.05], [0.05])
 
 
-@pytest.mark.slow("six swims by sections")
 def test_speeds_beside_a_flow_are_of_its_water_and_decide():
     robot = ROBOTS["floating_caiman"]
     gait = swim_of(robot, frequency=1.0)

@@ -56,7 +56,7 @@ def test_a_period_is_measured_from_the_last_waves():
     assert np.isnan(cycle(time[:300], across[:300])[0])  # not one whole period
 
 
-@pytest.mark.slow("twelve steps of a flow with walls, and the added mass of seven joints three times")
+@pytest.mark.slow("a second run: a flow that was stopped goes on")
 def test_a_case_that_is_stopped_goes_on_to_the_same_numbers(tmp_path):
     whole = run("FSI3", 7, 32, tmp_path / "whole", 0.1)
     run("FSI3", 7, 32, tmp_path / "parts", 0.05)

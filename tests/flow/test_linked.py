@@ -151,7 +151,6 @@ def setup(body, steps=6):
     return sim
 
 
-@pytest.mark.slow("two flows in space")
 def test_one_link_swims_as_its_piece_alone_does():
     ball = flow.Ellipsoid(length=0.4, width=0.25, height=0.2)
 
@@ -172,7 +171,6 @@ def test_one_link_swims_as_its_piece_alone_does():
     assert float(other.power) == pytest.approx(float(one.power), rel=1e-4)
 
 
-@pytest.mark.slow("a flow in space")
 def test_loads_on_the_links_add_up_and_do_the_power_s_work():
     sim = setup(flow.Body(shape=paddler()), steps=8)
     loads, h = sim.last("body"), 0.01

@@ -410,7 +410,6 @@ def test_body_and_water_keep_momentum_and_angular_momentum(shape, velocity):
         assert np.abs(now - start)[3:].max() < 0.01 * scale[3:].max()
 
 
-@pytest.mark.slow("a second and a third run of a flow")
 def test_what_a_mirror_would_break_is_locked():
     """A body that may do all there is, cut by a mirror, moves as one with three degrees of freedom."""
     grid = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))

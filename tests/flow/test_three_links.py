@@ -22,7 +22,6 @@ def test_the_gait_has_the_rates_that_it_says(time):
     assert (gait(0.4, time + h)[0] - gait(0.4, time - h)[0]) / (2 * h) == pytest.approx(gait(0.4, time)[1], abs=1e-6)
 
 
-@pytest.mark.slow("an added mass by panels for every half step of a cycle")
 def test_a_cycle_in_potential_flow_goes_with_the_square_of_its_size():
     small, large = (in_potential_flow(size, 1, points=8, count=48) for size in (0.05, 0.1))
     assert large[0] == pytest.approx(4 * small[0], rel=0.02)

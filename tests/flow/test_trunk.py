@@ -182,7 +182,6 @@ def test_a_body_gets_the_momentum_that_the_water_gives(swum):
     assert swum.frame[0, 2] == 0
 
 
-@pytest.mark.slow("a second and a third run of a swim")
 def test_the_parts_make_the_whole(swum):
     record = swum.record
     for name in ("force_x", "force_y", "torque", "power"):

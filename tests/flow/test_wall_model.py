@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from evidence.wall_model import PLACES, WALLS, friction, growth, rest
 
+from evidence.wall_model import PLACES, WALLS, friction, growth, rest
 from suchus.flow.immerse import wall_offset
 
 TODAY = WALLS["today's: immersion with an offset"]

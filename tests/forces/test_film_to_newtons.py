@@ -184,7 +184,7 @@ def test_a_table_keeps_what_nobody_published_empty():
     assert np.isnan(data.value.sel(quantity="speed"))
 
 
-@pytest.mark.slow("our crawl is filmed and walked again in every choice")
+@pytest.mark.slow("more than ten seconds: our crawl is filmed and walked again in every choice")
 def test_the_forces_of_our_own_crawl_come_back():
     robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
     record = crawl(robot, gait, cycles=3.4)
@@ -225,7 +225,6 @@ def swim():
     return record, walk
 
 
-@pytest.mark.slow("a swim is filmed and swum again in every choice")
 def test_power_and_force_of_the_water_come_back(swim, tmp_path):
     record, walk = swim
     data = swum_forces(walk, ROBOTS["swimmer"], rungs=("sections",), unknown=Unknown(draws=9)).isel(rung=0)
@@ -242,7 +241,7 @@ def test_power_and_force_of_the_water_come_back(swim, tmp_path):
     assert sizes == pytest.approx(2 * np.pi)
 
 
-@pytest.mark.slow("a slice and a flow in space are computed")
+@pytest.mark.slow("more than ten seconds: a slice and a flow in space are computed")
 def test_three_models_of_the_water_stand_side_by_side(swim):
     _, walk = swim
     data = swum_forces(walk, ROBOTS["swimmer"], unknown=FEW, cells={"slice": 48})

@@ -56,7 +56,7 @@ def test_what_waits_is_a_hang_and_what_the_code_raises_passes(place, monkeypatch
         place.case(1)
 
 
-@pytest.mark.slow("a thousand cases of the long form")
+@pytest.mark.slow("more than ten seconds: a thousand cases of the long form")
 def test_a_sample_of_the_farm_ends_in_results_and_sentences():
     words = [sys.executable, str(FARM), f"0-{SAMPLE - 1}"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from evidence.built import HASTY, ITS_OWN, former
-
 from suchus.hardware.loads import AT_LIMIT
 from suchus.robot.design import Servo, with_servos
 from suchus.robot.design.body import servos_of

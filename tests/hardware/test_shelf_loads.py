@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from evidence.servo_loads import measured
 
+from evidence.servo_loads import measured
 from suchus.hardware.loads import AT_LIMIT
 from suchus.robot import blueprint
 from suchus.robot.design import Robot

@@ -163,7 +163,6 @@ def test_each_place_gets_the_cheapest_servo_that_does_by_simulation(robot, quick
     assert not all(does(WEAK, load) for load in again.values())
 
 
-@pytest.mark.slow("three families are walked at up to seven periods each")
 def test_a_slow_family_does_with_a_longer_period_and_a_hot_or_weak_one_does_not(robot, quick):
     found = sized(robot, quick, replace(GOOD, price=(90.0, 90.0)), SLOW, HOT, POOR)
     slow, hot, poor = (by_name(found)[name] for name in ("slow", "hot", "poor"))

@@ -26,7 +26,7 @@ def wait_for(condition):
         sleep(0.05)
 
 
-@pytest.mark.slow("an emulator and a drive are processes, three times")
+@pytest.mark.slow("an emulator and a drive are processes that are killed or get a signal")
 @pytest.mark.parametrize(
     ("how", "code"), [(signal.SIGHUP, 128 + signal.SIGHUP), (signal.SIGTERM, 128 + signal.SIGTERM), ("emulator", 3)]
 )

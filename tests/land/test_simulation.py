@@ -198,7 +198,6 @@ def test_another_topology_walks_as_well(long_tail, crawl_gait):
     assert float(displacement(record).sel(xyz="x")) > 0.2
 
 
-@pytest.mark.slow("walks of ten cycles")
 def test_ten_cycles_keep_their_heading(robot, crawl_gait):
     record = crawl(robot, crawl_gait, duration=41.0, timestep=0.005)
     assert abs(float(heading_change(record))) < 0.1

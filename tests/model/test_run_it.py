@@ -78,7 +78,6 @@ def test_the_line_is_understood_and_its_robot_and_gait_are_taken(name, tmp_path,
     assert [gait.name for gait in gaits] == [Path(command[-1]).stem]
 
 
-@pytest.mark.slow("whole experiments; that their words are understood is tested without running them")
 @pytest.mark.parametrize("name", PRINTED)
 def test_the_line_answers_with_a_sentence(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

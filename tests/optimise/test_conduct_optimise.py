@@ -222,7 +222,7 @@ def test_arms_of_one_have_no_comparison(small):
     assert small.of(Arm(name="other")).arms == (Arm(name="other"),)
 
 
-@pytest.mark.parametrize("name", [pytest.param("salamander", marks=pytest.mark.slow("a second search")), "swimmer"])
+@pytest.mark.parametrize("name", ["salamander", "swimmer"])
 def test_a_body_of_its_own_is_searched_with_its_own_time_step(name, tmp_path):
     """A small one, whose results need a finer step than the caiman's, and one without limbs to replay."""
     own = own_gait(ROBOTS[name])

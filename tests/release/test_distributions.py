@@ -167,7 +167,7 @@ def test_the_version_can_be_checked_alone(monkeypatch, capsys):
         assert ("and the tag say version" in out, "make tag" in out) == (bool(tags), not tags)
 
 
-@pytest.mark.slow("two wheels are built in fresh environments")
+@pytest.mark.slow("wheels are built in fresh environments")
 def test_two_builds_at_other_places_and_times_have_the_same_bytes(tmp_path, monkeypatch):
     tools = Environment(tmp_path / "tools").make()
     if not tools.pip_if_served("build"):

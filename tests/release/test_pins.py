@@ -60,7 +60,6 @@ def offered(tmp_path):
     return hashlib.sha256(wheel.read_bytes()).hexdigest(), told
 
 
-@pytest.mark.slow("pip is begun three times")
 def test_pip_takes_what_has_the_digest_and_nothing_else(offered):
     digest, told = offered
     assert told(f"thing==1.0 --hash=sha256:{digest}\n")[0] == 0

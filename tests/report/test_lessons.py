@@ -63,7 +63,7 @@ def test_bad_words_are_refused_before_anything_is_computed(words, tmp_path, monk
     assert capsys.readouterr().err.count("\n") == 1
 
 
-@pytest.mark.slow("25 whole walks and swims, and a browser")
+@pytest.mark.slow("a browser plays 25 whole walks and swims")
 def test_all_lessons_play_offline_on_a_phone_and_their_explanations_hold(tmp_path):
     playwright = pytest.importorskip("playwright.sync_api")
     if (browser := shutil.which("chromium")) is None:

@@ -29,6 +29,7 @@ from suchus.experiments.experiment import Measure
 from suchus.robot.motion import START
 
 NAMES = [name for name, one in EXPERIMENTS.items() if one.rules()]
+LONG = [pytest.mark.slow("more than ten seconds: each measure of 24 swims is broken at every place")]
 SAME = 1e-6
 """Relative difference up to which a measure is the same [-]."""
 _LEAST = {
@@ -98,8 +99,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
 """By experiment the breaks that no measure of its quick form notices, and why that hides nothing."""
 
 
-@pytest.mark.slow("each measure of each question that judges is broken at every place, some hundred times")
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=LONG * (name == "swimming")) for name in NAMES])
 def test_every_way_to_break_a_measure_changes_a_number(name, quick_outcome):
     record = _MORE.get(name, lambda one: one)(quick_outcome(name).record)
     survived = [broken for broken, noticed in tried(name, record) if not noticed]

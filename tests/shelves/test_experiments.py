@@ -163,13 +163,6 @@ def test_no_legend_covers_data_and_no_colour_bar_ends_below_the_greatest_value(d
             assert bar.vmin <= np.nanmin(values) + rounding or bar.extend in ("min", "both"), name
 
 
-def some_page(name):
-    """Return a case for an experiment: the pages of a few of suchus's own stand for the others in ``make test``."""
-    others = EXPERIMENTS.sources()[name].shipped and name not in ("displacement", "floating", "swim_free")
-    return pytest.param(name, marks=pytest.mark.slow("a page with its skin and picture") if others else ())
-
-
-@pytest.mark.parametrize("quick", [some_page(name) for name in EXPERIMENTS], indirect=True)
 def test_what_walked_can_be_seen_as_a_page_that_can_be_mailed(quick):
     experiment, outcome = quick
     if hasattr(sys.modules[type(experiment).__module__], "replayed"):  # it makes such pages

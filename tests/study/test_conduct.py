@@ -58,7 +58,6 @@ def contents(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
-@pytest.mark.slow("a second and a third run of a study")
 def test_results_are_what_the_simulation_and_the_metrics_say(asked, tmp_path):
     results = conduct(asked, tmp_path / "s")
     plan = Plan(asked)

@@ -174,13 +174,7 @@ def test_a_study_that_varies_nothing_is_refused():
         study(vary=())
 
 
-_SLOW = {name: pytest.mark.slow("a part of a quick form is simulated once more") for name in OF_A_PART}
-_FAST = ("crawl_stability", "speed_range")
-
-
-@pytest.mark.parametrize(
-    "name", [name if name in _FAST else pytest.param(name, marks=_SLOW[name]) for name in OF_A_PART]
-)
+@pytest.mark.parametrize("name", OF_A_PART)
 def test_what_is_measured_of_a_part_is_what_the_whole_measures(name, quick_outcome):
     wanted = set().union(*(RULES[claim].needs for claim in DECLARED[name].claims))
     part, whole = EXPERIMENTS[name].quick().measured(wanted), quick_outcome(name).measures

@@ -185,7 +185,7 @@ def test_a_walk_is_watched_steered_and_broken(tabs, watched):
     wait_for(lambda: watched.viewer.watching == 0)
 
 
-@pytest.mark.slow("two pages at once, each of which is drawn in software")
+@pytest.mark.slow("a browser draws two pages at once")
 def test_walks_in_two_browsers_do_not_disturb_each_other(tabs, watched, tmp_path):
     first = tabs(watched.viewer.url)
     first.locator('[data-suchus="forward"]').wait_for(state="attached")

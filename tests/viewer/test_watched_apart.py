@@ -13,7 +13,7 @@ pages = pytest.importorskip("suchus.apps.viewer.pages", reason="the extra viewer
 ROBOT = ROBOTS["caiman"]
 
 
-@pytest.mark.slow("a process is begun that serves a page")
+@pytest.mark.slow("a process that serves a page is killed")
 def test_it_takes_pictures_while_the_robot_moves_and_ends_with_it():
     body, taken = EmulatedBody(ROBOT, GAITS["belly_crawl"]), []
 

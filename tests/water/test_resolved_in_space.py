@@ -33,7 +33,6 @@ def test_a_body_at_rest_feels_nothing():
     assert all(np.abs(found[name].values).max() == 0.0 for name in ("thrust", "aside", "power", "sway", "turn"))
 
 
-@pytest.mark.slow("a second run of a swim")
 def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
     other = held(MOTION.lagged(0.5), progress=silent)
     peak = np.abs(swum.aside.values).max()
@@ -45,7 +44,7 @@ def test_a_mirrored_swim_is_pushed_to_the_other_side(swum):
     assert float(swum.cycle_power[-1]) > 0
 
 
-@pytest.mark.slow("a second and a third run of a swim")
+@pytest.mark.slow("a second run: a swim that was interrupted goes on")
 def test_a_swim_on_the_spot_that_was_interrupted_goes_on_to_the_same_numbers(swum, tmp_path):
     def stop(stage, share):
         if share > 0.6:

@@ -5,10 +5,9 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
+from evidence import stale
 from evidence.registry import RESULTS
 from evidence.store import load, names
-
-from evidence import stale
 from pages import passages
 from pages.stated import made, sources
 

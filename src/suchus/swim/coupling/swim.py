@@ -6,7 +6,7 @@ changes by one solve of the pressure equation (``flow.twist``). With F the gener
 mass, a the mean acceleration of the step, the robot is told ``F(a) = F* - A (a - a*)``, where F* and a* are those that
 were found last. What the robot was told in its last go, less what the flow says then, is the residual. It is not
 lost: the robot gets that impulse in the next step, and so what MuJoCo's steps miss of its momentum, so that its
-momentum is the impulse of the water. A is one that answers as the water was seen to answer in each correction, and is
+momentum is the impulse of the water. A is symmetric, answers as the water was seen to answer in each correction, and is
 computed anew as the body bends.
 """
 
@@ -159,23 +159,23 @@ def learned(
     added: Float[np.ndarray, "coordinate coordinate"], mass: Float[np.ndarray, "coordinate coordinate"],
     push: Float[np.ndarray, " coordinate"], answered: Float[np.ndarray, " coordinate"],
 ) -> Float[np.ndarray, "coordinate coordinate"]:  # fmt: skip
-    """Return an added mass near another one that answers an acceleration as the water was seen to: Broyden's update.
+    """Return an added mass near another one that answers an acceleration as the water was seen to.
 
-    What would leave less than ``LEAST`` of the inertia along the push, the robot's own with it, is not believed. It
-    need not stay symmetric, since what a step answers is not: a symmetric update (Broyden, Fletcher, Goldfarb and
-    Shanno) ended a swim of the floating caiman in a slice of 48 cells.
+    It is symmetric, and with the robot's own mass positive definite: the update of Broyden, Fletcher, Goldfarb and
+    Shanno of the whole inertia. What would leave less than ``LEAST`` of that inertia along the push is not believed.
 
     Args:
-        added: an added mass.
+        added: symmetric.
         mass: the robot's own.
         push: acceleration more.
         answered: force of the water against it.
     """
-    before, after = float(push @ (mass + added) @ push), float(push @ (mass @ push + answered))
+    whole = (mass + added) @ push
+    seen = mass @ push + answered
+    before, after = float(push @ whole), float(push @ seen)
     if not after > LEAST * before > 0.0:
         return added
-    weighted = np.diag(mass + added) * push
-    return np.asarray(added + np.outer(answered - added @ push, weighted / float(weighted @ push)))
+    return np.asarray(added + np.outer(seen, seen) / after - np.outer(whole, whole) / before)
 
 
 def out_of_step(most: int, period: int) -> int:
@@ -409,11 +409,11 @@ class Swim:
 
     def _gone(
         self, count: int, force: np.ndarray, push: np.ndarray, guess: np.ndarray, newton: np.ndarray
-    ) -> tuple[CoordinateState, np.ndarray]:  # fmt: skip
+    ) -> tuple[CoordinateState, np.ndarray, np.ndarray]:  # fmt: skip
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
-        Returns where it comes to, and its mean acceleration on the way, ``guess`` at first. Broyden's updates of
-        ``newton`` are kept in it.
+        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and the force that it got
+        beyond that, since rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
         """
         h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
@@ -422,13 +422,14 @@ class Swim:
             end = self.stepper.go(count, force + self._added @ push - left @ guess)
             found = (end.rate - before) / h
             last, missing = missing, found - guess
+            beyond = left @ missing
             if np.abs(missing).max() <= _SETTLED * np.abs(found).max():
                 break
             if round_:
                 newton += np.outer(last - missing - newton @ change, change) / (change @ change)
             change = np.linalg.solve(newton, missing)
             guess = guess + change
-        return end, found
+        return end, found, beyond
 
     def _size(self, force: np.ndarray) -> float:
         """Return the size of a generalised force, each coordinate's over the root of its inertia."""
@@ -478,8 +479,9 @@ class Swim:
         stepper.begin()
         newton = self._newton()
         foreseen = self._strayed
-        end, push = self._gone(count, self._force + _lessened(self._owed, foreseen) / h, self._push, self._push, newton)
-        told = self._force - self._added @ (push - self._push)
+        asked, at = self._force, self._push
+        end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, at, newton)
+        told = asked - self._added @ (push - at) + beyond
         if not np.isfinite(end.rate).all():
             raise Diverged(
                 f"at t = {self.time:.4g} s the physics of robot {self.run.robot.name!r} no longer has finite numbers "
@@ -499,8 +501,8 @@ class Swim:
             foreseen = stretch.strayed
             asked, at = found, push
             likely = push + np.linalg.solve(mass + self._added, found - told)
-            end, push = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
-            told = asked - self._added @ (push - at)
+            end, push, beyond = self._gone(count, asked + _lessened(self._owed, foreseen) / h, at, likely, newton)
+            told = asked - self._added @ (push - at) + beyond
             other = self._seen(end)
             more = self.chain.twists(posture.place, other.rate - posture.rate, self._origin, self._axes)
             posture = other
