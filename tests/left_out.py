@@ -15,8 +15,7 @@ PURPOSES = (
     "the second precision", "every write that can fail", "imitated processors", "emulated processors",
     "more than ten seconds",
 )  # fmt: skip
-"""What the reason of a ``slow`` test names: what it is for, or that its cost is more than ten seconds of processor
-time; each a regular expression of whole words."""
+"""What the reason of a ``slow`` test names, as expressions of whole words: what it is for, or its great cost."""
 COLLECTED = pytest.StashKey[tuple[pytest.Item, ...]]()
 """All tests that were collected, before any was deselected."""
 _HEAD = "| test | why | what runs it |\n|---|---|---|\n"

@@ -8,8 +8,6 @@ from wall_stress import LEAST, PUBLISHED, LayeredFluid, cylinder, front, judged,
 from suchus import flow
 from suchus.flow import friction
 
-pytestmark = pytest.mark.slow("kernels of the study are compiled anew in each process")
-
 COUNT = 720
 ANGLES = 2 * np.pi * np.arange(COUNT) / COUNT
 RADIUS = 0.5

@@ -412,8 +412,8 @@ class Swim:
     ) -> tuple[CoordinateState, np.ndarray, np.ndarray]:  # fmt: skip
         """Let the robot go where the water's force is that found at an acceleration, less the added mass times more.
 
-        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and the force that it got
-        beyond that, since rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
+        Returns where it comes to, its mean acceleration on the way, ``guess`` at first, and what force it got beyond
+        that, as rounds end where the two are nearly alike. Broyden's updates of ``newton`` are kept in it.
         """
         h, before = count * self.timestep, self.stepper.at_begin.rate
         left = self._added - self._kept
