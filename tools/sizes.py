@@ -16,7 +16,7 @@ SECONDS = ROOT / ".venv" / ".processor_seconds"
 LIMIT = 900
 """Processor time that `make test` may take from a fresh clone [s]."""
 BESIDE = {
-    "tests": "Theorems about all of the rooms; what runs where stands in its README.",
+    "tests": "Theorems about all of the wings; what runs where stands in its README.",
     "tools": "What makes pages, pictures and releases; not installed.",
     "evidence": "Kept results, what shows that they are current, and the programs that renew them; not installed.",
     "bench": "Speeds: of land, flow, studies and environments.",

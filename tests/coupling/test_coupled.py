@@ -196,7 +196,7 @@ def test_a_run_in_a_flow_keeps_to_its_rung():
     assert swim_run("floating_caiman", water="sections").lake == Lake(level=2 * suchus.ROBOTS["floating_caiman"].length)
     with pytest.raises(UnknownName, match="sections, slice, space"):
         swim_run(water="tank")
-    with pytest.raises(InvalidDesign, match=r"give the runs to suchus\.coupling\.simulate"):
+    with pytest.raises(InvalidDesign, match=r"give the runs to suchus\.swim\.coupling\.simulate"):
         suchus.simulate([run], duration=0.1)
     with pytest.raises(InvalidDesign, match="neither surface nor ground"):
         swim_run(ground=Ground(uphill=0.1))
