@@ -42,7 +42,7 @@ def test_too_few_answers_are_refused(failed, refused):
     assert of_draws("speed", [{}, {"speed": 1.0}]) is None
 
 
-def test_a_costly_rung_takes_the_interval_of_another_around_all_of_its_answers():
+def test_an_expensive_rung_takes_the_interval_of_another_around_all_of_its_answers():
     like = Interval(2.0, 1.0, 3.0)
     assert of_answers("speed", [{"speed": 4.0}, {"speed": 6.0}], like) == Interval(4.0, 2.0, 9.0)
     assert of_answers("speed", [{"speed": -4.0}], like) == Interval(-4.0, -6.0, -2.0)
@@ -57,7 +57,7 @@ def test_a_single_answer_is_no_certainty():
     assert widest([]) is None
 
 
-def test_a_costly_rung_takes_the_widest_interval_where_the_one_that_it_takes_after_has_no_word():
+def test_an_expensive_rung_takes_the_widest_interval_where_the_one_that_it_takes_after_has_no_word():
     def guess(choices, progress):
         return [{"times": (3.0, 3.0)}]
 

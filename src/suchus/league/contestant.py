@@ -60,9 +60,9 @@ class Predictor:
     """Predicts; with ``draws`` of 0 it is asked for the most likely numbers alone and returns several answers, each of
     which is plausible, the best one first."""
     draws: int
-    """Choices of the numbers that are drawn from their ranges, beside the most likely one [-]; 0 for a costly rung."""
+    """Choices of the numbers that are drawn from their ranges, beside the likeliest one [-]; 0 for an expensive model."""
     like: str = ""
-    """Of a costly rung: the one whose interval, over its value, it takes beside its own answers."""
+    """Of an expensive model: the one whose interval, over its value, it takes beside its own answers."""
 
     def __post_init__(self) -> None:
         if self.draws == 0 and not self.like:

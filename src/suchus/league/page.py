@@ -187,8 +187,8 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         "replaced.",
         "",
         f"An interval covers {COVERED:.0%} of the answers to choices of all numbers that are not known, each drawn "
-        "from a plausible range with a source or a reason. A costly model is asked once or twice; its interval is that "
-        "of its answers, widened as the sections' is, or as the widest of the others where sections have no word. "
+        "from a plausible range with a source or a reason. An expensive model is asked once or twice; its interval is "
+        "that of its answers, widened as the sections' is, or as the widest of the others where sections have no word. "
         "*Within*: measurement and interval meet; *wide*: so, but the interval is wider than a factor of "
         f"{WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
         "",

@@ -64,7 +64,7 @@ def of_draws(name: str, answers: Sequence[Found]) -> Interval | None:
 
 
 def of_answers(name: str, answers: Sequence[Found], like: Interval | None) -> Interval | None:
-    """Return a quantity of a costly rung, the best answer first: all answers, widened as another rung's interval.
+    """Return a quantity of an expensive rung, the best answer first: all answers, widened as another rung's interval.
 
     Args:
         name: of the quantity.
