@@ -60,7 +60,7 @@ class Predictor:
     """Predicts; with ``draws`` of 0 it is asked for the most likely numbers alone and returns several answers, each of
     which is plausible, the best one first."""
     draws: int
-    """Choices of the numbers that are drawn from their ranges, beside the likeliest one [-]; 0 for an expensive model."""
+    """Choices of the numbers drawn from their ranges, beside the most likely one [-]; 0 for an expensive model."""
     like: str = ""
     """Of an expensive model: the one whose interval, over its value, it takes beside its own answers."""
 
