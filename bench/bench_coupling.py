@@ -16,11 +16,11 @@ from suchus.robot.control import Swimming
 from suchus.robot.motion import LIMBS_BACK, with_limbs
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Slice, Space
-from suchus.swim.coupling import Swim
-from suchus.swim.coupling.on_joints import floating
-from suchus.swim.water import fit, printed_wave
-from suchus.swim.water.setting import GROWS, SwimSetting
-from suchus.swim.water.swim_setup import ResolvedSwim
+from suchus.swimming.coupling import Swim
+from suchus.swimming.coupling.on_joints import floating
+from suchus.swimming.water import fit, printed_wave
+from suchus.swimming.water.setting import GROWS, SwimSetting
+from suchus.swimming.water.swim_setup import ResolvedSwim
 
 BEGIN = 0.25
 """Time from which it is measured [s]."""

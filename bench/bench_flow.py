@@ -21,9 +21,9 @@ from suchus.experiments.catalog import EXPERIMENTS
 from suchus.flow import border, farfield, log, midline, multigrid, patch, poisson, simulation, water
 from suchus.flow.compiled import compiled, threaded
 from suchus.flow.slab import inner_strides
-from suchus.swim.water import fit, printed_wave
-from suchus.swim.water.setting import SwimSetting
-from suchus.swim.water.swim_setup import ResolvedSwim
+from suchus.swimming.water import fit, printed_wave
+from suchus.swimming.water.setting import SwimSetting
+from suchus.swimming.water.swim_setup import ResolvedSwim
 
 PIECES = (
     (water, "immerse collect dilatation_work contents mean_residual residual correct fastest fill fill_source"),

@@ -19,7 +19,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run
 from suchus.sim.land.loop import Loop, physics_steps
-from suchus.swim.water import fit, printed_wave
+from suchus.swimming.water import fit, printed_wave
 
 RUNS, TICKS = 8, in_form(20, 2)  # TICKS control periods in a turn
 TURNS, WARM = in_form(24, 1), in_form(3, 1)  # the first WARM turns do not count

@@ -17,8 +17,8 @@ from suchus.robot.motion.rising import stand_up, tallest
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Run, simulate
 from suchus.sim.metrics.reach import lead
-from suchus.swim.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water import ExactWave, Outline, fit, printed_wave, sprung, undulation
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 
 ROBOT = ROBOTS["caiman"]
 FREQUENCY = 1.0

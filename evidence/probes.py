@@ -28,7 +28,7 @@ from suchus.league import find
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import cycle_targets
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import fit, printed_wave
+from suchus.swimming.water import fit, printed_wave
 
 Numbers = Mapping[str, float]
 """What a probe gives: numbers by name."""

@@ -21,7 +21,7 @@ FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
 """Experiment and settings of each result that is an experiment in full."""
 SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
 """Searches whose outcome is kept, as ``optimise_NAME``."""
-_SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swim.coupling", "suchus.flow")
+_SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swimming.coupling", "suchus.flow")
 _ATLAS = "suchus.atlas"
 _VALIDATE = "make validate"
 
@@ -112,17 +112,19 @@ _OTHERS = (
         renew="suchus league --out out/league && python tools/league_page.py out/league",
     ),
     _flows("atlas", "make atlas", _ATLAS, flows=probes.ATLAS),
-    _flows("validation", _VALIDATE, "suchus.swim.coupling", flows=(*probes.PLANE, *probes.SPACE)),
+    _flows("validation", _VALIDATE, "suchus.swimming.coupling", flows=(*probes.PLANE, *probes.SPACE)),
     _flows("snakes", _VALIDATE, _ATLAS),
     _flows("sphere_300", _VALIDATE, flows=probes.SPACE),
-    _flows("flag", _VALIDATE, "suchus.swim.coupling"),
+    _flows("flag", _VALIDATE, "suchus.swimming.coupling"),
     _flows("wall_stress", _VALIDATE, flows=(*probes.PLANE, *probes.SPACE)),
-    _flows("sections", "python tools/sections.py out/sections", "suchus.swim.water.sections", _ATLAS),
-    _flows("calibration", "python tools/calibration.py out/calibration", "suchus.swim.water", flows=probes.SPACE),
+    _flows("sections", "python tools/sections.py out/sections", "suchus.swimming.water.sections", _ATLAS),
+    _flows("calibration", "python tools/calibration.py out/calibration", "suchus.swimming.water", flows=probes.SPACE),
     Kept(
         name="swim_grids", modules=_SWIMS, probe=partial(probes.experiment, "swimming"), renew=_VALIDATE,
     ),
-    Kept(name="wave_fits", modules=("suchus.swim.water",), probe=probes.wave_fit, renew="python tools/wave_fits.py"),
+    Kept(
+        name="wave_fits", modules=("suchus.swimming.water",), probe=probes.wave_fit, renew="python tools/wave_fits.py",
+    ),
     Kept(
         name="servo_loads", modules=("suchus.hardware",), probe=probes.servo_loads, renew="make renew NAME=servo_loads",
         compute=partial(servo_loads.measured, ROBOTS["caiman"], cycles=2),
@@ -131,7 +133,7 @@ _OTHERS = (
          compute=built.measured),
     *(
         Kept(
-            name=name, modules=("suchus.swim.water", "suchus.sim.land", "suchus.robot.control"), compute=compute,
+            name=name, modules=("suchus.swimming.water", "suchus.sim.land", "suchus.robot.control"), compute=compute,
             probe=probes.wave_fit if name == "printed_direction" else compute, renew=f"make renew NAME={name}",
         )
         for name, compute in page_measures.SOURCES.items()

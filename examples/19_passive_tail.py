@@ -4,8 +4,8 @@ import suchus
 from suchus.robot.control import Swimming
 from suchus.robot.design import with_spring
 from suchus.sim.land.waters import Slice
-from suchus.swim.coupling import simulate
-from suchus.swim.water import swim_of
+from suchus.swimming.coupling import simulate
+from suchus.swimming.water import swim_of
 
 robot = suchus.ROBOTS["floating_caiman"]
 gait = swim_of(robot, frequency=1.0)  # (20) on the joints; the cable and the passive end share the rest with the water

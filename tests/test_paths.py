@@ -31,7 +31,7 @@ from suchus.robot import blueprint
 from suchus.robot.gaits import gait_of
 from suchus.sim.model.export import export
 from suchus.sim.model.importing import import_robot
-from suchus.swim.coupling import Swim
+from suchus.swimming.coupling import Swim
 from suchus.visual.figures import places
 from suchus.visual.figures import save as save_figure
 from suchus.visual.replay import save as save_replay

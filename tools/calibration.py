@@ -22,8 +22,8 @@ from suchus.core.progress import Progress
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land.prescribed import free_sections, held_sections, towed_sections
-from suchus.swim.water import Outline, Water, fit, printed_wave, recoil
-from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.swimming.water import Outline, Water, fit, printed_wave, recoil
+from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
 from suchus.visual.figures import COLOURS, panels, styled
 from water_coefficients import NAMES, QUANTITIES, WaterCoefficients, fitted, left, responses
 

@@ -12,7 +12,7 @@ from typing import Any
 from pages.stated import keep
 from pages.stated import main as write_pages
 from suchus.atlas import FlowOutcome, compute_all, sections
-from suchus.swim.water.sections import attached, coefficients, held_out, measured, table, write_table
+from suchus.swimming.water.sections import attached, coefficients, held_out, measured, table, write_table
 
 
 def stated() -> Mapping[str, Any]:

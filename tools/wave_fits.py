@@ -14,7 +14,7 @@ from suchus.robot.design import layout
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import cycle_targets, lateral_servos
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import fit, printed_wave
+from suchus.swimming.water import fit, printed_wave
 
 NAME = "wave_fits"
 WAVES = {

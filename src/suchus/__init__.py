@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from suchus.sim.land import Run as Run
     from suchus.sim.land import crawl as crawl
     from suchus.sim.land import simulate as simulate
-    from suchus.swim.water import swim as swim
+    from suchus.swimming.water import swim as swim
 
     __version__: str
 
@@ -78,7 +78,7 @@ _HOMES = {
     "swimming_gait": "suchus.robot.motion",
     "project": "suchus.core.sources",
     "sample": "suchus.core.samples",
-    "swim": "suchus.swim.water",
+    "swim": "suchus.swimming.water",
     **dict.fromkeys(("Ground", "Live", "Push", "Run", "crawl", "simulate"), "suchus.sim.land"),
     "Fault": "suchus.sim.fault",
     **dict.fromkeys(

@@ -17,7 +17,7 @@ from suchus.core.files import save
 from suchus.core.progress import silent
 from suchus.core.writing import MANIFEST
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 
 sys.path[:0] = [str(Path(__file__).parents[1] / room) for room in ("model", "capture")]
 from hinge_trees import quadruped  # noqa: E402

@@ -15,7 +15,7 @@ from suchus.robot import blueprint
 from suchus.robot.design import Robot
 from suchus.robot.design.segment import Rod, Shell
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water.samples import Samples
+from suchus.swimming.water.samples import Samples
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "model"))
 from hinge_trees import quadruped

@@ -8,8 +8,8 @@ from suchus import flow
 from suchus.flow.momentum import Reaction
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model, joint_addresses
-from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
-from suchus.swim.water import Outline
+from suchus.swimming.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swimming.water import Outline
 
 NAMES = ("floating_caiman", "swimmer", "salamander")
 

@@ -21,13 +21,13 @@ from suchus.sim.land import Ground, Lake, Push, Run
 from suchus.sim.land.stepper import Stepper
 from suchus.sim.land.waters import Sections, Slice, Space
 from suchus.sim.record import COUPLED, WATER
-from suchus.swim.coupling import Swim, check_on_joints, simulate
-from suchus.swim.coupling import swim as coupled
-from suchus.swim.coupling.chain import MidlineChain
-from suchus.swim.coupling.on_joints import floating
-from suchus.swim.water import Outline, swim_of
-from suchus.swim.water.resolved import check_resolved_swim
-from suchus.swim.water.setting import SwimSetting
+from suchus.swimming.coupling import Swim, check_on_joints, simulate
+from suchus.swimming.coupling import swim as coupled
+from suchus.swimming.coupling.chain import MidlineChain
+from suchus.swimming.coupling.on_joints import floating
+from suchus.swimming.water import Outline, swim_of
+from suchus.swimming.water.resolved import check_resolved_swim
+from suchus.swimming.water.setting import SwimSetting
 
 SLICE = Slice(cells=64, reynolds=1500.0)
 
@@ -196,7 +196,7 @@ def test_a_run_in_a_flow_keeps_to_its_rung():
     assert swim_run("floating_caiman", water="sections").lake == Lake(level=2 * suchus.ROBOTS["floating_caiman"].length)
     with pytest.raises(UnknownName, match="sections, slice, space"):
         swim_run(water="tank")
-    with pytest.raises(InvalidDesign, match=r"give the runs to suchus\.swim\.coupling\.simulate"):
+    with pytest.raises(InvalidDesign, match=r"give the runs to suchus\.swimming\.coupling\.simulate"):
         suchus.simulate([run], duration=0.1)
     with pytest.raises(InvalidDesign, match="neither surface nor ground"):
         swim_run(ground=Ground(uphill=0.1))

@@ -15,8 +15,8 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.lake import lake_text
 from suchus.sim.land.prescribed import link_bodies, sections_along
-from suchus.swim.coupling.earned import ForceParts, judged, judgement_text
-from suchus.swim.water import swim_of
+from suchus.swimming.coupling.earned import ForceParts, judged, judgement_text
+from suchus.swimming.water import swim_of
 
 TIME = np.arange(600) / 100.0
 

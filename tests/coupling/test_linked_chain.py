@@ -20,11 +20,11 @@ from suchus.sim.land import Run
 from suchus.sim.land.links import RobotLinks
 from suchus.sim.land.waters import Slice, Space
 from suchus.sim.model import compile_model
-from suchus.swim.coupling import Swim, simulate
-from suchus.swim.coupling.chain import ChainState
-from suchus.swim.coupling.linked import LinkChain
-from suchus.swim.coupling.on_joints import floating
-from suchus.swim.water import swim_of
+from suchus.swimming.coupling import Swim, simulate
+from suchus.swimming.coupling.chain import ChainState
+from suchus.swimming.coupling.linked import LinkChain
+from suchus.swimming.coupling.on_joints import floating
+from suchus.swimming.water import swim_of
 
 BODIES = ("floating_caiman", "swimmer", "strider", eight, hatchling)
 ORIGIN, ABOUT = np.array([0.1, -0.3, 0.05]), np.array([0.4, 0.2, -0.1])

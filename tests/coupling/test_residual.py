@@ -9,7 +9,7 @@ from suchus.robot.motion.axis import yaw_hinges
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake
 from suchus.sim.land.prescribed import sections_along
-from suchus.swim.coupling.residual import _between_joints, _row, r2
+from suchus.swimming.coupling.residual import _between_joints, _row, r2
 
 TIME = np.arange(400) / 100.0
 ALL = np.ones(400, bool)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import suchus
 from pages.code import SOURCE, wings
 
 PAGE = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text(encoding="utf-8")
@@ -42,3 +43,8 @@ def test_each_wing_says_what_it_is_for_and_where_to_start(wing):
     assert 0 < len(text.splitlines()) <= 30
     if wing not in ("atlas", "contestants", "league"):
         assert "Start reading with " in text
+
+
+def test_no_wing_hides_a_name_of_the_package():
+    """Importing ``suchus.swim`` as a wing would put a module where ``suchus.swim(...)`` is taught."""
+    assert {*wings()} & {*suchus.__all__} == set()

@@ -9,7 +9,7 @@ from calibration import WORTH, earned, held_out, judged, mean_off, off, worth
 from pages.stated import kept
 from suchus.core.progress import silent
 from suchus.sim.land.prescribed import free_sections, held_sections, towed_sections
-from suchus.swim.water import Outline, Water, recoil
+from suchus.swimming.water import Outline, Water, recoil
 from water_coefficients import WaterCoefficients
 
 KEPT = kept("calibration")

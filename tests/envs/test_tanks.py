@@ -12,7 +12,7 @@ from suchus.core.errors import Diverged, InvalidDesign, UnknownName
 from suchus.robot.design import layout
 from suchus.sim.land import Lake
 from suchus.sim.land.waters import Slice, Space
-from suchus.swim.coupling import Swim
+from suchus.swimming.coupling import Swim
 
 WATER = Slice(cells=40, reynolds=600.0)
 ASKED = {"robot": "swimmer", "water": WATER}

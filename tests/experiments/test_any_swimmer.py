@@ -15,7 +15,7 @@ from suchus.robot.gaits import GAITS, own_gait
 from suchus.robot.motion import START, check_speeds, still, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 
 AXIAL = [*(name for name in ROBOTS if not lacking(ROBOTS[name], ["axis"])), eight, giant, hatchling, six]
 

@@ -20,7 +20,7 @@ from suchus.robot.kinematics.tree import landmarks
 from suchus.robot.motion import check_limits, cycle_targets
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.swim.water import MODELS, Outline, Water, cruise
+from suchus.swimming.water import MODELS, Outline, Water, cruise
 
 CATSHARK = Path(suchus.contestants.__file__).parent / "data" / "catshark_midlines.csv"
 ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]

@@ -21,10 +21,10 @@ from suchus.robot.design.pieces import pieces
 from suchus.robot.design.water_table import column
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land.afloat import floats
-from suchus.swim.coupling.on_joints import floating
-from suchus.swim.water import Outline, displaced, fit, printed_wave, undulation
-from suchus.swim.water.immersed import folded, half_heights, trunk
-from suchus.swim.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
+from suchus.swimming.coupling.on_joints import floating
+from suchus.swimming.water import Outline, displaced, fit, printed_wave, undulation
+from suchus.swimming.water.immersed import folded, half_heights, trunk
+from suchus.swimming.water.resolved import SwimSetting, check_resolved_swim, resolved_swim
 from suchus.visual.figures import caption
 
 ROBOT, ASKED = ROBOTS["caiman"], EXPERIMENTS["swim_3d"]

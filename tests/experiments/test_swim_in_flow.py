@@ -22,8 +22,8 @@ from suchus.robot.design import LinkFactors, SectionCorrection
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run
 from suchus.sim.land.waters import Slice, Space
-from suchus.swim.coupling import Swim
-from suchus.swim.water import swim_of
+from suchus.swimming.coupling import Swim
+from suchus.swimming.water import swim_of
 
 
 def test_the_speed_is_that_of_the_last_cycle():

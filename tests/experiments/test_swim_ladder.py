@@ -24,7 +24,7 @@ from suchus.experiments.catalog.swimming.ladder import (
 )
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SETTLED
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water.field_samples import COURSE, TICKS
+from suchus.swimming.water.field_samples import COURSE, TICKS
 
 CYCLES = 10
 PHASE = np.arange(TICKS * CYCLES + 1) / TICKS

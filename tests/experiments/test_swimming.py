@@ -10,7 +10,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_sweep.figure import draw_maps
 from suchus.experiments.catalog.swimming.experiment import ARMS, PlaneSwims
-from suchus.swim.water import fit, printed_wave, swim
+from suchus.swimming.water import fit, printed_wave, swim
 
 
 def _no_conditions(self, printed, slices, progress):

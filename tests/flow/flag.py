@@ -21,8 +21,8 @@ import numpy as np
 from suchus import flow
 from suchus.core.writing import keep
 from suchus.flow import checkpoint as store
-from suchus.swim.coupling.chain import ChainState, MidlineChain, Way
-from suchus.swim.water.outline import BodySilhouette
+from suchus.swimming.coupling.chain import ChainState, MidlineChain, Way
+from suchus.swimming.water.outline import BodySilhouette
 
 WATER = 1000.0
 """Density of the water [kg/m3]."""

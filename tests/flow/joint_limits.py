@@ -15,7 +15,7 @@ from suchus import flow
 from suchus.flow.mass import Mass
 from suchus.robot.design import Spring
 from suchus.sim.model import joint_addresses
-from suchus.swim.coupling.chain import ChainState
+from suchus.swimming.coupling.chain import ChainState
 
 SMALL = 1e-5
 """Change of a coordinate over which derivatives are taken [m, rad]."""

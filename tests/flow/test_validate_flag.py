@@ -25,7 +25,7 @@ PERIODS = 7
 
 def series(name, count, cells, ratio=1):
     """Return the columns of a case, from ``out/validation/flag`` if a run of this code has left them there."""
-    folder = OUT / "flag" / code_digest("flow", "swim/coupling")[:12]
+    folder = OUT / "flag" / code_digest("flow", "swimming/coupling")[:12]
     path = folder / (stem(name, count, cells, ratio) + ".json")
     if not path.exists():
         run(name, count, cells, folder, UNTIL[name] * (0.75 if ratio > 1 else 1.0), ratio=ratio)

@@ -19,8 +19,8 @@ from suchus.experiments.catalog.swim_3d.experiment import Swim3d
 from suchus.flow import signals
 from suchus.flow.added import added_mass
 from suchus.flow.compiled import PAD
-from suchus.swim.water import setting
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water import setting
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

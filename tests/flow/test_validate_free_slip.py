@@ -20,8 +20,8 @@ from suchus.flow.compiled import PAD
 from suchus.flow.friction import FrictionBand, along_stations
 from suchus.robot.design.water import Water
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Outline, cycle, fit, printed_wave, recoil, resolved
-from suchus.swim.water.sections import coefficients
+from suchus.swimming.water import Outline, cycle, fit, printed_wave, recoil, resolved
+from suchus.swimming.water.sections import coefficients
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

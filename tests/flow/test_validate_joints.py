@@ -20,9 +20,9 @@ from suchus.robot.control import Swimming
 from suchus.robot.design.scale import scaled
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Slice
-from suchus.swim.coupling import Swim
-from suchus.swim.coupling.chain import ChainState, Way
-from suchus.swim.water import swim_of
+from suchus.swimming.coupling import Swim
+from suchus.swimming.coupling.chain import ChainState, Way
+from suchus.swimming.water import swim_of
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]
 

@@ -25,8 +25,8 @@ from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study import Study, Vary, conduct
 from suchus.experiments.study.varied import conduct_varied, varied_study
 from suchus.sim.land import Run
-from suchus.swim.water import fit, printed_wave
-from suchus.swim.water.resolved import SwimSetting
+from suchus.swimming.water import fit, printed_wave
+from suchus.swimming.water.resolved import SwimSetting
 
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 

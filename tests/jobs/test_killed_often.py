@@ -18,7 +18,7 @@ from suchus.experiments.optimise import Aim, Optimisation, optimise
 from suchus.core.progress import silent
 from suchus.robot.robots import ROBOTS
 from suchus.experiments.study import Study, Vary, conduct
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 from suchus.core.files import save
 from tests.swims import crocodile_swim
 

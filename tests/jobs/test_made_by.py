@@ -31,7 +31,7 @@ def graph():
     [
         ("suchus.experiments.study.chunk", MADE_BY),
         ("suchus.experiments.optimise.evaluate", ROOMS),
-        ("suchus.swim.water.resolved", FLOW),
+        ("suchus.swimming.water.resolved", FLOW),
     ],
 )
 def test_all_code_that_makes_a_part_is_in_the_digest(graph, begins, places):

@@ -16,8 +16,8 @@ from suchus.robot.design.water import Water
 from suchus.robot.motion.swim import still, swimming_gait
 from suchus.robot.robots._animals import pleurodeles
 from suchus.sim.land import Run, simulate
-from suchus.swim.water import Outline, reactive, resistive, undulation
-from suchus.swim.water.slender import Effort
+from suchus.swimming.water import Outline, reactive, resistive, undulation
+from suchus.swimming.water.slender import Effort
 
 ROW = Drawing(
     name="rod",

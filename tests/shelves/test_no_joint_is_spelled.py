@@ -50,7 +50,7 @@ WHERE = {
     "LH_pitch": {"experiments/catalog/joint_loops/experiment.py"},
 }
 COLUMNS = {
-    "swim/coupling/simulation.py": "letters of a digest",
+    "swimming/coupling/simulation.py": "letters of a digest",
     "experiments/catalog/swim_3d/experiment.py": "letters of a digest",
     "experiments/catalog/swimming/ladder.py": "letters of a digest",
     "core/kernel_cache.py": "letters of a digest",

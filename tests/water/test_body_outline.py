@@ -10,7 +10,7 @@ from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion import check_limits, cycle_targets, lateral_servos, still, swimming_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.model import compile_model
-from suchus.swim.water import Outline, silhouette, swim, undulation
+from suchus.swimming.water import Outline, silhouette, swim, undulation
 
 TIME = np.linspace(0.0, 1.25, 41)
 SWAY, TURN = 0.05 + 0.02j, 0.3 - 0.1j

@@ -6,7 +6,7 @@ import pytest
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
 from suchus.robot.design import layout
 from suchus.robot.motion import cycle_targets, lateral_servos, movement
-from suchus.swim.water import BodyWave, EelWave, Outline, fit, printed_wave
+from suchus.swimming.water import BodyWave, EelWave, Outline, fit, printed_wave
 
 
 def bends(robot, gait):

@@ -2,9 +2,9 @@ import numpy as np
 
 from suchus import flow
 from suchus.flow import swimmer
-from suchus.swim.water import Outline, fit, printed_wave
-from suchus.swim.water.immersed import immersed
-from suchus.swim.water.resolved import SwimSetting
+from suchus.swimming.water import Outline, fit, printed_wave
+from suchus.swimming.water.immersed import immersed
+from suchus.swimming.water.resolved import SwimSetting
 
 
 def _books(robot):

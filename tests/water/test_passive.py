@@ -7,7 +7,7 @@ import suchus
 from suchus.robot.design import crocodile, with_values
 from suchus.robot.motion import still
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Outline, fit, printed_wave, sprung, undulation
+from suchus.swimming.water import Outline, fit, printed_wave, sprung, undulation
 
 STILL = still(ROBOTS["caiman"])
 

@@ -8,9 +8,9 @@ import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.core.progress import silent
 from suchus.robot.motion import still
-from suchus.swim.water import ExactWave, Outline
-from suchus.swim.water.immersed import immersed
-from suchus.swim.water.resolved import (
+from suchus.swimming.water import ExactWave, Outline
+from suchus.swimming.water.immersed import immersed
+from suchus.swimming.water.resolved import (
     ON_THE_SPOT,
     TETHERED,
     SwimSetting,

@@ -9,8 +9,8 @@ from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.core.progress import silent
 from suchus.robot.motion import still
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Outline, Water, fit, printed_wave, recoil
-from suchus.swim.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.swimming.water import Outline, Water, fit, printed_wave, recoil
+from suchus.swimming.water.resolved import TETHERED, SwimSetting, resolved_swim, towed_drag
 
 ROBOT = ROBOTS["caiman"]
 MOTION = fit(ROBOT, printed_wave(ROBOT, "I", sign=-1)).gait

@@ -8,8 +8,8 @@ from tests.swims import crocodile_swim
 from suchus.core.errors import UnreadableFile
 from suchus.core.files.store import sealed
 from suchus.core.progress import silent
-from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
-from suchus.swim.water.samples import Samples
+from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
+from suchus.swimming.water.samples import Samples
 
 MOTION = crocodile_swim(yaw=(0.35, 0.15, 0.1), yaw_lag=(0.1, -0.1, -0.3), tail_lag=-0.1)
 SETTING = SwimSetting(cells=32, viscosity=1e-3, cycles=1, frames=6)

@@ -11,7 +11,7 @@ from suchus.atlas.outcome import FlowOutcome, compute
 from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.core.progress import silent
 from suchus.robot.design.water import Water
-from suchus.swim.water.sections import (
+from suchus.swimming.water.sections import (
     TABLE,
     attached,
     coefficients,

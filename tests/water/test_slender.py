@@ -8,7 +8,7 @@ import suchus
 from suchus.core.errors import InvalidDesign, OutsideLimits
 from suchus.robot.motion import still
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import (
+from suchus.swimming.water import (
     Outline,
     Water,
     cruise,

@@ -6,7 +6,7 @@ import xarray as xr
 
 from suchus.core.errors import OutsideLimits
 from suchus.robot.motion import check_limits, check_speeds
-from suchus.swim.water import (
+from suchus.swimming.water import (
     Quarters,
     Sway,
     Swum,

@@ -8,7 +8,7 @@ from tests.swims import crocodile_swim
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import cable_joints, layout
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Outline, taken, undulation, unevenness
+from suchus.swimming.water import Outline, taken, undulation, unevenness
 
 YAW, YAW_LAG, TAIL, TAIL_LAG = (0.5, 0.4, 0.2), (0.3, 0.1, 0.0), 0.6, 0.6
 SWIM = crocodile_swim(frequency=0.8, yaw=YAW, yaw_lag=YAW_LAG, tail=TAIL, tail_lag=TAIL_LAG)

@@ -5,7 +5,7 @@ from tests.swims import crocodile_swim
 from suchus.core.errors import InvalidDesign
 from suchus.robot.motion import as_table
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
+from suchus.swimming.water import EelWave, ExactWave, Outline, cycle, fit, printed_wave, undulation
 
 TIME = np.linspace(0.0, 1.0, 17)
 WAVES = {

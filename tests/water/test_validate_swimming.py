@@ -12,8 +12,8 @@ import pytest
 
 from pages.stated import keep, kept
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Swum, fit, printed_wave
-from suchus.swim.water.resolved import TETHERED, SwimSetting, resolved_swim
+from suchus.swimming.water import Swum, fit, printed_wave
+from suchus.swimming.water.resolved import TETHERED, SwimSetting, resolved_swim
 
 pytestmark = pytest.mark.validate
 

@@ -115,7 +115,8 @@ def _papers(node: ast.AST, name: str) -> Iterator[PaperReference]:
 def home(room: str, name: str) -> str:
     """Return the dotted name under which the reference has what a room exports.
 
-    That is the room's own page, unless a module hides the name of what it declares, as in ``suchus.swim.water.fit``.
+    That is the room's own page, unless a module hides the name of what it declares, as in
+    ``suchus.swimming.water.fit``.
     """
     hidden = (folder_of(room) / f"{name}.py").is_file() and name in _defined(room)
     return f"suchus.{room}.{name}.{name}" if hidden else f"suchus.{room}.{name}"

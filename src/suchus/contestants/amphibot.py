@@ -12,7 +12,7 @@ from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.scale import swim_servo_for
 from suchus.robot.motion import Gait
 from suchus.robot.motion.swim import swimming_gait
-from suchus.swim.water import Outline
+from suchus.swimming.water import Outline
 
 _LOG = "amphibot_run1_gait.csv"
 _JOINTS, _SEGMENTS = 6, 7

@@ -15,7 +15,7 @@ from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, w
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
 from suchus.robot.robots._animals import catshark
-from suchus.swim.water import FilmedWave, fit
+from suchus.swimming.water import FilmedWave, fit
 
 _FILM = "catshark_midlines.csv"
 _TABLE = (

@@ -14,8 +14,8 @@ from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, s
 from suchus.robot.gaits import ANIMAL_SWIM
 from suchus.robot.motion import Curve, Gait, servo_parts
 from suchus.robot.robots._animals import pleurodeles
-from suchus.swim.water import resistive
-from suchus.swim.water.slender import Model
+from suchus.swimming.water import resistive
+from suchus.swimming.water.slender import Model
 
 FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
 """At which the animal was filmed [Hz]."""

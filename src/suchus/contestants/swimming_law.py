@@ -16,8 +16,8 @@ from suchus.robot.design.water import Water
 from suchus.robot.gaits import own_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import Outline, cruise, cycle, reactive, resistive, swim_of
-from suchus.swim.water.slender import Model
+from suchus.swimming.water import Outline, cruise, cycle, reactive, resistive, swim_of
+from suchus.swimming.water.slender import Model
 
 _STATIONS = 65
 _FREQUENCIES = (0.5, 1.0, 2.0)

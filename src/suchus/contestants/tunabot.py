@@ -9,7 +9,7 @@ from suchus.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, w
 from suchus.robot.design import Robot
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.scale import swim_servo_for
-from suchus.swim.water import FilmedWave, fit
+from suchus.swimming.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"
 _JOINTS = (0.62, 0.76, 0.88)

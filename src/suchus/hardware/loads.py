@@ -17,7 +17,7 @@ from suchus.robot.motion import START, Gait
 from suchus.sim.fault import Fault
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import between, whole
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 
 AT_LIMIT = 0.02
 """Share of a walk that a servo may spend at its limit [-]; chosen so that the peak of a footfall passes."""

@@ -28,7 +28,7 @@ PREDICTION, SEAL, VERDICTS = "prediction.json", "seal.json", "verdicts.json"
 _ANSWERS = "answers"
 """Folder beside them of what the rungs answered, from which an interrupted prediction goes on."""
 _ROOMS = (
-    "league", "contestants", "swim/water", "sim/land", "sim/hydro", "sim/model", "flow", "robot",
+    "league", "contestants", "swimming/water", "sim/land", "sim/hydro", "sim/model", "flow", "robot",
 )  # fmt: skip
 """Rooms whose source decides a prediction."""
 

@@ -22,10 +22,10 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Curve, Gait, cycle_targets, servo_parts
 from suchus.sim.land import Lake, Run, simulate
-from suchus.swim.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
-from suchus.swim.water.slender import Effort, Model
-from suchus.swim.water.undulation import still
+from suchus.swimming.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water.slender import Effort, Model
+from suchus.swimming.water.undulation import still
 
 STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""

@@ -44,9 +44,9 @@ from suchus.robot.motion.swim import lateral_servos
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.prescribed import free_sections
 from suchus.sim.metrics import SIMILARITY, swim_numbers
-from suchus.swim.water import Outline, cycle, displaced, recoil, undulation
-from suchus.swim.water.setting import SwimSetting
-from suchus.swim.water.swim_setup import ResolvedSwim
+from suchus.swimming.water import Outline, cycle, displaced, recoil, undulation
+from suchus.swimming.water.setting import SwimSetting
+from suchus.swimming.water.swim_setup import ResolvedSwim
 
 THICK = "sections, thick water"
 """Name of the sections in water as thick as that of the flows, beside which these stand."""

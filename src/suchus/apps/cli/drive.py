@@ -45,7 +45,7 @@ from suchus.robot.design import Robot
 from suchus.robot.gaits import gait_of, own_gait, suits
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 from suchus.visual.figures import styled
 
 SWIM = "swim"

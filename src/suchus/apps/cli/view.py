@@ -20,7 +20,7 @@ from suchus.robot.design import Robot, check_needs
 from suchus.robot.gaits import own_gait
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 

@@ -14,10 +14,10 @@ from suchus.robot.design import layout
 from suchus.sim.fault import Fault
 from suchus.sim.land import Push, Run
 from suchus.sim.land.batch import Beginning, SimulationBatch
-from suchus.swim.water import Outline
+from suchus.swimming.water import Outline
 
 if TYPE_CHECKING:
-    from suchus.swim.coupling import Swim
+    from suchus.swimming.coupling import Swim
 
 _ENDS = (Diverged, InvalidDesign, NotConverged, OutsideLimits)
 """What ends an episode: robot and flow diverge, the body leaves its plane or its box, or moves too fast for it."""
@@ -52,7 +52,7 @@ class Tanks:
             faults: what breaks, each at its time since this beginning.
             pushes: forces from outside, likewise.
         """
-        from suchus.swim.coupling import Swim  # noqa: PLC0415  the solver of the flow is loaded by who swims in one alone
+        from suchus.swimming.coupling import Swim  # noqa: PLC0415  the solver of the flow is loaded by who swims in one alone
 
         actor = Actor(begin.commanded[None].copy(), self._periods, self._limbs)
         run = replace(self._run, faults=tuple(faults), pushes=tuple(pushes))

@@ -31,7 +31,7 @@ from suchus.sim.land import Ground, Lake
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import FORMS, Form, Slice, Space
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,7 +17,7 @@ FLOW = (
     "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/fingerprint.py", "core/isosurface.py",
     "core/kinds.py", "core/reading.py", "core/rotation.py", "core/sources.py", "flow", "robot/blueprint",
     "robot/design", "robot/kinematics", "robot/motion", "robot/motors", "robot/robots", "sim/hydro", "sim/metrics",
-    "sim/record", "swim/water",
+    "sim/record", "swimming/water",
 )  # fmt: skip
 """Whose code decides the numbers of a swim by CFD."""
 

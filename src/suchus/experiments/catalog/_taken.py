@@ -12,7 +12,7 @@ from suchus.robot.design.flotation import float_hull
 from suchus.robot.motion import LIMBS_UP, Gait, with_limbs
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import capacity
-from suchus.swim.water import Outline, Undulation, taken, undulation, unevenness
+from suchus.swimming.water import Outline, Undulation, taken, undulation, unevenness
 
 AS_TAKEN = " as taken"
 """How the names of motions end whose midlines are those that the joints take."""

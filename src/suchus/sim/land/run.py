@@ -89,7 +89,7 @@ class Run:
     """The water that it walks and swims in, section by section; None on dry land."""
     water: AnyWater | Form | None = None
     """The water, rung by rung: ``Sections`` of a lake, which is then ``lake``; or a ``Slice`` or a ``Space``, a flow
-    that ``swim.coupling.simulate`` solves together with the robot. Short forms: "sections", two body lengths deep,
+    that ``swimming.coupling.simulate`` solves together with the robot. Short forms: "sections", two body lengths deep,
     "slice" and "space"."""
     faults: tuple[Fault, ...] = ()
     """Faults, each with the time at which it begins; none by default."""

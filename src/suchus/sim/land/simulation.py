@@ -114,7 +114,7 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, every: int) ->
         if run.solved is not None:
             raise InvalidDesign(
                 f"the water of run {run.label or run.gait.name!r} is a flow that is solved together with the robot; "
-                "give the runs to suchus.swim.coupling.simulate."
+                "give the runs to suchus.swimming.coupling.simulate."
             )
         check_faults(run.faults, run.robot, duration)
         check_pushes(run.pushes, run.robot, duration)

@@ -1,6 +1,6 @@
 """The water of a run, rung by rung: forces section by section, a plane flow, a flow in space.
 
-All three take the same runs and give the same records. ``swim.coupling.simulate`` solves robot and flow together;
+All three take the same runs and give the same records. ``swimming.coupling.simulate`` solves robot and flow together;
 nothing here loads the flow solver.
 """
 

@@ -16,7 +16,7 @@ NUMERIC = "water"
 """Name of the custom number that holds the table; see ``hydro.packed``."""
 
 
-PLUGIN = "suchus.swim.water"
+PLUGIN = "suchus.swimming.water"
 """Name of MuJoCo's plugin that lets the water act; ``land.wetting`` registers it."""
 
 

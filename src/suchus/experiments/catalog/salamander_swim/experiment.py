@@ -33,7 +33,7 @@ from suchus.robot.design.water import Water
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import SwimNumbers, swim_numbers
-from suchus.swim.water import MODELS, Outline, cruise
+from suchus.swimming.water import MODELS, Outline, cruise
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 

@@ -24,7 +24,7 @@ from suchus.robot.robots._animals import catshark, eel, pleurodeles
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.swim.water import FilmedWave, fit, swim_of
+from suchus.swimming.water import FilmedWave, fit, swim_of
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 ASTRAY = float(np.radians(90.0))

@@ -39,7 +39,7 @@ from suchus.sim.land.lake import up
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.metrics.energy import METRES
 from suchus.sim.model.hydrostatics import hydrostatics
-from suchus.swim.water import swim_of
+from suchus.swimming.water import swim_of
 
 _DRY, _DEEP = -10.0, 3.0
 """Levels of the water far below dry land, and far above the ground [m]."""

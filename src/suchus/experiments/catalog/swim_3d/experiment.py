@@ -34,16 +34,16 @@ from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import swim_numbers
-from suchus.swim.coupling import check_on_joints, swim_on_joints
-from suchus.swim.water import (
+from suchus.swimming.coupling import check_on_joints, swim_on_joints
+from suchus.swimming.water import (
     Motion,
     fit,
     printed_wave,
     swim,
 )
-from suchus.swim.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
-from suchus.swim.water.samples import all_kept, check_kept, kept_in
-from suchus.swim.water.setting import BESIDE
+from suchus.swimming.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
+from suchus.swimming.water.samples import all_kept, check_kept, kept_in
+from suchus.swimming.water.setting import BESIDE
 from suchus.visual.figures.vortices import draw_vortices, film_vortices
 from suchus.visual.replay import wake_replay
 

@@ -50,10 +50,10 @@ from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import Form
 from suchus.sim.metrics import swim_numbers
 from suchus.sim.record import WATER
-from suchus.swim.water import Outline, swim, swim_of
-from suchus.swim.water.samples import all_kept, check_kept
-from suchus.swim.water.sections import likely
-from suchus.swim.water.slender import cruise, cycle, reactive
+from suchus.swimming.water import Outline, swim, swim_of
+from suchus.swimming.water.samples import all_kept, check_kept
+from suchus.swimming.water.sections import likely
+from suchus.swimming.water.slender import cruise, cycle, reactive
 from suchus.visual.figures.vortices import film_vortices
 
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")

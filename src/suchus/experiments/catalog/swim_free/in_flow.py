@@ -16,10 +16,10 @@ from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.waters import Slice, Space
-from suchus.swim.coupling import Swim, earned_correction, judgement_text, residual_table
-from suchus.swim.coupling.earned import LinkJudgement
-from suchus.swim.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
-from suchus.swim.water.samples import kept_in
+from suchus.swimming.coupling import Swim, earned_correction, judgement_text, residual_table
+from suchus.swimming.coupling.earned import LinkJudgement
+from suchus.swimming.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
+from suchus.swimming.water.samples import kept_in
 
 _KEPT = (
     "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",

@@ -20,9 +20,9 @@ from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, movement
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import swim_numbers
-from suchus.swim.water import MODELS, Swum, fit, greatest, printed_wave, survey
-from suchus.swim.water.resolved import SwimSetting, resolved_swim
-from suchus.swim.water.samples import check_kept
+from suchus.swimming.water import MODELS, Swum, fit, greatest, printed_wave, survey
+from suchus.swimming.water.resolved import SwimSetting, resolved_swim
+from suchus.swimming.water.samples import check_kept
 
 _PEERS = (
     ("C. porosus, 0.3 to 1.1 m", "sustained speed rises with size, in body lengths it falls", "Elsworth et al. 2003"),

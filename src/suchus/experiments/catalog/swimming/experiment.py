@@ -30,7 +30,7 @@ from suchus.robot.design import Robot
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import swim_numbers
-from suchus.swim.water import (
+from suchus.swimming.water import (
     ExactWave,
     Fit,
     Motion,
@@ -44,8 +44,8 @@ from suchus.swim.water import (
     readings_table,
     swim,
 )
-from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
-from suchus.swim.water.samples import all_kept, check_kept, kept_in
+from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
+from suchus.swimming.water.samples import all_kept, check_kept, kept_in
 
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""

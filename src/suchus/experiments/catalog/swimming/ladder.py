@@ -22,7 +22,7 @@ from suchus.experiments.catalog.swimming.rules import LADDER, RULES, SEEN, SETTL
 from suchus.experiments.experiment import Measure
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait, check_limits, check_speeds
-from suchus.swim.water import (
+from suchus.swimming.water import (
     MODELS,
     Fit,
     Motion,
@@ -37,9 +37,9 @@ from suchus.swim.water import (
     unevenness,
     wave_form,
 )
-from suchus.swim.water.field_samples import COURSE, TICKS
-from suchus.swim.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
-from suchus.swim.water.samples import kept_in
+from suchus.swimming.water.field_samples import COURSE, TICKS
+from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim
+from suchus.swimming.water.samples import kept_in
 
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
 """What swims on every rung."""

@@ -9,8 +9,8 @@ import xarray as xr
 
 from suchus.sim.land.run import Run
 from suchus.sim.record import COUPLED, WATER
-from suchus.swim.coupling.chain import MidlineChain
-from suchus.swim.coupling.linked import LinkChain
+from suchus.swimming.coupling.chain import MidlineChain
+from suchus.swimming.coupling.linked import LinkChain
 
 
 @dataclass(slots=True)

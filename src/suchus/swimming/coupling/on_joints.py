@@ -17,11 +17,11 @@ from suchus.robot.motion import LIMBS_BACK, Gait, with_limbs
 from suchus.sim.land.afloat import floats
 from suchus.sim.land.run import Run
 from suchus.sim.land.waters import Space
-from suchus.swim.coupling.swim import Swim, check_swim
-from suchus.swim.water.samples import Samples
-from suchus.swim.water.setting import GROWS, SwimSetting
-from suchus.swim.water.space_record import FreeInSpace
-from suchus.swim.water.swim_setup import ResolvedSwim
+from suchus.swimming.coupling.swim import Swim, check_swim
+from suchus.swimming.water.samples import Samples
+from suchus.swimming.water.setting import GROWS, SwimSetting
+from suchus.swimming.water.space_record import FreeInSpace
+from suchus.swimming.water.swim_setup import ResolvedSwim
 
 
 def floating(robot: Robot) -> Robot:

@@ -13,8 +13,8 @@ from suchus.core.progress import Progress, portion, silent
 from suchus.sim import land
 from suchus.sim.land.readings import with_equal_variables
 from suchus.sim.land.run import Run
-from suchus.swim.coupling.swim import Swim
-from suchus.swim.water.samples import check_kept
+from suchus.swimming.coupling.swim import Swim
+from suchus.swimming.water.samples import check_kept
 
 
 def simulate(

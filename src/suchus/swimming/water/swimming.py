@@ -11,10 +11,10 @@ from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, check_limits, check_speeds
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import SIMILARITY, swim_numbers
-from suchus.swim.water.measures import efficiency
-from suchus.swim.water.outline import MidlineCurve, Outline
-from suchus.swim.water.slender import Model, cruise, cycle, reactive, recoil, resistive
-from suchus.swim.water.undulation import Motion, still, undulation
+from suchus.swimming.water.measures import efficiency
+from suchus.swimming.water.outline import MidlineCurve, Outline
+from suchus.swimming.water.slender import Model, cruise, cycle, reactive, recoil, resistive
+from suchus.swimming.water.undulation import Motion, still, undulation
 
 MODELS: dict[str, Model] = {"resistive": resistive, "reactive": reactive}
 """The models by name."""

@@ -40,13 +40,13 @@ from suchus.sim.land.lake import Lake
 from suchus.sim.land.run import Run, check_pushes
 from suchus.sim.land.stepper import CoordinateState, Stepper, Stretch
 from suchus.sim.land.waters import Slice, Space
-from suchus.swim.coupling.chain import ChainState, MidlineChain
-from suchus.swim.coupling.linked import LinkChain, LinkWay
-from suchus.swim.coupling.recorded import Series, recorded
-from suchus.swim.water import Outline, cycle, displaced, recoil
-from suchus.swim.water.immersed import folded, half_heights
-from suchus.swim.water.samples import Samples
-from suchus.swim.water.setting import DENSITY, SwimSetting
+from suchus.swimming.coupling.chain import ChainState, MidlineChain
+from suchus.swimming.coupling.linked import LinkChain, LinkWay
+from suchus.swimming.coupling.recorded import Series, recorded
+from suchus.swimming.water import Outline, cycle, displaced, recoil
+from suchus.swimming.water.immersed import folded, half_heights
+from suchus.swimming.water.samples import Samples
+from suchus.swimming.water.setting import DENSITY, SwimSetting
 
 OFF_PLANE = 0.12
 """Angle by which a joint may leave the plane that the flow takes the body to stay in [rad]."""

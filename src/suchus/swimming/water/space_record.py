@@ -7,13 +7,13 @@ import xarray as xr
 
 from suchus import flow
 from suchus.robot.design import GRAVITY
-from suchus.swim.water.field_samples import VortexSampler, course, midline, sample_course, wake
-from suchus.swim.water.plane_record import QUARTERS, bend
-from suchus.swim.water.samples import Samples
-from suchus.swim.water.setting import DENSITY
-from suchus.swim.water.slender import cycle
-from suchus.swim.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
-from suchus.swim.water.swimming import wave_speed
+from suchus.swimming.water.field_samples import VortexSampler, course, midline, sample_course, wake
+from suchus.swimming.water.plane_record import QUARTERS, bend
+from suchus.swimming.water.samples import Samples
+from suchus.swimming.water.setting import DENSITY
+from suchus.swimming.water.slender import cycle
+from suchus.swimming.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
+from suchus.swimming.water.swimming import wave_speed
 
 _PER_CYCLE = {"velocity_x": ("speed", "m/s"), "force_x": ("thrust", "N"), "power": ("power", "W")}
 

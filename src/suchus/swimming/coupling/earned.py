@@ -14,7 +14,7 @@ from jaxtyping import Float
 
 from suchus.robot.design import LinkFactors, Robot, SectionCorrection
 from suchus.sim.land.prescribed import link_bodies
-from suchus.swim.coupling.residual import BLOCKS, COVERED, DRAWS, drawn, fitted, r2, sections_beside
+from suchus.swimming.coupling.residual import BLOCKS, COVERED, DRAWS, drawn, fitted, r2, sections_beside
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,9 +16,9 @@ from suchus.robot.design import Robot, check_needs, with_values
 from suchus.robot.design.scale import control_period
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.motion import LIMBS_BACK, Gait, lateral_servos, swimming_gait
-from suchus.swim.water.outline import Outline
-from suchus.swim.water.undulation import undulation
-from suchus.swim.water.waves import BodyWave, along, printed_wave
+from suchus.swimming.water.outline import Outline
+from suchus.swimming.water.undulation import undulation
+from suchus.swimming.water.waves import BodyWave, along, printed_wave
 
 _TIMES = 48
 """Instants of a cycle at which wave and joints are compared [-]."""

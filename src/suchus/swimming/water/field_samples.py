@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from suchus import flow
-from suchus.swim.water.samples import Samples
+from suchus.swimming.water.samples import Samples
 
 OUTSIDE = 0.99
 """Share of the fluid from which a cell counts as outside the body [-]."""

@@ -10,14 +10,14 @@ from jaxtyping import Float
 
 from suchus import flow
 from suchus.robot.design import GRAVITY
-from suchus.swim.water.field_samples import FieldWindow, course, midline, midline_values, sample_course
-from suchus.swim.water.measures import swing
-from suchus.swim.water.outline import Outline
-from suchus.swim.water.samples import Samples
-from suchus.swim.water.setting import DENSITY
-from suchus.swim.water.slender import cycle
-from suchus.swim.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
-from suchus.swim.water.swimming import wave_speed
+from suchus.swimming.water.field_samples import FieldWindow, course, midline, midline_values, sample_course
+from suchus.swimming.water.measures import swing
+from suchus.swimming.water.outline import Outline
+from suchus.swimming.water.samples import Samples
+from suchus.swimming.water.setting import DENSITY
+from suchus.swimming.water.slender import cycle
+from suchus.swimming.water.swim_setup import PHASES, SLACK, ResolvedSwim, cycle_means
+from suchus.swimming.water.swimming import wave_speed
 
 QUARTERS = (0.25, 0.5, 0.75, 1.0)
 """Instants of the measured cycle at which the article shows the pressure [cycle]."""

@@ -1,17 +1,17 @@
 """The robot in water: its outline, waves fitted to its joints, and the models a designer calculates with.
 
-Swims by CFD stand in ``suchus.swim.water.resolved``, which loads the flow solver.
+Swims by CFD stand in ``suchus.swimming.water.resolved``, which loads the flow solver.
 """
 
 from suchus.robot.design.water import Water
-from suchus.swim.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
-from suchus.swim.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
-from suchus.swim.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
-from suchus.swim.water.passive import sprung
-from suchus.swim.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
-from suchus.swim.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
-from suchus.swim.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
-from suchus.swim.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
+from suchus.swimming.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
+from suchus.swimming.water.measures import Quarters, Sway, Swum, convex_higher, efficiency, level, swing, wave_form
+from suchus.swimming.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
+from suchus.swimming.water.passive import sprung
+from suchus.swimming.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
+from suchus.swimming.water.swimming import MODELS, displaced, greatest, survey, swim, wave_speed
+from suchus.swimming.water.undulation import ExactWave, Motion, Undulation, taken, undulation, unevenness
+from suchus.swimming.water.waves import BodyWave, EelWave, FilmedWave, PrintedWave, printed_wave
 
 __all__ = [
     "MODELS",

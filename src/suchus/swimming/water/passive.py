@@ -6,9 +6,9 @@ import numpy as np
 
 from suchus.robot.design import Spring
 from suchus.robot.design.water import Water
-from suchus.swim.water.outline import Outline, summed
-from suchus.swim.water.slender import recoil
-from suchus.swim.water.undulation import Motion, Undulation, undulation
+from suchus.swimming.water.outline import Outline, summed
+from suchus.swimming.water.slender import recoil
+from suchus.swimming.water.undulation import Motion, Undulation, undulation
 
 _ROUNDS = 12
 """Rounds in which drag, recoil and bends are brought to agree; the last changes the bends by less than 1e-4 [-]."""

@@ -14,11 +14,11 @@ from suchus.flow.setup import LAYER_CELLS
 from suchus.robot.design import Robot
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait, check_limits, check_speeds
-from suchus.swim.water.immersed import half_heights, immersed, trunk
-from suchus.swim.water.outline import Outline
-from suchus.swim.water.setting import DENSITY, FINEST, GROWS, SwimSetting
-from suchus.swim.water.slender import cycle, recoil
-from suchus.swim.water.undulation import Motion, still
+from suchus.swimming.water.immersed import half_heights, immersed, trunk
+from suchus.swimming.water.outline import Outline
+from suchus.swimming.water.setting import DENSITY, FINEST, GROWS, SwimSetting
+from suchus.swimming.water.slender import cycle, recoil
+from suchus.swimming.water.undulation import Motion, still
 
 SLACK = 1e-6
 """Rounding of the phase [cycle]."""

@@ -7,8 +7,8 @@ import numpy as np
 from suchus import flow
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.profile import stations
-from suchus.swim.water.outline import Outline
-from suchus.swim.water.undulation import Motion, undulation
+from suchus.swimming.water.outline import Outline
+from suchus.swimming.water.undulation import Motion, undulation
 
 FIN_STARTS, FIN_RISES = 2 / 3, 0.05
 """Where a raised tail begins, from the snout, and over which length it rises [body length]."""

@@ -18,8 +18,8 @@ from suchus.core.errors import InvalidDesign
 from suchus.robot.design import layout
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion import Gait, cycle_targets, movement
-from suchus.swim.water.outline import MidlineCurve, Outline, summed
-from suchus.swim.water.waves import BodyWave, along
+from suchus.swimming.water.outline import MidlineCurve, Outline, summed
+from suchus.swimming.water.waves import BodyWave, along
 
 _INSTANTS = 96
 """Instants of a cycle from which a wave's harmonics are found [-]; the last harmonic of (20) is 1e-9 of the first."""

@@ -12,13 +12,13 @@ from suchus import flow
 from suchus.core.errors import OutsideLimits
 from suchus.core.progress import Progress
 from suchus.robot.design import Robot
-from suchus.swim.water.outline import Outline
-from suchus.swim.water.plane_record import FreeSlice, TetheredSlice
-from suchus.swim.water.samples import Samples, run_on
-from suchus.swim.water.setting import DENSITY, FREE, ON_THE_SPOT, TETHERED, SwimSetting
-from suchus.swim.water.space_record import FreeInSpace, TetheredInSpace
-from suchus.swim.water.swim_setup import ResolvedSwim, box_grid, box_sides, straight_body
-from suchus.swim.water.undulation import Motion
+from suchus.swimming.water.outline import Outline
+from suchus.swimming.water.plane_record import FreeSlice, TetheredSlice
+from suchus.swimming.water.samples import Samples, run_on
+from suchus.swimming.water.setting import DENSITY, FREE, ON_THE_SPOT, TETHERED, SwimSetting
+from suchus.swimming.water.space_record import FreeInSpace, TetheredInSpace
+from suchus.swimming.water.swim_setup import ResolvedSwim, box_grid, box_sides, straight_body
+from suchus.swimming.water.undulation import Motion
 
 __all__ = ["FREE", "ON_THE_SPOT", "TETHERED", "SwimSetting", "check_resolved_swim", "resolved_swim", "towed_drag"]
 

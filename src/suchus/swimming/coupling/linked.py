@@ -17,7 +17,7 @@ from suchus.flow.twist import Twists
 from suchus.robot.design import Robot
 from suchus.robot.design.profile import stations
 from suchus.sim.land.links import LinkShape, RobotLinks
-from suchus.swim.coupling.chain import RECENT, ChainState, Way
+from suchus.swimming.coupling.chain import RECENT, ChainState, Way
 
 _HALF_TURN = np.diag([-1.0, -1.0, 1.0])
 _ALONG_X = np.array([np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0])  # turns x to where the rod's z was, up to a sign

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 
 from suchus.core.errors import NotConverged
 from suchus.robot.design.water import Water
-from suchus.swim.water.outline import MidlineCurve, Outline, summed
-from suchus.swim.water.undulation import Motion, undulation
+from suchus.swimming.water.outline import MidlineCurve, Outline, summed
+from suchus.swimming.water.undulation import Motion, undulation
 
 _TIMES = 96
 """Instants of a cycle [-]."""

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from suchus import flow
 from suchus.flow.twist import Twists
 from suchus.robot.design.profile import stations
-from suchus.swim.water.outline import Outline
+from suchus.swimming.water.outline import Outline
 
 RECENT = 8
 """Postures whose midlines are remembered [-]."""

@@ -8,7 +8,7 @@ import numpy as np
 from suchus.robot.design import Robot
 from suchus.robot.kinematics import wave as wave_kinematics
 from suchus.robot.kinematics.wave import READINGS, TravellingWave
-from suchus.swim.water.outline import tail_root
+from suchus.swimming.water.outline import tail_root
 
 _FINE = 2049
 """Points along a wave from which its arc length is found [-]."""
