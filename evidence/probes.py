@@ -32,7 +32,7 @@ from suchus.swimming.water import fit, printed_wave
 
 Numbers = Mapping[str, float]
 """What a probe gives: numbers by name."""
-STEPS = 8
+STEPS = 4
 """Steps that a probe takes of a flow [-]."""
 PLANE = ("started_re550", "in_line", "settling", "flapping", "cavity_re400")
 """Flows of the atlas whose first steps stand for the flow solver in the plane."""
