@@ -84,7 +84,7 @@ _OTHERS = (
     *(
         Kept(
             name=f"optimise_{name}", modules=("suchus.experiments.optimise",), probe=partial(probes.search, name),
-            renew=f"suchus optimise {name} --out out/optimise && make renew NAME=optimise_{name}",
+            renew=f"suchus optimise {name} --out out/{name} && make renew NAME=out/{name}/result/outcome.json",
         )
         for name in SEARCHES
     ),
@@ -99,7 +99,7 @@ _OTHERS = (
     ),
     Kept(
         name="claims", modules=("suchus.experiments.study", "suchus.article.verdict"), probe=probes.claims,
-        renew="suchus study claims --out out/claims && make renew NAME=claims",
+        renew="suchus study claims --out out/claims && make renew NAME=out/claims/result/claims.json",
     ),
     Kept(
         name="verdicts", modules=("suchus.article.verdict",),

@@ -87,7 +87,9 @@ def load(name: str, folder: Path | None = None) -> StoredResult:
     """
     path = (folder or RESULTS) / f"{name}.json"
     if not path.is_file():
-        raise UnreadableFile(f"there is no result named {name!r}: {path} is missing; `make renew {name}` computes it.")
+        raise UnreadableFile(
+            f"there is no result named {name!r}: {path} is missing; `make renew NAME={name}` computes it or says how."
+        )
     remedy = f"restore it with git, or compute it again with `make renew NAME={name}`."
     try:
         stored = json.loads(path.read_text(encoding="utf-8"))

@@ -48,7 +48,7 @@ def test_a_damaged_or_newer_file_is_refused_in_a_sentence(tmp_path, text, error,
 
 
 def test_a_result_that_is_missing_is_named(tmp_path):
-    with pytest.raises(UnreadableFile, match=r"there is no result named 'strokes': .* `make renew strokes`"):
+    with pytest.raises(UnreadableFile, match=r"there is no result named 'strokes': .* `make renew NAME=strokes`"):
         load("strokes", tmp_path)
 
 
