@@ -4,6 +4,7 @@ import fcntl
 import gc
 import os
 import pickle
+import signal
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -40,6 +41,8 @@ from suchus.robot.gaits import GAITS  # noqa: E402
 from suchus.robot.motion import Gait  # noqa: E402
 from suchus.robot.robots import ROBOTS  # noqa: E402
 
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
+"""Processes that tests start get the default: under nohup they would inherit an ignored hang-up and not stop on it."""
 if "PYTEST_XDIST_WORKER" in os.environ:  # there are as many workers as cores
     os.environ.setdefault("SUCHUS_THREADS", "1")
 xr.set_options(use_numbagg=False, use_bottleneck=False)  # as on the command line; numbagg compiles for half a minute
