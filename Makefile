@@ -7,7 +7,7 @@ EDITABLE := $(PIP) --no-deps --build-constraint pins.txt --editable . # a folder
 export OMP_WAIT_POLICY := passive
 unexport PYTHONDONTWRITEBYTECODE # without bytecode every process would read all sources again: 5 s instead of 1
 
-.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas stale renew bench docs
+.PHONY: reproduce test test-all check single double space lint types contract tests mutate validate atlas league evidence stale renew bench docs
 .PHONY: release reliability version tag pins licences matrix sizes clean
 
 reproduce: .venv/.runtime
@@ -47,8 +47,14 @@ mutate: .venv/.dev # every rule of a verdict and every measure broken in every w
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s
 
+league: .venv/.dev # predictions of real machines and animals, into docs/league.md; goes on where it stopped
+	$(PY) -m evidence.league --out out/league
+	$(PY) tools/league_page.py out/league
+
+evidence: atlas league validate # everything that stands beside the tests, and takes hours
+
 atlas: .venv/.runtime # published flows beside ours, into docs/atlas.md; goes on where it stopped
-	$(PY) -m suchus flow-atlas --out out/atlas
+	$(PY) -m evidence.atlas --out out/atlas
 	$(PY) tools/atlas_page.py out/atlas
 
 .venv/.base: pins.txt # only a pip of today compares digests of what is asked for by name

@@ -13,9 +13,10 @@ from unittest import mock
 
 import numpy as np
 
+from evidence.atlas import CASES
+from evidence.league import find
+from evidence.league.cases import CONTESTANTS
 from suchus import flow
-from suchus.atlas import CASES
-from suchus.contestants import CONTESTANTS
 from suchus.core.errors import SuchusError
 from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
@@ -24,7 +25,6 @@ from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study.chunk import run_chunk
 from suchus.experiments.study.claims import Claims
 from suchus.hardware import cases, loads_of_each
-from suchus.league import find
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import cycle_targets
 from suchus.robot.robots import ROBOTS

@@ -22,7 +22,7 @@ FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
 SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
 """Searches whose outcome is kept, as ``optimise_NAME``."""
 _SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swimming.coupling", "suchus.flow")
-_ATLAS = "suchus.atlas"
+_ATLAS = "evidence.atlas"
 _VALIDATE = "make validate"
 
 
@@ -108,8 +108,8 @@ _OTHERS = (
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),
     Kept(
-        name="league", modules=("suchus.contestants", "suchus.league"), probe=probes.predictions,
-        renew="suchus league --out out/league && python tools/league_page.py out/league",
+        name="league", modules=("evidence.league.cases", "evidence.league"), probe=probes.predictions,
+        renew="python -m evidence.league --out out/league && python tools/league_page.py out/league",
     ),
     _flows("atlas", "make atlas", _ATLAS, flows=probes.ATLAS),
     _flows("validation", _VALIDATE, "suchus.swimming.coupling", flows=(*probes.PLANE, *probes.SPACE)),

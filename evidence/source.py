@@ -11,6 +11,7 @@ import suchus
 from suchus.core.files.provenance import syntax_of
 
 PACKAGE = Path(suchus.__file__).parent
+EVIDENCE = Path(__file__).parent
 CATALOGS = ("robot.control", "robot.gaits", "robot.motors", "robot.robots", "sim.faults", "sim.metrics")
 """Packages whose modules are loaded by name: who imports the package may reach all of them."""
 _DATA = (".toml", ".csv", ".npz")
@@ -18,7 +19,7 @@ _DATA = (".toml", ".csv", ".npz")
 
 @cache
 def _graph() -> grimp.ImportGraph:
-    return grimp.build_graph("suchus", cache_dir=None)
+    return grimp.build_graph("suchus", "evidence", cache_dir=None)
 
 
 @cache
@@ -57,8 +58,14 @@ def digest(modules: Iterable[str], package: Path = PACKAGE) -> str:
     text = hashlib.sha256()
     for file in files(modules, package):
         stamp = file.stat()
-        text.update(file.relative_to(package).as_posix().encode() + _content(file, stamp.st_mtime_ns, stamp.st_size))
+        text.update(_name(file, package).encode() + _content(file, stamp.st_mtime_ns, stamp.st_size))
     return text.hexdigest()[:16]
+
+
+def _name(file: Path, package: Path) -> str:
+    """Return the path of a file from the package on, or from the folder of evidence on."""
+    folder = package if file.is_relative_to(package) else EVIDENCE.parent
+    return file.relative_to(folder).as_posix()
 
 
 @cache
@@ -68,11 +75,12 @@ def _content(file: Path, changed: int, size: int) -> bytes:  # noqa: ARG001  a f
     return hashlib.sha256(syntax_of(content) if file.suffix == ".py" else content).digest()
 
 
-def files(modules: Iterable[str], package: Path = PACKAGE) -> Sequence[Path]:
+def files(modules: Iterable[str], suchus_package: Path = PACKAGE) -> Sequence[Path]:
     """Return the files of modules in alphabetical order, and the data files of their folders."""
     found = set[Path]()
     for module in modules:
-        names = module.split(".")[1:]
+        root, *names = module.split(".")
+        package = suchus_package if root == "suchus" else EVIDENCE
         folder, file = package.joinpath(*names), package.joinpath(*names[:-1], f"{names[-1] if names else ''}.py")
         file = file if file.is_file() else folder / "__init__.py"
         found |= {file, *(data for data in file.parent.glob("*") if data.suffix in _DATA)}

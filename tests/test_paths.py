@@ -15,7 +15,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import suchus
-from suchus import GAITS, ROBOTS, atlas, hardware
+from evidence import atlas
+from evidence.league.page import standings_of
+from suchus import GAITS, ROBOTS, hardware
 from suchus.animals import capture as captures
 from suchus.apps import report
 from suchus.core import files as record
@@ -26,7 +28,6 @@ from suchus.core.samples import sample
 from suchus.core.writing import keep
 from suchus.experiments import optimise, study
 from suchus.hardware.emulator import Server
-from suchus.league.page import standings_of
 from suchus.robot import blueprint
 from suchus.robot.gaits import gait_of
 from suchus.sim.model.export import export

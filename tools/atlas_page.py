@@ -1,8 +1,8 @@
 """Write docs/atlas.md and its pictures from the outcomes of the atlas of flows.
 
-Usage: python tools/atlas_page.py OUT [DOCS]: reads OUT/flows/*.json, which `suchus flow-atlas --out OUT` left, and
-writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png. Into docs it also keeps what other pages
-state of the rows, and writes their passages anew.
+Usage: python tools/atlas_page.py OUT [DOCS]: reads OUT/flows/*.json, which `python -m evidence.atlas --out OUT` left,
+and writes DOCS/atlas.md, by default docs/atlas.md, and DOCS/pictures/atlas_*.png. Into docs it also keeps what other
+pages state of the rows, and writes their passages anew.
 """
 
 import shutil
@@ -13,13 +13,13 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from evidence.atlas import CASES, GRIDS, ROWS, load_outcomes, published
+from evidence.atlas.page import Entry, entries, write_atlas
 from lighter import lighten
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.atlas import CASES, GRIDS, ROWS, load_outcomes, published
 from suchus.core.errors import IncompatibleRecord, SuchusError
 from suchus.core.writing import MANIFEST
-from suchus.visual.figures.atlas import Entry, entries, write_atlas
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -65,10 +65,14 @@ def main(out: Path, docs: Path = DOCS) -> Path:
     """
     found = load_outcomes(out, CASES.values())
     if not found:
-        raise IncompatibleRecord(f"{out} holds no outcomes of the atlas; run suchus flow-atlas --out {out} first.")
+        raise IncompatibleRecord(
+            f"{out} holds no outcomes of the atlas; run python -m evidence.atlas --out {out} first."
+        )
     trials = [name for name, outcome in found.items() if outcome.quick]
     if trials:
-        raise IncompatibleRecord(f"{', '.join(trials)} in {out} are quick trials; run suchus flow-atlas in full first.")
+        raise IncompatibleRecord(
+            f"{', '.join(trials)} in {out} are quick trials; run python -m evidence.atlas in full first."
+        )
     with TemporaryDirectory() as made:
         page = write_atlas(found, Path(made))
         for picture in sorted((Path(made) / "pictures").glob("atlas_*.png")):

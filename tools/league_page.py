@@ -1,7 +1,7 @@
-"""Put what ``suchus league`` predicted, and what became of it, into the documentation.
+"""Put what ``python -m evidence.league`` predicted, and what became of it, into the documentation.
 
-Usage: python tools/league_page.py OUT: reads the sealed predictions in OUT, as ``suchus league --out OUT`` left them,
-keeps the outcomes in results/league.json, and makes of these docs/league.md and its figure.
+Usage: python tools/league_page.py OUT: reads the sealed predictions in OUT, as ``python -m evidence.league --out OUT``
+left them, keeps the outcomes in results/league.json, and makes of these docs/league.md and its figure.
 """
 
 import json
@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 from evidence import renew, store
-from suchus.contestants import CONTESTANTS, measured_file
-from suchus.league import every, find
-from suchus.league.page import FIGURE, PAGE, LeagueEntry, all_standings, draw, page, standing_of, standing_text
+from evidence.league import every, find
+from evidence.league.cases import CONTESTANTS, measured_file
+from evidence.league.page import FIGURE, PAGE, LeagueEntry, all_standings, draw, page, standing_of, standing_text
 
 DOCS = Path(__file__).parents[1] / "docs"
 PICTURE = Path("pictures") / FIGURE

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from evidence.atlas import FlowOutcome, compute_all, sections
 from pages.stated import keep
 from pages.stated import main as write_pages
-from suchus.atlas import FlowOutcome, compute_all, sections
-from suchus.swimming.water.sections import attached, coefficients, held_out, measured, table, write_table
+from suchus.swimming.water.sections import attached, coefficients, held_out, table
 
 
 def stated() -> Mapping[str, Any]:
@@ -27,7 +27,7 @@ def stated() -> Mapping[str, Any]:
         "attached_robot": attached(5.0, 3600.0)[1],
         "held_out": float(held_out().max()),
         "fine_round": [round_.drag, round_.added],
-        "published_round": list(measured()),
+        "published_round": list(sections.measured()),
         "fine_high": [high.drag, high.added],
         "left": max(one.left for one in table()),
     }
@@ -40,7 +40,7 @@ def main(folder: Path, jobs: int) -> None:
         print(f"{outcome.case}: {outcome.seconds:.0f} s {outcome.failed}", flush=True)
 
     outcomes = compute_all(sections.cases(), folder, jobs=jobs, quick=False, finished=tell)
-    print(write_table(outcomes))
+    print(sections.write_table(outcomes))
     keep("sections", stated())
     write_pages()
 

@@ -7,10 +7,10 @@ import pytest
 
 import atlas_page
 from evidence import store
-from suchus.atlas import CASES, ROWS, FlowOutcome, compare, digest_of, published, save_outcome
-from suchus.atlas.comparison import points
+from evidence.atlas import CASES, ROWS, FlowOutcome, compare, digest_of, published, save_outcome
+from evidence.atlas.comparison import points
+from evidence.atlas.page import draw_group, draw_parity, entries, page, summary, write_atlas
 from suchus.core.errors import IncompatibleRecord
-from suchus.visual.figures.atlas import draw_group, draw_parity, entries, page, summary, write_atlas
 
 ROW, NUMBERS, LOOP = ROWS["duetsch_force"], ROWS["re100_numbers"], ROWS["schneiders_drag"]
 

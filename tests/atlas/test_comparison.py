@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from suchus.atlas import AtlasRow, bound, compare, rms_over_peak
-from suchus.atlas.case import FINEST, UNKNOWN_SCATTER, PublishedCurves
+from evidence.atlas import AtlasRow, bound, compare, rms_over_peak
+from evidence.atlas.case import FINEST, UNKNOWN_SCATTER, PublishedCurves
 from suchus.core.errors import IncompatibleRecord
 
 ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", y="y", ours="curve")
@@ -18,7 +18,7 @@ ROW = AtlasRow(name="one", title="One", case="cavity_re100", data="one", x="x", 
 def data(monkeypatch):
     """Hand out tables from a dictionary instead of from files."""
     known = {}
-    monkeypatch.setattr("suchus.atlas.comparison.published", known.__getitem__)
+    monkeypatch.setattr("evidence.atlas.comparison.published", known.__getitem__)
 
     def put(name, **columns):
         known[name] = PublishedCurves(about=("A table.",), columns={k: tuple(map(str, v)) for k, v in columns.items()})

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from suchus.atlas import ROWS, GridConvergence, grid_convergence, published, row_convergence
-from suchus.atlas.comparison import points
-from suchus.atlas.convergence import FORMAL, GRIDS, SAFETY
+from evidence.atlas import ROWS, GridConvergence, grid_convergence, published, row_convergence
+from evidence.atlas.comparison import points
+from evidence.atlas.convergence import FORMAL, GRIDS, SAFETY
 
 CELLS = (48.0, 32.0, 24.0)
 NUMBERS, CURVE = ROWS["dfg_2d1"], ROWS["duetsch_force"]

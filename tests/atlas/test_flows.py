@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from evidence.atlas import CASES, RunEffort, marching, still
+from evidence.atlas.aerofoil import pitching
+from evidence.atlas.cylinders import turning, wake_length
+from evidence.atlas.marching import formed, march, nudged, shedding
+from evidence.atlas.oscillated import mean_skin
+from evidence.atlas.skin import WallValues
+from evidence.atlas.spheres import swung
+from evidence.atlas.still import flapping, gust, quasi_steady_peaks
 from suchus import flow
-from suchus.atlas import CASES, RunEffort, marching, still
-from suchus.atlas.aerofoil import pitching
-from suchus.atlas.cylinders import turning, wake_length
-from suchus.atlas.marching import formed, march, nudged, shedding
-from suchus.atlas.oscillated import mean_skin
-from suchus.atlas.skin import WallValues
-from suchus.atlas.spheres import swung
-from suchus.atlas.still import flapping, gust, quasi_steady_peaks
 from suchus.flow.record import COLUMNS
 
 

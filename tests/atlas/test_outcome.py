@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import suchus.atlas
-from suchus.atlas import (
+import evidence.atlas
+from evidence.atlas import (
     CASES,
     Case,
     RunEffort,
@@ -22,7 +22,7 @@ from suchus.atlas import (
     load_outcomes,
     save_outcome,
 )
-from suchus.atlas.case import grids
+from evidence.atlas.case import grids
 from suchus.core.errors import NotConverged, UnreadableFile, Unwritable
 from suchus.core.jobs import processes
 from suchus.core.progress import silent
@@ -74,13 +74,13 @@ def test_every_part_of_a_set_up_is_in_its_digest():
 
 def test_the_solver_s_code_is_in_the_digest(monkeypatch):
     before = digest_of(case(), quick=False)
-    monkeypatch.setattr("suchus.atlas.outcome.code_digest", lambda *rooms: "other" if "flow" in rooms else "same")
+    monkeypatch.setattr("evidence.atlas.outcome.code_digest", lambda *rooms: "other" if "flow" in rooms else "same")
     assert digest_of(case(), quick=False) != before
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_files_that_decide_a_flow_s_curves_are_there(name):
-    assert all((Path(suchus.atlas.__file__).parent / file).is_file() for file in CASES[name].code)
+    assert all((Path(evidence.atlas.__file__).parent / file).is_file() for file in CASES[name].code)
     function = getattr(CASES[name].run, "func", CASES[name].run)
     assert f"{function.__module__.rpartition('.')[2]}.py" in CASES[name].code
 

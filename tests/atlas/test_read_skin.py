@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from evidence.atlas import read_skin
+from evidence.atlas.skin import PLACES, far_pressure, periodic_slope, wall_slope
 from suchus import flow
-from suchus.atlas import read_skin
-from suchus.atlas.skin import PLACES, far_pressure, periodic_slope, wall_slope
 from suchus.flow.compiled import PAD
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from evidence.atlas import refined
 from suchus import flow
-from suchus.atlas import refined
 from suchus.core.errors import InvalidDesign
 from suchus.flow.compiled import PAD
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from suchus.atlas import CASES, GROUPS, LONGEST, ROWS, chosen, published
+from evidence.atlas import CASES, GROUPS, LONGEST, ROWS, chosen, published
 from suchus.core.errors import UnknownName, UnreadableFile
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from suchus.atlas.source_error import digits_error, half_a_digit, reading_error, stated_error
+from evidence.atlas.source_error import digits_error, half_a_digit, reading_error, stated_error
 
 
 @pytest.mark.parametrize(("text", "half"), [("1.25", 0.005), ("120", 0.5), ("-0.4", 0.05), ("4.5e-3", 5e-5)])

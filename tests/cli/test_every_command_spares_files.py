@@ -18,7 +18,6 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from tests.cli.test_failing_writes import SEARCH, STUDY, film
-from tests.league.toys import stone
 from tests.model.hinge_trees import quadruped
 from tests.wires import Obedient, wiring
 
@@ -28,7 +27,6 @@ from suchus.core.files import load, save
 from suchus.core.writing import MANIFEST
 from suchus.hardware import Rig, straight, write_map, write_wiring
 from suchus.hardware.emulator import Emulator, MemoryPort
-from suchus.league import SingleContestant
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -66,10 +64,6 @@ def emulated(patch):
 
     patch.setattr(calibrate, "Rig", rigged)
     patch.setattr(calibrate, "find_wiring", lambda rig, clock, ask: wiring())
-
-
-def toys(patch):
-    patch.setattr("suchus.apps.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
 
 
 CASES = {
@@ -139,12 +133,6 @@ CASES = {
             doubles=emulated,
         ),
     ],
-    "flow-atlas": [
-        Case(words=("flow-atlas", "ghia_u_re100", "--quick", "--jobs", "1", "--out", "made"), own=("flows/*",))
-    ],
-    "league": [
-        Case(words=("league", "stone", "--jobs", "1", "--out", "made"), doubles=toys, own=("*/answers/**/*",))
-    ],
     "doctor": [],
     "list": [],
 }  # fmt: skip
@@ -159,7 +147,6 @@ READS = {
     "drive": {"--hardware", "--map"},
     "calibrate": {"--hardware"},
     "export-commands": {"--map"},
-    "league": {"--measured"},
 }
 """Options that name what is read."""
 HELPS = {"run": [("run", "displacement")], "view": [("view",), ("view", "swim", "it.nc"), ("view", "it.nc")]}

@@ -5,10 +5,10 @@ from hashlib import sha256
 import pytest
 
 import league_page
-from suchus.contestants import CONTESTANTS
-from suchus.league import every, find
-from suchus.league.page import PAGE
-from suchus.league.sealing import prediction_text
+from evidence.league import every, find
+from evidence.league.cases import CONTESTANTS
+from evidence.league.page import PAGE
+from evidence.league.sealing import prediction_text
 
 KEPT = league_page.kept()
 

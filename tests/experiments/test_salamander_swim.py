@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import suchus.contestants
+import evidence.league.cases
 from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.salamander_swim import own_size
@@ -22,7 +22,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import MODELS, Outline, Water, cruise
 
-CATSHARK = Path(suchus.contestants.__file__).parent / "data" / "catshark_midlines.csv"
+CATSHARK = Path(evidence.league.cases.__file__).parent / "data" / "catshark_midlines.csv"
 ROBOT, SWIM = ROBOTS["salamander"], EXPERIMENTS["salamander_swim"]
 RUNGS = [[[0.21, 0.21], [0.23, 0.23]], [[0.0, 0.0], [np.nan, np.nan]], [[0.2, 0.22], [0.28, 0.3]]]
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from validation_rows import OUT, note
 
+from evidence.atlas.case import published
+from evidence.atlas.marching import middles
+from evidence.atlas.snake import last_strouhal
 from pages.stated import keep, kept
 from suchus import flow
-from suchus.atlas.case import published
-from suchus.atlas.marching import middles
-from suchus.atlas.snake import last_strouhal
 from suchus.core.files import code_digest
 
 pytestmark = [pytest.mark.validate, pytest.mark.usefixtures("validation_table")]

@@ -439,8 +439,6 @@ def commands(self: Range, dice: Random) -> int:
         "demo",
         "lessons",
         "doctor",
-        "flow-atlas",
-        "league",
         "emulate",
         "drive",
         "calibrate",

@@ -233,7 +233,7 @@ high = 0.6
 
 @pytest.mark.parametrize(
     "words",
-    [["study", "study.toml"], ["optimise", "search.toml"], ["flow-atlas"], ["run", "swim_sweep"], ["run", "swim_3d"]],
+    [["study", "study.toml"], ["optimise", "search.toml"], ["run", "swim_sweep"], ["run", "swim_3d"]],
 )
 def test_each_command_takes_a_scheduler(words, tmp_path, monkeypatch, capsys):
     (tmp_path / "study.toml").write_text(PAGE.format('measure = ["slip"]\ndesign = "latin"\nsamples = 2'))

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from toys import broken, fell, stone
 
+from evidence.league import ContestantFamily, Interval, Predictor, SingleContestant, every, find, known
+from evidence.league.judging import WIDEST, judged
+from evidence.league.sealing import Measured, _answers, predicted
+from evidence.league.spread import drawn, of_answers, of_draws, widest
 from suchus.core.errors import InvalidDesign, NotConverged, UnknownName
-from suchus.league import ContestantFamily, Interval, Predictor, SingleContestant, every, find, known
-from suchus.league.judging import WIDEST, judged
-from suchus.league.sealing import Measured, _answers, predicted
-from suchus.league.spread import drawn, of_answers, of_draws, widest
 
 
 def test_the_interval_covers_its_share_of_a_uniform_unknown():

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from toys import failing, silent, stone
 
-from suchus.apps.cli import main
-from suchus.contestants import CONTESTANTS, measured_file
+from evidence.league import Predictor, SingleContestant, every, find, sealing
+from evidence.league.cases import CONTESTANTS, measured_file
+from evidence.league.command import main
+from evidence.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
+from evidence.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
 from suchus.core.errors import InvalidDesign, NotConverged, UnreadableFile
 from suchus.core.files import package_digest
-from suchus.league import Predictor, SingleContestant, every, find, sealing
-from suchus.league.page import FIGURE, OUTCOMES, PAGE, page, standing, standing_text, standings_of, write_page
-from suchus.league.sealing import PREDICTION, SEAL, opened, read_prediction, sealed_prediction
 
 _TRUTH = {"speed": {"value": 4.4, "low": 4.3, "high": 4.5, "unit": "m/s", "source": "a gun"}}
 _OPENED: list[Path] = []
@@ -56,6 +56,8 @@ def test_a_prediction_has_its_form_and_its_seal(tmp_path):
 def test_nothing_that_was_measured_is_read_before_the_seal(tmp_path, monkeypatch):
     """By an audit hook, which sees every file that this process opens; digests of the code are made anew."""
     package_digest.cache_clear()
+    sealing.code_state.cache_clear()
+    sealing._own_digest.cache_clear()
     measured = _truth(tmp_path)
     for one in (stone(), *(_cheap(find(CONTESTANTS, name)) for name in ("catshark_2", "amphibot"))):
         there = measured if one.name == "stone" else measured_file(one.name)
@@ -82,7 +84,7 @@ def test_a_prediction_that_was_changed_or_made_by_other_code_is_refused(tmp_path
         read_prediction(folder)
     (folder / PREDICTION).write_text(text)
     assert read_prediction(folder)["speed"]["film"].value == 3.0
-    monkeypatch.setattr(sealing, "package_digest", lambda: "another")
+    monkeypatch.setattr(sealing, "code_state", lambda: "another")
     with pytest.raises(InvalidDesign, match="never replaced"):
         sealed_prediction(one, tmp_path)
     assert (folder / PREDICTION).read_text() == text
@@ -146,9 +148,9 @@ def test_a_page_of_whom_nothing_was_measured_warns_of_nothing(tmp_path):
 
 
 def test_the_command_predicts_seals_and_judges(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("suchus.apps.cli.league.CONTESTANTS", {"stone": SingleContestant(stone())})
+    monkeypatch.setattr("evidence.league.command.CONTESTANTS", {"stone": SingleContestant(stone())})
     measured = _truth(tmp_path)
-    assert main(["league", "stone", "--out", str(tmp_path / "l"), "--jobs", "1", "--measured", str(measured)]) == 0
+    assert main(["stone", "--out", str(tmp_path / "l"), "--jobs", "1", "--measured", str(measured)]) == 0
     said = capsys.readouterr().out
     assert "A stone falls" in said
     assert "within, 1" in said
@@ -168,7 +170,7 @@ def test_the_command_predicts_seals_and_judges(tmp_path, monkeypatch, capsys):
 )
 def test_bad_words_end_in_a_sentence(tmp_path, monkeypatch, capsys, words, sentence):
     monkeypatch.chdir(tmp_path)
-    assert main(["league", *words]) == 2
+    assert main(words) == 2
     assert sentence in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 

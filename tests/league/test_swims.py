@@ -4,10 +4,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from suchus.contestants import CONTESTANTS, alligator_slope, amphibot, swimming_law
+from evidence.league import find, swims
+from evidence.league.cases import CONTESTANTS, alligator_slope, amphibot, swimming_law
+from evidence.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.core.errors import InvalidDesign, OutsideLimits
-from suchus.league import find, swims
-from suchus.league.swims import LEAST_TICKS, ModelSwimmer, SwimTask, _coasting, _from_rest, _held, _lake, theory
 from suchus.robot.control import Swimming
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.pieces import masses, volumes

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from suchus.league import Contestant, Given, Predictor, Quantity
+from evidence.league import Contestant, Given, Predictor, Quantity
 
 GRAVITY = 9.81
 

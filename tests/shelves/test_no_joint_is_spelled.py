@@ -30,7 +30,6 @@ NOT_JOINTS = {
 }
 WHERE = {
     "tail_pitch": {
-        "contestants/alligator_roll.py",
         "experiments/catalog/death_roll/experiment.py",
         "experiments/catalog/feedback/experiment.py",
         "experiments/catalog/displacement/figure.py",

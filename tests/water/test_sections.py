@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from suchus.atlas import sections
-from suchus.atlas.outcome import FlowOutcome, compute
+from evidence.atlas import sections
+from evidence.atlas.outcome import FlowOutcome, compute
+from evidence.atlas.sections import measured, points, write_table
 from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.core.progress import silent
 from suchus.robot.design.water import Water
@@ -17,10 +18,7 @@ from suchus.swimming.water.sections import (
     coefficients,
     held_out,
     likely,
-    measured,
-    points,
     table,
-    write_table,
 )
 
 

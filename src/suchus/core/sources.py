@@ -39,7 +39,6 @@ SHELVES: Mapping[str, str] = {
     "experiments": "suchus.experiments.catalog",
     "controllers": "suchus.robot.control",
     "measures": "suchus.sim.metrics",
-    "contestants": "suchus.contestants",
 }
 """The package of each shelf by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
 AS_TOML = ("robots", "gaits")

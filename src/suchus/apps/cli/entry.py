@@ -203,18 +203,6 @@ COMMANDS = (
         "suchus.apps.cli.calibrate:calibrate",
         shelf_options=("robot",),
     ),
-    Subcommand(
-        "flow-atlas",
-        "[ROW ...] [--out DIR] [--jobs N | --scheduler ADDRESS]",
-        "compute published flows and draw ours beside theirs",
-        "suchus.apps.cli.flow_atlas:flow_atlas",
-    ),
-    Subcommand(
-        "league",
-        "[NAME ...] [--out DIR]",
-        "predict real machines and animals, sealed before what was measured is opened",
-        "suchus.apps.cli.league:league",
-    ),
     Subcommand("doctor", "", "say whether suchus can run here, and what is missing", "suchus.apps.cli.doctor:doctor"),
     Subcommand(
         "list", "", "show what stands on the shelves: robots, gaits, faults and so on", "suchus.apps.cli.shelves:show"
@@ -233,7 +221,7 @@ _EXAMPLES = (
 )
 
 
-def main(words: Sequence[str] | None = None) -> int:
+def main(words: Sequence[str] | None = None, commands: Sequence[Subcommand] = COMMANDS) -> int:
     """Carry out a command line and return the exit code.
 
     0: sound, whatever the verdicts. 1: an experiment failed. 2: bad input, reported in one sentence on standard
@@ -242,6 +230,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
     Args:
         words: what follows ``suchus``; by default those of this process.
+        commands: that the first word may name; programs of ``evidence`` have commands of their own.
     """
     of_this_process = words is None
     words = list(sys.argv[1:] if words is None else words)
@@ -263,7 +252,7 @@ def main(words: Sequence[str] | None = None) -> int:
         ):
             _check_words(words)
             _check_room()
-            return _flushed(words)
+            return _flushed(words, commands)
     except (Diverged, NotConverged) as error:
         return _complain(str(error), 1)
     except BusFailure as error:
@@ -346,7 +335,7 @@ def _apart(words: list[str]) -> tuple[list[str], str | None]:
     return rest, folders[0] if folders else None
 
 
-def _flushed(words: list[str]) -> int:
+def _flushed(words: list[str], commands: Sequence[Subcommand]) -> int:
     """Carry out a command line; what it printed is out when this returns.
 
     Raises:
@@ -354,7 +343,7 @@ def _flushed(words: list[str]) -> int:
     """
     try:
         try:
-            return _dispatch(words)
+            return _dispatch(words, commands)
         finally:
             sys.stdout.flush()
     except BrokenPipeError:
@@ -367,7 +356,7 @@ def _flushed(words: list[str]) -> int:
         raise Unwritable(f"{what}: {(error.strerror or str(error)).lower()}.") from error
 
 
-def _dispatch(words: list[str]) -> int:
+def _dispatch(words: list[str], commands: Sequence[Subcommand]) -> int:
     if words and words[0] in ("--version", "-V"):
         if words[1:]:
             raise BadCommand(f"{words[0]} stands alone; leave out {' '.join(words[1:])!r}.")
@@ -378,10 +367,10 @@ def _dispatch(words: list[str]) -> int:
     if not words or words[0] in ("-h", "--help", "help"):
         print(_help())
         return 0
-    for command in COMMANDS:
+    for command in commands:
         if command.name == words[0]:
             return command(words[1:])
-    raise UnknownName("command", words[0], [command.name for command in COMMANDS])
+    raise UnknownName("command", words[0], [command.name for command in commands])
 
 
 def _help() -> str:

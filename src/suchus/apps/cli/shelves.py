@@ -19,7 +19,6 @@ _LISTED = {
     "experiments": "suchus.experiments.catalog:EXPERIMENTS",
     "controllers": "suchus.robot.control:CONTROLLERS",
     "measures": "suchus.experiments.study:MEASURES",
-    "contestants": "suchus.contestants:CONTESTANTS",
 }
 """Where each shelf is, by its name."""
 _SCATTERED = ("controllers", "measures")

@@ -54,10 +54,6 @@ def versions() -> dict[str, str]:
     return found
 
 
-MEASURED = "measured"
-"""Folders of what was measured of contestants, which the league compares predictions with."""
-
-
 @cache
 def code_digest(*rooms: str) -> str:
     """Return the SHA-256 of the syntax trees of some rooms or modules of suchus, and of their data.
@@ -126,13 +122,10 @@ def _write(node: ast.AST, put: Callable[[str], None]) -> None:
 
 @cache
 def package_digest() -> str:
-    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results.
-
-    Files of ``MEASURED`` are left out: no result may depend on them, and nothing opens them before it is sealed.
-    """
+    """Return the first 12 digits of the SHA-256 of every file of suchus: another one may mean other results."""
     text = hashlib.sha256()
     for file in sorted(_PACKAGE.rglob("*")):
-        if not {"__pycache__", MEASURED} & {*file.relative_to(_PACKAGE).parts} and file.is_file():
+        if "__pycache__" not in file.relative_to(_PACKAGE).parts and file.is_file():
             text.update(file.relative_to(_PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     return text.hexdigest()[:12]
 

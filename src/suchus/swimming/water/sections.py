@@ -1,14 +1,12 @@
 """What an elliptic section of a body feels in water: a table of drag and added mass computed by the flow solver.
 
-The sections move to and fro in water at rest, ``atlas.sections`` says how. Between the nodes of the table the
+The sections move to and fro in water at rest, ``evidence.atlas.sections`` says how. Between the nodes of the table the
 logarithms are linear in those of aspect and Keulegan number. The table stands at a number of Stokes of 20, so that its
 Reynolds numbers are 20 to 400; the robot's number of Stokes is 3600. See docs/amphibious.md for what follows.
 """
 
 import csv
-from collections.abc import Mapping
 from functools import lru_cache
-from io import StringIO
 from math import pi, sqrt
 from pathlib import Path
 from typing import NamedTuple
@@ -17,17 +15,24 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 
-from suchus.atlas import sections
-from suchus.atlas.case import published
-from suchus.atlas.outcome import FlowOutcome
 from suchus.core.errors import InvalidDesign, UnreadableFile
-from suchus.core.files import write
-from suchus.flow import morison
 from suchus.robot.design.water import Water
 
+STOKES = 20.0
+"""Number beta of Stokes, frequency times height squared over viscosity: the Reynolds number over that of Keulegan [-].
+
+That of Dütsch et al. 1998, with whom the round section is compared; a larger one asks for finer cells.
+"""
+ASPECTS = (0.25, 0.5, 1.0, 2.0, 4.0)
+"""Height across the motion over thickness along it, of the nodes of the table [-]."""
+KEULEGANS = (1.0, 2.2, 5.0, 10.0, 20.0)
+"""Numbers of Keulegan and Carpenter, largest speed over frequency and height, of the nodes of the table [-]."""
+HELD_OUT = ((0.35, 3.3), (0.7, 1.5), (0.7, 7.0), (1.4, 3.3), (1.4, 14.0), (2.8, 1.5), (2.8, 7.0), (0.35, 7.0))
+"""Aspects and Keulegan numbers that are between the nodes and not in the table [-]."""
 TABLE = Path(__file__).parent / "data" / "sections.csv"
 """The table that is shipped."""
-_COLUMNS = ("aspect", "keulegan", "cells", "drag", "added", "drag_before", "added_before", "left", "digest")
+COLUMNS = ("aspect", "keulegan", "cells", "drag", "added", "drag_before", "added_before", "left", "digest")
+"""Columns of the table."""
 
 
 class SectionFlow(NamedTuple):
@@ -53,18 +58,7 @@ class SectionFlow(NamedTuple):
     """Of set-up and code of the flow."""
 
 
-def points() -> dict[str, tuple[float, float, int]]:
-    """Return aspect, Keulegan number and cells a height of every flow of the table by its name, nodes first."""
-    cells = {case.name: case.full.cells for case in sections.cases()}
-    nodes = [(aspect, keulegan) for aspect in sections.ASPECTS for keulegan in sections.KEULEGANS]
-    found = {sections.name_of(*point): point for point in (*nodes, *sections.HELD_OUT)}
-    finer = {
-        name: point for point in sections.FINER for name in cells if name.startswith(f"{sections.name_of(*point)}_")
-    }
-    return {name: (*point, cells[name]) for name, point in (found | finer).items()}
-
-
-def attached(keulegan: float, stokes: float = sections.STOKES) -> tuple[float, float]:
+def attached(keulegan: float, stokes: float = STOKES) -> tuple[float, float]:
     """Return drag coefficient and added mass of a round section around which the water does not separate [-].
 
     Args:
@@ -97,58 +91,13 @@ def likely(
     """
     solid = (half_width > 0.0) & (half_height > 0.0)  # an end that comes to a point has no section
     half_width, half_height, amplitude = half_width[solid], half_height[solid], amplitude[solid]
-    aspect = np.clip(half_height / half_width, sections.ASPECTS[0], sections.ASPECTS[-1])
-    keulegan = np.clip(pi * amplitude / half_height, sections.KEULEGANS[0], sections.KEULEGANS[-1])
+    aspect = np.clip(half_height / half_width, ASPECTS[0], ASPECTS[-1])
+    keulegan = np.clip(pi * amplitude / half_height, KEULEGANS[0], KEULEGANS[-1])
     found = np.array([coefficients(float(a), float(k)) for a, k in zip(aspect, keulegan, strict=True)])
     layer = np.array([attached(float(k)) for k in keulegan])
     drag, added = np.maximum(found[:, 0] - layer[:, 0], 0.0), found[:, 1] - layer[:, 1] + 1.0
     power, energy = half_height * amplitude**3, (half_height * amplitude) ** 2
     return float(np.average(drag, weights=power)) / Water().cross_drag, float(np.average(added, weights=energy))
-
-
-def measured(instants: int = 200) -> tuple[float, float]:
-    """Return Cd and Ca of a round section at KC 5, Re 100, fitted to the published force over a period [-].
-
-    Args:
-        instants: at which the published curve is read, linear in between.
-
-    Source: Dütsch, Durst, Becker and Lienhart 1998, J. Fluid Mech. 360, 249-271, fig. 10, as ``atlas`` ships it.
-    """
-    curve, keulegan, time = published("duetsch1998_force"), 5.0, np.arange(instants) / instants
-    force = np.interp(time, curve.values("t_over_period"), curve.values("force"), period=1.0)
-    return morison(time, keulegan**2 * force, frequency=1.0, speed=keulegan, diameter=1.0, density=1.0)
-
-
-def write_table(outcomes: Mapping[str, FlowOutcome], path: Path = TABLE) -> str:
-    """Write the table of finished flows, and return what it says of itself.
-
-    Args:
-        outcomes: of ``atlas.sections.cases``, by name.
-        path: of the table.
-
-    Raises:
-        InvalidDesign: a flow failed or is missing.
-        Unwritable: the place cannot be written to.
-    """
-    out = StringIO()
-    print(
-        f"# Oscillating ellipses in water at rest, beta {sections.STOKES:g}; made by tools/sections.py from "
-        "suchus.atlas.sections. Points between the nodes are held out.",
-        file=out,
-    )
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(_COLUMNS)
-    for name, (aspect, keulegan, cells) in points().items():
-        if name not in outcomes or outcomes[name].failed:
-            why = outcomes[name].failed if name in outcomes else "it was not computed"
-            raise InvalidDesign(f"the table of sections lacks the flow {name}: {why}; compute it first.")
-        found = outcomes[name].curves
-        before, last = ([float(found[part][1][i]) for part in ("drag", "added", "left")] for i in (-2, -1))
-        numbers = (*last[:2], *before[:2], last[2])
-        writer.writerow([aspect, keulegan, cells, *(f"{value:.5g}" for value in numbers), outcomes[name].digest])
-    write(path, out.getvalue())
-    errors = held_out(path)
-    return f"{len(points())} flows; held-out points are off by {errors.max():.1%} at most"
 
 
 @lru_cache(maxsize=4)
@@ -163,7 +112,7 @@ def table(path: Path = TABLE) -> tuple[SectionFlow, ...]:
         rows = list(csv.DictReader(lines))
         return tuple(
             SectionFlow(
-                *(kind(row[name]) for name, kind in zip(_COLUMNS, SectionFlow.__annotations__.values(), strict=True))
+                *(kind(row[name]) for name, kind in zip(COLUMNS, SectionFlow.__annotations__.values(), strict=True))
             )
             for row in rows
         )
@@ -184,7 +133,7 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
     Raises:
         InvalidDesign: outside the table.
     """
-    for name, value, nodes in (("aspect", aspect, sections.ASPECTS), ("keulegan", keulegan, sections.KEULEGANS)):
+    for name, value, nodes in (("aspect", aspect, ASPECTS), ("keulegan", keulegan, KEULEGANS)):
         if not nodes[0] <= value <= nodes[-1]:
             raise InvalidDesign(f"{name} is {value:g}; the table of sections holds {nodes[0]:g} to {nodes[-1]:g}.")
     drag, added = _interpolators(path)
@@ -194,17 +143,17 @@ def coefficients(aspect: float, keulegan: float, path: Path = TABLE) -> tuple[fl
 
 def held_out(path: Path = TABLE) -> Float[np.ndarray, "point 2"]:
     """Return by how much interpolated Cd and Ca are off at the points that are not among the nodes [-]."""
-    found = {(one.aspect, one.keulegan): one for one in table(path) if (one.aspect, one.keulegan) in sections.HELD_OUT}
-    pairs = [(coefficients(*point, path), (found[point].drag, found[point].added)) for point in sections.HELD_OUT]
+    found = {(one.aspect, one.keulegan): one for one in table(path) if (one.aspect, one.keulegan) in HELD_OUT}
+    pairs = [(coefficients(*point, path), (found[point].drag, found[point].added)) for point in HELD_OUT]
     return np.array([[abs(ours / theirs - 1.0) for ours, theirs in zip(*pair, strict=True)] for pair in pairs])
 
 
 @lru_cache(maxsize=4)
 def _interpolators(path: Path) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
     nodes = {(one.aspect, one.keulegan): one for one in reversed(table(path))}  # the coarser grid comes first
-    axes = np.log(sections.ASPECTS), np.log(sections.KEULEGANS)
+    axes = np.log(ASPECTS), np.log(KEULEGANS)
     values = np.array(
-        [[nodes[a, k][3:5] for k in sections.KEULEGANS] for a in sections.ASPECTS],
+        [[nodes[a, k][3:5] for k in KEULEGANS] for a in ASPECTS],
         dtype=float,
     )  # fmt: skip
     drag, added = (RegularGridInterpolator(axes, np.log(values[..., i])) for i in (0, 1))

@@ -1,0 +1,69 @@
+"""What became of a prediction when the measurement was opened, by rules that were there before."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
+
+from evidence.league.contestant import Interval
+from evidence.league.sealing import Measured, Prediction
+from suchus.article.verdict import Clause
+
+Word = Literal["within", "within, wide", "missed"]
+"""``within``: what was measured, in its own interval, meets that of the prediction. ``within, wide``: so, but the
+interval is wider than a factor of ``WIDEST``, which says little. ``missed``: they do not meet."""
+WORDS: tuple[Word, ...] = get_args(Word)
+WIDEST = 4.0
+"""Greatest ratio of the ends of an interval that counts as a prediction [-]: a factor of two to either side; set before
+any was made."""
+_MEETS = (
+    Clause("high", ">=", "measured_low", "the interval reaches up to what was measured"),
+    Clause("low", "<=", "measured_high", "and down to it"),
+)
+_TELLS = Clause("width", "<=", WIDEST, "an interval of more than a factor of two to either side says little")
+
+
+class Judgement(NamedTuple):
+    """What became of one rung's prediction of one quantity."""
+
+    word: Word
+    """The verdict."""
+    off: float
+    """Value of the prediction over what was measured, the worst of several numbers [-]."""
+
+
+def judged(interval: Interval, measured: Measured) -> Judgement:
+    """Return what became of a prediction; of several numbers in a row each must be within.
+
+    Args:
+        interval: the prediction.
+        measured: what was measured, in the same unit.
+    """
+    columns = [
+        np.atleast_1d(np.asarray(one, float)) for one in (*interval, measured.value, measured.low, measured.high)
+    ]
+    words: list[Word] = []
+    ratios: list[float] = []
+    for value, low, high, truth, least, most in zip(*np.broadcast_arrays(*columns), strict=True):
+        measures = {"low": low, "high": high, "measured_low": least, "measured_high": most, "width": _width(low, high)}
+        met = all(clause.holds(measures) for clause in _MEETS)
+        words.append("missed" if not met else "within" if _TELLS.holds(measures) else "within, wide")
+        ratios.append(float(value / truth) if truth else inf)
+    worst: Word = max(words, key=WORDS.index)
+    return Judgement(worst, max(ratios, key=lambda ratio: abs(np.log(ratio)) if 0.0 < ratio < inf else inf))
+
+
+def _width(low: float, high: float) -> float:
+    """Return the ratio of the ends of an interval; without a bound where they differ in sign [-]."""
+    ends = sorted((abs(low), abs(high)))
+    return float(ends[1] / ends[0]) if low * high > 0.0 else 1e300
+
+
+def verdicts(prediction: Prediction, measured: Mapping[str, Measured]) -> dict[str, dict[str, Judgement]]:
+    """Return what became of each rung's prediction of every quantity that was measured."""
+    return {
+        quantity: {rung: judged(one, measured[quantity]) for rung, one in rungs.items()}
+        for quantity, rungs in prediction.items()
+        if quantity in measured
+    }

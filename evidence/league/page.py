@@ -1,0 +1,332 @@
+"""The page of the league: what was predicted, within which interval, and what was measured; misses first."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+
+from evidence.league.contestant import Contestant, Interval, Value
+from evidence.league.judging import WIDEST, WORDS, Judgement, Word, judged
+from evidence.league.sealing import SEAL, Measured, Prediction, Seal, opened, read_prediction, read_seal
+from evidence.league.spread import COVERED
+from suchus.core.errors import IncompatibleRecord, UnreadableFile
+from suchus.core.files import read_json, there, write
+from suchus.core.files.provenance import plain
+from suchus.visual.figures.style import COLOURS, captioned, panels, styled
+
+PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
+"""Files of the page."""
+_WIDTH = 118
+_BOLD: Mapping[Word, str] = {"within": "within", "within, wide": "within, wide", "missed": "**missed**"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeagueEntry:
+    """One contestant's prediction, its seal, and what was measured."""
+
+    name: str
+    """Name of the contestant."""
+    title: str
+    """Title for people."""
+    about: str
+    """Explanation in a sentence, for people."""
+    words: Mapping[str, str]
+    """What each quantity is."""
+    units: Mapping[str, str]
+    """Unit of each quantity."""
+    prediction: Prediction
+    """By quantity and rung."""
+    seal: Seal
+    """Seal of the prediction."""
+    measured: Mapping[str, Measured]
+    """By quantity; empty where nothing is public."""
+
+    def judgements(self) -> list[tuple[str, str, Interval, Measured, Judgement]]:
+        """Return quantity, rung, prediction, measurement and verdict of all that was measured."""
+        return [
+            (quantity, rung, one, self.measured[quantity], judged(one, self.measured[quantity]))
+            for quantity, rungs in self.prediction.items()
+            if quantity in self.measured
+            for rung, one in rungs.items()
+        ]
+
+
+def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
+    """Return a sealed prediction beside its measurement, which is opened now.
+
+    Args:
+        contestant: who.
+        out: folder of the league.
+        measured: file of the measurement; none if it is not there.
+
+    Raises:
+        UnreadableFile: the prediction is not sealed, or the measurement says something else than is predicted.
+    """
+    folder = out / contestant.name
+    return LeagueEntry(
+        name=contestant.name,
+        title=contestant.title,
+        about=contestant.about,
+        words={name: one.words for name, one in contestant.predicts.items()},
+        units={name: one.unit for name, one in contestant.predicts.items()},
+        prediction=read_prediction(folder),
+        seal=read_seal(folder),
+        measured=opened(folder, contestant.predicts, measured),
+    )
+
+
+def standing_text(standings: Sequence[LeagueEntry]) -> str:
+    """Return standings as JSON, from which ``standings_of`` makes them again."""
+    return json.dumps([_plain(one) for one in standings], indent=1) + "\n"
+
+
+def _plain(one: LeagueEntry) -> Any:
+    data: dict[str, Any] = plain(one)
+    data["prediction"] = {
+        quantity: {rung: {"value": at.value, "low": at.low, "high": at.high} for rung, at in rungs.items()}
+        for quantity, rungs in one.prediction.items()
+    }
+    return data
+
+
+def standings_of(path: str | Path) -> list[LeagueEntry]:
+    """Return the standings that a file keeps.
+
+    Raises:
+        UnreadableFile: it is no such file.
+    """
+    path = Path(path)
+    try:
+        return [standing_of(data) for data in read_json(path)]
+    except (TypeError, KeyError, ValueError, AttributeError) as error:
+        raise UnreadableFile(
+            f"{path} keeps no standings of the league; make it with python -m evidence.league."
+        ) from error
+
+
+def standing_of(data: Any) -> LeagueEntry:
+    """Return a standing from the plain values that ``standing_text`` makes of it."""
+
+    def value(number: Any) -> Value:
+        return tuple(number) if isinstance(number, list) else float(number)
+
+    prediction = {
+        quantity: {rung: Interval(*(value(at[end]) for end in ("value", "low", "high"))) for rung, at in rungs.items()}
+        for quantity, rungs in data["prediction"].items()
+    }
+    measured = {
+        name: Measured(**(one | {end: value(one[end]) for end in ("value", "low", "high")}))
+        for name, one in data["measured"].items()
+    }
+    return LeagueEntry(**(data | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
+
+
+def all_standings(out: Path, contestants: Sequence[Contestant], measured: Mapping[str, Path]) -> list[LeagueEntry]:
+    """Return the standings of those contestants whose predictions are sealed in a folder.
+
+    Raises:
+        IncompatibleRecord: there is none.
+    """
+    found = [standing(one, out, measured[one.name]) for one in contestants if there(out / one.name / SEAL)]
+    if not found:
+        raise IncompatibleRecord(f"{out} holds no sealed prediction; run python -m evidence.league --out {out} first.")
+    return found
+
+
+def table(one: LeagueEntry) -> list[str]:
+    """Return the rows of a contestant's table, in Markdown."""
+    judgements = {(quantity, rung): judgement for quantity, rung, *_, judgement in one.judgements()}
+    lines = ["| quantity | model | prediction | interval | measured | verdict |", "|---|---|---|---|---|---|"]
+    for quantity, rungs in one.prediction.items():
+        truth = one.measured.get(quantity)
+        for i, (rung, at) in enumerate(rungs.items()):
+            word = judgements.get((quantity, rung))
+            lines.append(
+                f"| {f'{one.words[quantity]} [{one.units[quantity]}]' if i == 0 else ''} | {rung} | "
+                f"{shown(at.value)} | "
+                f"{shown(at.low)} to {shown(at.high)} | "
+                f"{(_truth(truth) if truth else 'kept back or not published') if i == 0 else ''} | "
+                f"{_BOLD[word.word] + f', {word.off:.2g} times' if word else ''} |"
+            )
+    return lines
+
+
+def _truth(truth: Measured) -> str:
+    ends = f" ({shown(truth.low)} to {shown(truth.high)})" if truth.low != truth.high else ""
+    return f"{shown(truth.value)}{ends}"
+
+
+def shown(value: Value) -> str:
+    """Return a number, or several in a row, as a table has it."""
+    return ", ".join(shown(one) for one in value) if isinstance(value, tuple) else f"{value:.3g}"
+
+
+def page(standings: Sequence[LeagueEntry], picture: str) -> str:
+    """Return the page in Markdown.
+
+    Args:
+        standings: of all contestants.
+        picture: path of the figure, as the page names it.
+    """
+    every = [(one, *row) for one in standings for row in one.judgements()]
+    counts = {word: sum(row[-1].word == word for row in every) for word in WORDS}
+    lines = [
+        "# The league of predictions",
+        "",
+        "Real machines and animals, predicted by every model that can be asked before what was measured of them "
+        "is opened. "
+        "`python -m evidence.league` predicts all of them, `python -m evidence.league NAME --out DIR` one, into "
+        "`DIR/NAME/prediction.json`, and "
+        "seals the prediction in `seal.json` with its date, the state of the code and a digest. Only then the "
+        "measurement "
+        "is read, where there is one; nothing is fitted to a contestant's own result, and a sealed prediction is never "
+        "replaced.",
+        "",
+        f"An interval covers {COVERED:.0%} of the answers to choices of all numbers that are not known, each drawn "
+        "from a plausible range with a source or a reason. An expensive model is asked once or twice; its interval is "
+        "that of its answers, widened as the sections' is, or as the widest of the others where sections have no word. "
+        "*Within*: measurement and interval meet; *wide*: so, but the interval is wider than a factor of "
+        f"{WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
+        "",
+        f"Of {len(every)} predictions that could be judged here {counts['missed']} missed, "
+        f"{counts['within, wide']} were "
+        f"within a wide interval and {counts['within']} within a narrower one.",
+        "",
+        f"![Predictions over what was measured, by model; the interval should reach across 1]({picture})",
+        "",
+        _TRIALS,
+        "",
+        "## Misses",
+        "",
+        *_misses(every),
+    ]
+    for one in standings:
+        seal = one.seal
+        lines += [
+            "",
+            f"## {one.title}",
+            "",
+            f"{one.about} `python -m evidence.league {one.name}`; sealed {seal.date}, code {seal.code}.",
+            "",
+            *table(one),
+        ]
+        sources = dict.fromkeys(truth.source for truth in one.measured.values())
+        if sources:
+            lines += ["", f"Measured: {'; '.join(sources)}."]
+        if seal.refused:
+            lines += ["", *(f"* No word from {rung}: {why.rstrip('.')}." for rung, why in seal.refused.items())]
+        about = f"The {len(seal.given)} numbers that this rests on, with their sources"
+        lines += ["", f'<details markdown="1"><summary>{about}</summary>', "", *_given(seal), "", "</details>"]
+    return "\n".join(filled(line) for line in [*lines, "", *_OWN]) + "\n"
+
+
+def filled(line: str) -> str:
+    """Return a paragraph or an item of a list in lines of a width, anything else as it is."""
+    if line[:1] in ("|", "#", "<", "!", "{", "`"):
+        return line
+    hang = "  " if line.startswith("* ") else ""
+    return fill(line, _WIDTH, subsequent_indent=hang, break_long_words=False, break_on_hyphens=False)
+
+
+_TRIALS = (
+    "Three things were changed after trials in which public measurements had been opened: the range of the catshark's "
+    "friction, to what was seen on swimming dogfish; how the flow in space is brought to real water; and, after a "
+    "trial of Tunabot, that sections have no word of a beat for which servos are commanded too rarely, and that no "
+    "single answer of a flow stands without an interval. What was measured of AmphiBot, and of the catshark at other "
+    "speeds, is not in this repository and was not seen."
+)
+_OWN = (
+    "## A measurement and a contestant of your own",
+    "",
+    "`python -m evidence.league NAME --measured FILE.json` judges by what you measured, which is "
+    "opened after the seal:",
+    "",
+    "```json",
+    '{"steady_speed": {"value": 0.4, "low": 0.38, "high": 0.42, "unit": "m/s", "source": "film of 3 May"}}',
+    "```",
+    "",
+    "A contestant is one file in the folder `evidence/league/cases`: a `league.Contestant` with its "
+    "numbers, each with a range and a source, what is predicted, and its models; `league.swims.rungs` are those of any "
+    "swimmer. A number without a source, a unit that differs and a prediction that was changed are refused in a "
+    "sentence. "
+    "`--models resistive reactive sections` leaves out the flows, which take minutes each.",
+)
+
+
+def _misses(every: Sequence[tuple[LeagueEntry, str, str, Interval, Measured, Judgement]]) -> list[str]:
+    missed = [row for row in every if row[-1].word == "missed"]
+    if not missed:
+        return ["None."]
+    missed.sort(key=lambda row: -abs(np.log(abs(row[-1].off))) if row[-1].off else -np.inf)
+    lines = ["| contestant | quantity | model | prediction | measured | factor |", "|---|---|---|---|---|---|"]
+    for one, quantity, rung, at, truth, word in missed:
+        lines.append(
+            f"| {one.name} | {one.words[quantity]} [{one.units[quantity]}] | {rung} | {shown(at.value)} "
+            f"({shown(at.low)} to "
+            f"{shown(at.high)}) | {_truth(truth)} | {word.off:.2g} |"
+        )
+    return lines
+
+
+def _given(seal: Seal) -> list[str]:
+    lines = ["| number | value | range | source |", "|---|---|---|---|"]
+    for name, one in seal.given.items():
+        ends = "" if one["low"] == one["high"] else f"{one['low']:.3g} to {one['high']:.3g}"
+        lines.append(f"| {name} [{one['unit']}] | {one['value']:.4g} | {ends} | {one['source']} |")
+    return lines
+
+
+def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
+    """Draw every prediction over what was measured, its interval as a bar, one row for each quantity and contestant."""
+    rows = [(one, quantity) for one in standings for quantity in one.prediction if quantity in one.measured]
+    rungs = list(dict.fromkeys(rung for one, quantity in rows for rung in one.prediction[quantity]))
+    palette = colormaps["tab20"]([*range(0, 20, 2), *range(1, 20, 2)])  # strong colours, then their pale ones
+    with styled():
+        figure, axes = panels(1, 1, width=8.0, height=1.6 + 0.42 * max(len(rows), 1))
+        ax = axes[0, 0]
+        ax.axvline(1.0, color=COLOURS["neutral"], linewidth=1.2)
+        for y, (one, quantity) in enumerate(rows):
+            truth = _first(one.measured[quantity].value)
+            ax.axhspan(y - 0.5, y + 0.5, color="0.95" if y % 2 else "1.0", zorder=0)
+            ends = [_first(one.measured[quantity].low) / truth, _first(one.measured[quantity].high) / truth]
+            ax.plot(ends, [y, y], color=COLOURS["neutral"], linewidth=7.0, alpha=0.35, solid_capstyle="butt")
+            for rung, at in one.prediction[quantity].items():
+                k = rungs.index(rung)
+                height = y + 0.34 - 0.68 * (k + 0.5) / len(rungs)
+                low, value, high = (max(_first(end) / truth, 1e-3) for end in (at.low, at.value, at.high))
+                ax.plot([low, high], [height, height], color=palette[k], linewidth=2.0)
+                label = (
+                    rung if y == next(i for i, row in enumerate(rows) if rung in row[0].prediction[row[1]]) else None
+                )
+                ax.plot([value], [height], "o", color=palette[k], markersize=4.0, label=label)
+        ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
+        ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(max(len(rows), 1) - 0.5, -0.5))
+        ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        if rows:
+            ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
+    captioned(
+        figure,
+        "Every prediction of which a measurement is public, over that measurement: dots with the most likely "
+        "numbers, bars "
+        "the intervals; the broad grey bar is the measurement's own spread.",
+    )
+    drawn = BytesIO()
+    figure.savefig(drawn, format="png")
+    return write(path, drawn.getvalue())
+
+
+def _first(value: Value) -> float:
+    return value[0] if isinstance(value, tuple) else value
+
+
+def write_page(standings: Sequence[LeagueEntry], out: Path) -> Path:
+    """Write the page, its figure and the outcomes it is made of, and return the page's place."""
+    draw(standings, out / FIGURE)
+    write(out / OUTCOMES, standing_text(standings))
+    return write(out / PAGE, page(standings, FIGURE))
