@@ -26,14 +26,14 @@ _CELLS = 32
 _LIMITS = 1e-5, 1e-4  # what a pressure solve leaves [m/s per cell]
 
 
-class _Unsolved(Fluid):
+class _NoPressureWater(Fluid):
     """Water whose pressure is not solved for."""
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         return poisson.Solve(1, *limits), (self.dtype(0), self.dtype(0))
 
 
-class _Solved(Fluid):
+class _PressureWater(Fluid):
     """Water whose pressure can be solved for by itself."""
 
     def solve(self) -> poisson.Solve:
@@ -58,20 +58,24 @@ def compile_ahead(axes: int, dtype: type) -> None:
         (folder / f"begun-{axes}-{dtype.__name__}").touch(exist_ok=False)
     except OSError:  # most often: it is there
         return
-    words = [sys.executable, "-c", f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')"]
-    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
+    command = [
+        sys.executable,
+        "-c",
+        f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')",
+    ]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as solver_process:
         try:
-            _step(_Unsolved(*_domain(axes), dtype))
-            other.wait()
+            _step(_NoPressureWater(*_domain(axes), dtype))
+            solver_process.wait()
         finally:
             with suppress(OSError):
-                other.kill()
+                solver_process.kill()
 
 
 def compile_solver(axes: int, name: str) -> None:
     """Compile the pressure's solver, for a grid with so many axes and fields of the type of this name."""
-    water = _Solved(*_domain(axes), getattr(np, name))
-    _placed(water)
+    water = _PressureWater(*_domain(axes), getattr(np, name))
+    _place_body(water)
     water.solve()
 
 
@@ -79,14 +83,14 @@ def _domain(axes: int) -> tuple[Grid, Sides, float]:
     return Grid.covering(*[(-2.0, 2.0)] * axes, cell=4.0 / _CELLS), Sides(), 0.05
 
 
-def _placed(water: Fluid) -> None:
+def _place_body(water: Fluid) -> None:
     shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
     water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
 
 
 def _step(water: Fluid) -> None:
-    still = (0.0,) * water.axes
-    _placed(water)
-    water.step(0.01, still, still, _LIMITS)
+    zero_velocity = (0.0,) * water.axes
+    _place_body(water)
+    water.step(0.01, zero_velocity, zero_velocity, _LIMITS)
     water.fastest()
     water.contents()

@@ -19,87 +19,112 @@ from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 LOST = 1e-6
 """Share of the water that enters which may find no way out [-]: what rounding leaves in single precision."""
 
-_MIRRORED, _GIVEN, _FREE_OF_VORTICITY, _AS_INSIDE = range(4)
+_MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
 """What the velocity along a side is beyond it: mirrored about a value, that value, and so on."""
 
 
 @compiled
-def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # type: ignore[no-untyped-def]
+def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):  # type: ignore[no-untyped-def]
     """Write the velocity on a side and in the two lines beyond it; ``step`` is 1 at the low end and -1 at the high one.
 
     ``n`` is the velocity along the normal and ``t`` that along the side, normal index first; ``face`` and ``inner`` are
     the lines of the side's faces and of the cells inside it.
     """
-    two, sign, wide = n.dtype.type(2), n.dtype.type(step), n.shape[1]
-    for i in range(PAD, wide - PAD):
+    two, sign, width = n.dtype.type(2), n.dtype.type(step), n.shape[1]
+    for i in range(PAD, width - PAD):
         n[face, i] = sign * prescribed[i - PAD]
     for k in range(1, 3 if step > 0 else 2):
-        for i in range(wide):
+        for i in range(width):
             n[face - k * step, i] = two * n[face, i] - n[face + step, i] if straight else n[face, i]
     for k in range(1, 3):
-        to, source = inner - k * step, inner - (k - 1) * step
-        for i in range(wide):
-            if how == _MIRRORED:
-                t[to, i] = two * value - t[source, i]
-            elif how == _GIVEN:
-                t[to, i] = value
-            elif how == _FREE_OF_VORTICITY and PAD < i < wide - PAD:
-                t[to, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
+        ghost, source = inner - k * step, inner - (k - 1) * step
+        for i in range(width):
+            if condition == _MIRRORED:
+                t[ghost, i] = two * value - t[source, i]
+            elif condition == _PRESCRIBED:
+                t[ghost, i] = value
+            elif condition == _FREE_OF_VORTICITY and PAD < i < width - PAD:
+                t[ghost, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
             else:
-                t[to, i] = t[source, i]
+                t[ghost, i] = t[source, i]
 
 
 @part
-def _mirror_row(a, to, on, source, by, count, straight):  # type: ignore[no-untyped-def]
+def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: ignore[no-untyped-def]
     """Write a row beyond a side from that on it and, where the normal velocity goes on straight, from its image."""
-    two, to, on, source, by = a.dtype.type(2), unsigned(to), unsigned(on), unsigned(source), unsigned(by)
+    two, ghost, boundary, source, stride = (
+        a.dtype.type(2),
+        unsigned(ghost),
+        unsigned(boundary),
+        unsigned(source),
+        unsigned(stride),
+    )
     for i in range(unsigned(count)):
-        a[to + i * by] = two * a[on + i * by] - a[source + i * by] if straight else a[on + i * by]
+        a[ghost + i * stride] = (
+            two * a[boundary + i * stride] - a[source + i * stride] if straight else a[boundary + i * stride]
+        )
 
 
 @part
-def _fill_row(a, to, source, by, count, how, value):  # type: ignore[no-untyped-def]
+def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignore[no-untyped-def]
     """Write a row of a velocity along a side beyond it from that inside it."""
-    times, plus = a.dtype.type(-1 if how == _MIRRORED else how != _GIVEN), value
-    plus = plus + plus if how == _MIRRORED else plus if how == _GIVEN else a.dtype.type(0)
-    to, source, by = unsigned(to), unsigned(source), unsigned(by)
+    times, plus = a.dtype.type(-1 if condition == _MIRRORED else condition != _PRESCRIBED), value
+    plus = plus + plus if condition == _MIRRORED else plus if condition == _PRESCRIBED else a.dtype.type(0)
+    ghost, source, stride = unsigned(ghost), unsigned(source), unsigned(stride)
     for i in range(unsigned(count)):
-        a[to + i * by] = plus + times * a[source + i * by]
+        a[ghost + i * stride] = plus + times * a[source + i * stride]
 
 
 @part
-def _free_of_vorticity(a, to, n, on, before, by, first, last, sign):  # type: ignore[no-untyped-def]
+def _free_of_vorticity(a, ghost, n, boundary, previous, stride, start, stop, sign):  # type: ignore[no-untyped-def]
     """Add to a row beyond a side what the normal velocity, whose row on the side is ``on``, rises along the side."""
-    to, on, before, by = unsigned(to), unsigned(on), unsigned(before), unsigned(by)
-    for i in range(unsigned(first), unsigned(last)):
-        a[to + i * by] -= sign * (n[on + i * by] - n[before + i * by])
+    ghost, boundary, previous, stride = unsigned(ghost), unsigned(boundary), unsigned(previous), unsigned(stride)
+    for i in range(unsigned(start), unsigned(stop)):
+        a[ghost + i * stride] -= sign * (n[boundary + i * stride] - n[previous + i * stride])
 
 
 @compiled
-def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
+def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, condition, values):  # type: ignore[no-untyped-def]
     """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
 
     ``velocity`` has the cells of a component end to end, ``strides`` apart along the normal and along the side's axes,
     the last one first; ``values`` are those of the velocities along the side in the order of the axes.
     """
-    n, (across, down, by), sign = velocity[axis], strides, velocity.dtype.type(step)
-    high, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
-    for j in range(high):
-        on = face * across + j * down
-        if PAD <= j < high - PAD:
+    n, (normal_stride, row_stride, stride), sign = velocity[axis], strides, velocity.dtype.type(step)
+    height, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
+    for j in range(height):
+        boundary = face * normal_stride + j * row_stride
+        if PAD <= j < height - PAD:
             for i in range(count - 2 * PAD):
-                n[on + (i + PAD) * by] = sign * prescribed[j - PAD, i]
+                n[boundary + (i + PAD) * stride] = sign * prescribed[j - PAD, i]
         for k in range(1, 3 if step > 0 else 2):
-            away = k * step * across
-            _mirror_row(n, on - away, on, on + away, by, count, straight)
+            ghost_offset = k * step * normal_stride
+            _mirror_row(n, boundary - ghost_offset, boundary, boundary + ghost_offset, stride, count, straight)
         for k in range(1, 3):
-            to, beyond = (inner - k * step) * across + j * down, how == _FREE_OF_VORTICITY
-            source = to + step * across if beyond else (inner + (k - 1) * step) * across + j * down
+            ghost, is_vorticity_free = (
+                (inner - k * step) * normal_stride + j * row_stride,
+                condition == _FREE_OF_VORTICITY,
+            )
+            source = (
+                ghost + step * normal_stride
+                if is_vorticity_free
+                else (inner + (k - 1) * step) * normal_stride + j * row_stride
+            )
             for c in range(2):
-                t, at = velocity[c + (c >= axis)], on - (k - 1) * step * across
-                _fill_row(t, to, source, by, count, how, values[c])
-                if beyond and PAD + c <= j < high - PAD:
-                    _free_of_vorticity(t, to, n, at, at - (down if c else by), by, PAD + 1 - c, count - PAD, sign)
+                t, face_row = velocity[c + (c >= axis)], boundary - (k - 1) * step * normal_stride
+                _fill_row(t, ghost, source, stride, count, condition, values[c])
+                if is_vorticity_free and PAD + c <= j < height - PAD:
+                    _free_of_vorticity(
+                        t,
+                        ghost,
+                        n,
+                        face_row,
+                        face_row - (row_stride if c else stride),
+                        stride,
+                        PAD + 1 - c,
+                        count - PAD,
+                        sign,
+                    )
 
 
 @dataclass(slots=True)
@@ -135,8 +160,8 @@ class Edge:
 
     def __post_init__(self) -> None:
         self.induced, self.seen = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
-        at = self.prescribed.ndim - self.axis
-        self.order = (at, *(k for k in range(1 + self.prescribed.ndim) if k != at))
+        normal_axis = self.prescribed.ndim - self.axis
+        self.order = (normal_axis, *(k for k in range(1 + self.prescribed.ndim) if k != normal_axis))
 
     @property
     def sign(self) -> int:
@@ -169,21 +194,21 @@ class Edge:
         Raises:
             InvalidDesign: it says something that is no velocity.
         """
-        slides, given = self.side.along(time, 1 + self.prescribed.ndim), None
-        who = f"the {self.name} side, a {type(self.side).__name__},"
+        slides, inflow = self.side.along(time, 1 + self.prescribed.ndim), None
+        side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
-                f"at t = {time:.4g} s {who} moves along itself at {show(slides)} m/s; along() gives one finite number "
-                f"for each other axis, or None."
+                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
+                f"number for each other axis, or None."
             )
         if self.side.passes and not self.side.opens:
-            given = np.asarray(self.side.into(time, *self.places))
-            if given.shape not in ((), self.prescribed.shape) or not np.isfinite(given).all():
+            inflow = np.asarray(self.side.into(time, *self.places))
+            if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
                 raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through {who} are {show(given)}; into() gives one "
-                    f"finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
+                    f"gives one finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
                 )
-        return slides, given
+        return slides, inflow
 
     def impose(self, time: float, outward: float) -> None:
         """Take what the side says of the water at a time.
@@ -193,40 +218,43 @@ class Edge:
             outward: what share of the far stream's speed is across the side, positive outward [-].
         """
         self.leaves = self.side.carries(outward)
-        self.slides, given = self.asked(time)
-        if given is not None:
-            self.prescribed[:] = given
+        self.slides, inflow = self.asked(time)
+        if inflow is not None:
+            self.prescribed[:] = inflow
 
     def fastest(self, time: float) -> float:
         """Return the fastest speed that the side itself imposes at a time [m/s]."""
-        slides, given = self.asked(time)
-        return max(0.0 if slides is None else length(slides), 0.0 if given is None else float(np.abs(given).max()))
+        slides, inflow = self.asked(time)
+        return max(0.0 if slides is None else length(slides), 0.0 if inflow is None else float(np.abs(inflow).max()))
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
         """Write this side's values to the cells and faces around the domain."""
         n, f, step = self.normal(velocity), self.face, self.sign
         inner = PAD if self.low else PAD + self.cells - 1
-        others = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
+        tangential_axes = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
         if isinstance(self.side, Periodic):
-            lines = [n, *(self.across(velocity[d]) for d in others)]
+            lines = [n, *(self.across(velocity[d]) for d in tangential_axes)]
             for k in range(1, PAD + 1):
-                to, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
+                ghost, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
                 for a in lines:
-                    a[to] = a[source]
+                    a[ghost] = a[source]
             return
         straight = not self.side.passes or (self.unbounded and not self.leaves)
-        how, value = self._along(0, others[0], step, stream)
-        if len(others) == 1:
-            along = self.across(velocity[others[0]])
-            _fill_side(n, along, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
+        condition, value = self._tangential_condition(0, tangential_axes[0], step, stream)
+        if len(tangential_axes) == 1:
+            tangential = self.across(velocity[tangential_axes[0]])
+            _fill_side(n, tangential, f, inner, step, self.prescribed, straight, condition, n.dtype.type(value))
         else:
-            values = tuple(n.dtype.type(each) for each in (value, self._along(1, others[1], step, stream)[1]))
+            values = tuple(
+                n.dtype.type(tangential_value)
+                for tangential_value in (value, self._tangential_condition(1, tangential_axes[1], step, stream)[1])
+            )
             line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
             strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
             flat = velocity.reshape(3, -1)
-            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, how, values)
+            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, condition, values)
 
-    def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
+    def _tangential_condition(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
         """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.
 
         What kind of value that is does not depend on the axis.
@@ -236,8 +264,8 @@ class Edge:
         if self.unbounded and not self.leaves:
             return _FREE_OF_VORTICITY, 0.0
         if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
-            return _GIVEN, stream[axis]
-        return _AS_INSIDE, 0.0
+            return _PRESCRIBED, stream[axis]
+        return _ZERO_GRADIENT, 0.0
 
 
 @dataclass(slots=True)
@@ -305,25 +333,29 @@ class Border:
         Raises:
             InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
         """
-        before, self.stream = self.stream, stream
+        previous_stream, self.stream = self.stream, stream
         size = max(length(stream), 1e-30)
         for edge in self.edges:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
-        grown = dt / self.span if self.span else 0.0
+        growth = dt / self.span if self.span else 0.0
         for edge in self.edges:
-            ahead = grown * (edge.induced - edge.seen)
+            extrapolation = growth * (edge.induced - edge.seen)
             if edge.side.opens:
-                held = edge.sign * stream[edge.axis] + edge.induced + ahead
+                inflow = edge.sign * stream[edge.axis] + edge.induced + extrapolation
                 if edge.leaves:
-                    rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                    carried = self._carried(edge, velocity, dt) + (rise + ahead)
-                    held = edge.leaves * carried + (1 - edge.leaves) * held
-                edge.prescribed[:] = held
+                    rise = (
+                        edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
+                        if isinstance(edge.side, Stream)
+                        else 0.0
+                    )
+                    outflow = self._convective_outflow(edge, velocity, dt) + (rise + extrapolation)
+                    inflow = edge.leaves * outflow + (1 - edge.leaves) * inflow
+                edge.prescribed[:] = inflow
             edge.seen[:] = edge.induced
-            edge.induced += ahead
+            edge.induced += extrapolation
         self.steps, self.span = self.steps + 1, dt
         self._balance()
         self._refuse_gain(time)
@@ -332,15 +364,15 @@ class Border:
         """Refuse water that enters through sides and cannot leave, or the reverse."""
         if any(e.leaves or e.unbounded for e in self.edges):
             return
-        through = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
-        net = sum(float(p.sum(dtype=np.float64)) for p in through)
-        most = sum(float(np.abs(p).sum(dtype=np.float64)) for p in through)
-        if abs(net) > LOST * most:
-            driven = ", ".join(e.name for e in self.edges if e.side.passes)
-            way = "enters and cannot leave" if net > 0 else "leaves and none enters"
+        side_inflows = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
+        net = sum(float(p.sum(dtype=np.float64)) for p in side_inflows)
+        gross_flow = sum(float(np.abs(p).sum(dtype=np.float64)) for p in side_inflows)
+        if abs(net) > LOST * gross_flow:
+            side_names = ", ".join(e.name for e in self.edges if e.side.passes)
+            imbalance_text = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
-                f"at t = {time:.4g} s {100 * abs(net) / most:.3g} % of the water that passes the domain's sides "
-                f"({driven}) {way}; make another side an Outflow()."
+                f"at t = {time:.4g} s {100 * abs(net) / gross_flow:.3g} % of the water that passes the domain's sides "
+                f"({side_names}) {imbalance_text}; make another side an Outflow()."
             )
 
     def update_induced(self, velocity: np.ndarray, window: Window) -> float:
@@ -368,27 +400,27 @@ class Border:
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
 
     @staticmethod
-    def _carried(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
+    def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
         """Return the velocity on a side to which the water comes that moves out of the domain."""
         n = edge.normal(velocity)
-        at = edge.sign * n[edge.face][edge.inside]
+        side_velocity = edge.sign * n[edge.face][edge.inside]
         inner = edge.sign * n[edge.face + edge.sign][edge.inside]
-        speed = max(-float(at.mean(dtype=np.float64)), 0.0)
-        carried: np.ndarray = at - min(speed * dt, 1.0) * (at - inner)
-        return carried
+        speed = max(-float(side_velocity.mean(dtype=np.float64)), 0.0)
+        outflow: np.ndarray = side_velocity - min(speed * dt, 1.0) * (side_velocity - inner)
+        return outflow
 
     def _balance(self) -> None:
-        net, room = 0.0, 0.0
+        net, open_area = 0.0, 0.0
         free = any(e.leaves for e in self.edges)
         for edge in self.edges:
             if not isinstance(edge.side, Periodic):
                 net += float(edge.prescribed.sum(dtype=np.float64))
-                room += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
-        if room:
+                open_area += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
+        if open_area:
             for edge in self.edges:
-                share = edge.leaves if free else float(edge.unbounded)
-                if share:
-                    edge.prescribed -= share * net / room
+                fraction = edge.leaves if free else float(edge.unbounded)
+                if fraction:
+                    edge.prescribed -= fraction * net / open_area
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""

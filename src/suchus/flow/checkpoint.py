@@ -100,11 +100,11 @@ def arrays(content: bytes, path: Path) -> State:
 class Saver:
     """Saves a simulation now and then."""
 
-    def __init__(self, path: Path | None, every: float) -> None:
-        self._path, self._every, self._saved = path, every, monotonic()
+    def __init__(self, path: Path | None, interval: float) -> None:
+        self._path, self._interval, self._saved = path, interval, monotonic()
 
     def save(self, sim: Resumable, *, now: bool = False) -> None:
         """Save if a path was given and it is time, or ``now``."""
-        if self._path is not None and (now or monotonic() - self._saved >= self._every):
+        if self._path is not None and (now or monotonic() - self._saved >= self._interval):
             save(sim, self._path)
             self._saved = monotonic()

@@ -36,7 +36,7 @@ LEAP = 1.0
 where they change at once, may make: half of the distance at the greatest rate so far."""
 
 _HALVINGS = 40  # of a first step, until nothing goes farther than a cell
-_LOOK = 0.01  # share of a step over which positions are compared
+_COMPARISON_FRACTION = 0.01  # share of a step over which positions are compared
 
 
 class Watched(NamedTuple):
@@ -58,17 +58,17 @@ class Told(Protocol):
     def at(self, times: Sequence[float]) -> Watched:
         """Return what is told of some times [s]."""
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return what is wrong with a coordinate's rate, given and seen, and the remedy."""
 
-    def place(self, worst: int) -> str:
+    def place(self, index: int) -> str:
         """Return what a coordinate is called."""
 
 
-def _short(angle: np.ndarray) -> np.ndarray:
+def _wrap_angle(angle: np.ndarray) -> np.ndarray:
     """Return angles without whole turns, which move nothing [rad]."""
-    turned: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
-    return turned
+    wrapped_angle: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
+    return wrapped_angle
 
 
 class GivenMotion(NamedTuple):
@@ -90,23 +90,25 @@ class GivenMotion(NamedTuple):
         turns = (np.arange(places.shape[1]) >= axes).astype(int)
         return Watched(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates and the remedy."""
-        axes = 2 if given.size == 3 else 3
-        turning = worst >= axes
-        what, of = ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+        axes = 2 if declared_rate.size == 3 else 3
+        turning = index >= axes
+        rate_name, position_name = (
+            ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+        )
 
         def numbers(rate: np.ndarray) -> str:
             parts, unit = (rate[axes:], "rad/s") if turning else (rate[:axes], "m/s")
-            text = ", ".join(f"{part:.4g}" for part in parts)
+            text = ", ".join(f"{component:.4g}" for component in parts)
             return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 
         return (
-            f"the motion of {self.name} gives the {what} {numbers(given)}, and its {of} changes by {numbers(seen)}; "
-            f"give a Pose whose {what} is the rate of its {of}."
+            f"the motion of {self.name} gives the {rate_name} {numbers(declared_rate)}, and its {position_name} "
+            f"changes by {numbers(measured_rate)}; give a Pose whose {rate_name} is the rate of its {position_name}."
         )
 
-    def place(self, worst: int) -> str:  # noqa: ARG002 - a midline says which station it is
+    def place(self, index: int) -> str:  # noqa: ARG002 - a midline says which station it is
         """Return which body it is."""
         return self.name
 
@@ -125,34 +127,34 @@ class GivenMidline(NamedTuple):
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        first, *others = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
-        for time, other in zip(times[1:], others, strict=True):
-            if other.shape != first.shape:
+        reference, *later_states = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
+        for time, later_state in zip(times[1:], later_states, strict=True):
+            if later_state.shape != reference.shape:
                 raise InvalidDesign(
-                    f"the midline of {self.name} has {first.shape[1]} stations at t = {times[0]:.4g} s and "
-                    f"{other.shape[1]} at t = {time:.4g} s; give as many at every time."
+                    f"the midline of {self.name} has {reference.shape[1]} stations at t = {times[0]:.4g} s and "
+                    f"{later_state.shape[1]} at t = {time:.4g} s; give as many at every time."
                 )
-        every = np.array([first, *others])  # x, y, heading, half-width, and their rates
-        places, rates = every[:, :4] - first[:4], every[:, 4:]
-        places[:, 2] = _short(places[:, 2])
+        samples = np.array([reference, *later_states])  # x, y, heading, half-width, and their rates
+        places, rates = samples[:, :4] - reference[:4], samples[:, 4:]
+        places[:, 2] = _wrap_angle(places[:, 2])
         arms = np.ones(places.shape[1:])
-        arms[2] = first[3]
+        arms[2] = reference[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return Watched(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""
-        row, station = divmod(worst, given.size // 4)
-        what, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
+        row, station = divmod(index, declared_rate.size // 4)
+        quantity, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
         return (
-            f"the midline of {self.name} gives the {what}_rate {given[worst]:.4g} {unit} at station {station}, and its "
-            f"{what} changes by {seen[worst]:.4g} {unit}; give a MidlineState whose {what}_rate is the rate of its "
-            f"{what}."
+            f"the midline of {self.name} gives the {quantity}_rate {declared_rate[index]:.4g} {unit} at station "
+            f"{station}, and its {quantity} changes by {measured_rate[index]:.4g} {unit}; give a MidlineState whose "
+            f"{quantity}_rate is the rate of its {quantity}."
         )
 
-    def place(self, worst: int) -> str:
+    def place(self, index: int) -> str:
         """Return which station it is."""
-        return f"station {worst % self.spine(0.0).x.size} of the midline of {self.name}"
+        return f"station {index % self.spine(0.0).x.size} of the midline of {self.name}"
 
 
 class GivenLinks(NamedTuple):
@@ -168,31 +170,31 @@ class GivenLinks(NamedTuple):
     def at(self, times: Sequence[float]) -> Watched:
         """Return positions of the links and their rotation vectors from the first time, and their rates."""
         states = [self.motion(time) for time in times]
-        first, count = states[0], len(self.reach)
-        turns = [rotation.vectors(one.matrix @ np.swapaxes(first.matrix, 1, 2)) for one in states]
+        reference, count = states[0], len(self.reach)
+        turns = [rotation.vectors(state.matrix @ np.swapaxes(reference.matrix, 1, 2)) for state in states]
         places = np.array(
-            [[*(s.position - first.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
+            [[*(s.position - reference.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
         )
         rates = np.array([[*s.velocity.ravel(), *s.spin.ravel()] for s in states])
         arms = np.concatenate([np.ones(3 * count), np.repeat(self.reach, 3)])
         return Watched(places, rates, arms, np.repeat([0, 1], 3 * count))
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst link and the remedy."""
-        turning = worst >= 3 * len(self.reach)
-        what, of, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
+        turning = index >= 3 * len(self.reach)
+        rate_name, position_name, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
         return (
-            f"the motion of {self.name} gives link {self._link(worst)} the {what} {given[worst]:.4g} {unit} along "
-            f"{'xyz'[worst % 3]}, and its {of} changes by {seen[worst]:.4g} {unit}; give LinkStates whose {what} is "
-            f"the rate of the {of}."
+            f"the motion of {self.name} gives link {self._link(index)} the {rate_name} {declared_rate[index]:.4g} "
+            f"{unit} along {'xyz'[index % 3]}, and its {position_name} changes by {measured_rate[index]:.4g} {unit}; "
+            f"give LinkStates whose {rate_name} is the rate of the {position_name}."
         )
 
-    def place(self, worst: int) -> str:
+    def place(self, index: int) -> str:
         """Return which link it is."""
-        return f"link {self._link(worst)} of {self.name}"
+        return f"link {self._link(index)} of {self.name}"
 
-    def _link(self, worst: int) -> int:
-        return worst % (3 * len(self.reach)) // 3
+    def _link(self, index: int) -> int:
+        return index % (3 * len(self.reach)) // 3
 
 
 @dataclass(slots=True)
@@ -225,8 +227,8 @@ class Consistency:
         """
         step = dt
         for _ in range(_HALVINGS):
-            seen = self.told.at((time, *(time + part * step for part in (1 / 3, 1 / 2, 1))))
-            if np.abs(seen.places * seen.arms).max() <= LEAP * self.cell:
+            series = self.told.at((time, *(time + fraction * step for fraction in (1 / 3, 1 / 2, 1))))
+            if np.abs(series.places * series.arms).max() <= LEAP * self.cell:
                 return step
             step /= 2
         return dt
@@ -251,45 +253,53 @@ class Consistency:
         if self.steps % self.every == 0:
             self._compare(time, dt)
         self.steps += 1
-        seen = self.told.at((time, time + dt))
-        way, ahead = seen.places[1] * seen.arms, 0.5 * dt * seen.rates * seen.arms
-        self.slack = max(self.slack, float(np.abs(ahead).max()))
-        off = way - ahead.sum(axis=0)
-        self.drift, self.path = self.drift + off, self.path + np.abs(way)
-        room = LEAP * self.cell + self.slack
-        wrong = (np.abs(off) > room) | (np.abs(self.drift) > np.maximum(room, SHARE * self.path))
-        if not wrong.any():
+        series = self.told.at((time, time + dt))
+        displacement, rate_displacement = series.places[1] * series.arms, 0.5 * dt * series.rates * series.arms
+        self.slack = max(self.slack, float(np.abs(rate_displacement).max()))
+        deviation = displacement - rate_displacement.sum(axis=0)
+        self.drift, self.path = self.drift + deviation, self.path + np.abs(displacement)
+        tolerance = LEAP * self.cell + self.slack
+        is_inconsistent = (np.abs(deviation) > tolerance) | (
+            np.abs(self.drift) > np.maximum(tolerance, SHARE * self.path)
+        )
+        if not is_inconsistent.any():
             return
-        worst = int(np.where(wrong, np.abs(self.drift), 0.0).argmax())
+        worst_index = int(np.where(is_inconsistent, np.abs(self.drift), 0.0).argmax())
         raise InvalidDesign(
-            f"at t = {time + dt:.4g} s {self.told.place(worst)} is {abs(self.drift[worst]):.3g} m away from where its "
-            f"rates have led it ({abs(off[worst]):.3g} m in the last step of {dt:.3g} s; a cell is {self.cell:.3g} m): "
-            f"a body cannot leap. Give places without jumps and rates that are theirs, or, if they are right and only "
-            f"fast, a smaller step."
+            f"at t = {time + dt:.4g} s {self.told.place(worst_index)} is {abs(self.drift[worst_index]):.3g} m away "
+            f"from where its rates have led it ({abs(deviation[worst_index]):.3g} m in the last step of {dt:.3g} s; a "
+            f"cell is {self.cell:.3g} m): a body cannot leap. Give places without jumps and rates that are theirs, or, "
+            f"if they are right and only fast, a smaller step."
         )
 
     def _compare(self, time: float, dt: float) -> None:
-        span = _LOOK * dt
-        found = self.told.at([time + k * span for k in range(3)])
-        given, seen = found.rates[0], (4 * found.places[1] - found.places[2]) / (2 * span)
-        size, moved, apart = (np.abs(rate * found.arms) for rate in (given, seen, given - seen))
-        sizes = np.array([np.maximum(size, moved)[found.kinds == k].max() for k in range(found.kinds.max() + 1)])
+        span = _COMPARISON_FRACTION * dt
+        series = self.told.at([time + k * span for k in range(3)])
+        declared_rate, measured_rate = series.rates[0], (4 * series.places[1] - series.places[2]) / (2 * span)
+        declared_speed, measured_speed, rate_error = (
+            np.abs(rate * series.arms) for rate in (declared_rate, measured_rate, declared_rate - measured_rate)
+        )
+        sizes = np.array(
+            [np.maximum(declared_speed, measured_speed)[series.kinds == k].max() for k in range(series.kinds.max() + 1)]
+        )
         self.top = max(self.top, float(sizes.max()))
-        least = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
-        excess = apart / np.maximum(SHARE * sizes, least)[found.kinds]
+        min_speed = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
+        excess = rate_error / np.maximum(SHARE * sizes, min_speed)[series.kinds]
         if not (excess > 1).any():
             self.strikes = 0
             return
         self.strikes += 1
         if self.strikes >= PATIENCE:
-            raise InvalidDesign(f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), given, seen)}")
+            raise InvalidDesign(
+                f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), declared_rate, measured_rate)}"
+            )
 
 
-def _turn(now: Pose, then: Pose) -> np.ndarray:
+def _turn(start: Pose, end: Pose) -> np.ndarray:
     """Return by how much a pose is turned, in space the rotation vector from another one to it [rad]."""
-    if len(now.position) == 2:
-        return _short(np.array([then.angle - now.angle]))
-    if now.pitch == then.pitch == 0 and now.roll == then.roll == 0:
-        return _short(np.array([0.0, 0.0, then.angle - now.angle]))
-    one, other = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (now, then))
-    return rotation.to_vector(rotation.multiply(other, one * [1, -1, -1, -1]), np.zeros(3))
+    if len(start.position) == 2:
+        return _wrap_angle(np.array([end.angle - start.angle]))
+    if start.pitch == end.pitch == 0 and start.roll == end.roll == 0:
+        return _wrap_angle(np.array([0.0, 0.0, end.angle - start.angle]))
+    start_quaternion, end_quaternion = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (start, end))
+    return rotation.to_vector(rotation.multiply(end_quaternion, start_quaternion * [1, -1, -1, -1]), np.zeros(3))

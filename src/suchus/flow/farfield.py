@@ -77,9 +77,9 @@ def _spread_row(block, u, v, j, arm, b, window):  # type: ignore[no-untyped-def]
     for i in range(window[2], window[3]):
         spread = np.float64((u[j, i + 1] - u[j, i]) + (v[j + 1, i] - v[j, i]))
         k = (i - PAD) // SIDE
-        across = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
+        arm_x = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
         block[0, b, k] += spread
-        block[2, b, k] += spread * across
+        block[2, b, k] += spread * arm_x
         block[3, b, k] += spread * arm
 
 
@@ -101,27 +101,27 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
             j, arm = c + PAD, u.dtype.type(c - middle)
             _spin_row(total, moment, u, v, j, arm)
         for k in range(block.shape[2]):
-            vortex, up, along = 0.0, 0.0, 0.0
+            vortex, moment_y, moment_x = 0.0, 0.0, 0.0
             for i in range(SIDE * k, min(SIDE * k + SIDE, nx)):
                 vortex += total[i]
-                up += moment[i]
-                along += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
-            block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, up, -along
+                moment_y += moment[i]
+                moment_x += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
+            block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, moment_y, -moment_x
         for j in range(max(SIDE * b + PAD, window[0]), min(SIDE * b + SIDE + PAD, window[1])):
             _spread_row(block, u, v, j, j - PAD + 0.5 - middle, b, window)
 
 
 @part
-def _induced_at(x, y, place, strength, least):  # type: ignore[no-untyped-def]
+def _induced_at(x, y, block_centres, strength, min_square):  # type: ignore[no-untyped-def]
     """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
     u, v = 0.0, 0.0
-    cx, cy = place[0], place[1]
+    cx, cy = block_centres[0], block_centres[1]
     source, vortex, m_real, m_imag = strength[0], strength[1], strength[2], strength[3]
     for k in range(cx.size):
         dx, dy = x - cx[k], y - cy[k]
         square = dx * dx + dy * dy
-        near = 1.0 / (square if square > least else least)
-        a, b = dx * near, -dy * near
+        inverse_square = 1.0 / (square if square > min_square else min_square)
+        a, b = dx * inverse_square, -dy * inverse_square
         c, d = a * a - b * b, 2.0 * a * b
         u += source[k] * a + vortex[k] * b + m_real[k] * c - m_imag[k] * d
         v -= source[k] * b - vortex[k] * a + m_real[k] * d + m_imag[k] * c
@@ -129,21 +129,21 @@ def _induced_at(x, y, place, strength, least):  # type: ignore[no-untyped-def]
 
 
 @threaded
-def induce(points, place, strength, out):  # type: ignore[no-untyped-def]
+def induce(points, block_centres, strength, velocity):  # type: ignore[no-untyped-def]
     """Write the velocity at ``points`` (2, point) to ``out``; all lengths in cells."""
-    least = 0.25 * SIDE**2
+    min_square = 0.25 * SIDE**2
     for t in prange(points.shape[1]):
-        out[0, t], out[1, t] = _induced_at(points[0, t], points[1, t], place, strength, least)
+        velocity[0, t], velocity[1, t] = _induced_at(points[0, t], points[1, t], block_centres, strength, min_square)
 
 
 def cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return which four knots a cubic through them takes at each ``x``, and their weights, both of shape (4, x)."""
     step = knots[1] - knots[0]
-    first = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
-    t = (x - knots[first]) / step
+    first_knot = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
+    t = (x - knots[first_knot]) / step
     nodes = np.arange(4)
     weights = [np.prod([(t - m) / (k - m) for m in nodes if m != k], axis=0) for k in nodes]
-    return first + nodes[:, None], np.array(weights)
+    return first_knot + nodes[:, None], np.array(weights)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,11 +180,11 @@ class OpenWater:
         x, y = np.meshgrid(*(SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows)))
         self.middles = x, y
         points, self.between = [], []
-        for axis, at in ((0, 0), (0, nx), (1, 0), (1, ny)):
-            along = self.cells[1 - axis]
-            knots = np.linspace(0.5, along - 0.5, max(-(-along // SIDE), 3) + 1)
-            self.between.append(cubic(knots, np.arange(along) + 0.5))
-            pair = np.full(knots.size, float(at)), knots
+        for axis, coordinate in ((0, 0), (0, nx), (1, 0), (1, ny)):
+            cell_count = self.cells[1 - axis]
+            knots = np.linspace(0.5, cell_count - 0.5, max(-(-cell_count // SIDE), 3) + 1)
+            self.between.append(cubic(knots, np.arange(cell_count) + 0.5))
+            pair = np.full(knots.size, float(coordinate)), knots
             points.append(np.array(pair if axis == 0 else pair[::-1]))
         self.points = np.concatenate(points, axis=1)
 
@@ -210,47 +210,53 @@ class OpenWater:
             strength, sources = self._fade(strength, fading, window)
             extra.append(sources)
         size = np.abs(strength).max(axis=0)
-        kept = size > FAINT * size.max()
-        place = np.concatenate([np.array([x[kept], y[kept]]), *(e[:2] for e in extra)], axis=1)
-        values = np.concatenate([strength[:, kept], *(e[2:] for e in extra)], axis=1)
-        out = np.zeros(self.points.shape)
-        induce(self.points, place, values, out)
-        return self._on_faces(out)
+        is_strong = size > FAINT * size.max()
+        positions = np.concatenate([np.array([x[is_strong], y[is_strong]]), *(e[:2] for e in extra)], axis=1)
+        values = np.concatenate([strength[:, is_strong], *(e[2:] for e in extra)], axis=1)
+        induced_velocity = np.zeros(self.points.shape)
+        induce(self.points, positions, values, induced_velocity)
+        return self._on_faces(induced_velocity)
 
-    def _on_faces(self, out: np.ndarray) -> list[np.ndarray]:
+    def _on_faces(self, induced_velocity: np.ndarray) -> list[np.ndarray]:
         sides, start = [], 0
         for (index, weight), axis, sign in zip(self.between, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
             end = start + int(index[-1, -1]) + 1
-            sides.append(sign * (weight * out[axis, start:end][index]).sum(axis=0))
+            sides.append(sign * (weight * induced_velocity[axis, start:end][index]).sum(axis=0))
             start = end
         return sides
 
     def _fade(self, strength: np.ndarray, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
         """Return faded strengths, and the sources in place of what they lack: x, y and strength, shape (6, source)."""
         axis, cells = fading.axis, self.cells[fading.axis]
-        along, across = self.middles[axis], self.middles[1 - axis]
-        middle = along[0] if axis == 0 else along[:, 0]
-        first, last = (window[2], window[3]) if axis == 0 else (window[0], window[1])
-        room = (first if fading.low else cells + 2 * PAD - last) - PAD if last > first else cells
-        length = max(min(FADE * cells, room), SIDE)
+        axial, lateral = self.middles[axis], self.middles[1 - axis]
+        middle = axial[0] if axis == 0 else axial[:, 0]
+        body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
+        clearance = (
+            (body_start if fading.low else cells + 2 * PAD - body_stop) - PAD if body_stop > body_start else cells
+        )
+        length = max(min(FADE * cells, clearance), SIDE)
 
-        def weight(place: np.ndarray) -> np.ndarray:
-            share = np.minimum(np.maximum((place if fading.low else cells - place) / length, 0.0), 1.0)  # clip is slow
-            out: np.ndarray = 1 - fading.share * (1 - share**2 * (3 - 2 * share))
-            return out
+        def weight(position: np.ndarray) -> np.ndarray:
+            fraction = np.minimum(
+                np.maximum((position if fading.low else cells - position) / length, 0.0), 1.0
+            )  # clip is slow
+            weights: np.ndarray = 1 - fading.share * (1 - fraction**2 * (3 - 2 * fraction))
+            return weights
 
-        lost = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
+        fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
         vortex, moment = strength[1], strength[2] if axis == 0 else -strength[3]
-        size = np.abs(vortex) * (lost if axis == 0 else lost[:, None])
-        centre = float((size * across).sum() / size.sum()) if size.sum() > 0 else 0.0
-        defect = -(vortex * (across - centre) + moment).sum(axis=axis) / SIDE
+        size = np.abs(vortex) * (fading_fraction if axis == 0 else fading_fraction[:, None])
+        centre = float((size * lateral).sum() / size.sum()) if size.sum() > 0 else 0.0
+        defect = -(vortex * (lateral - centre) + moment).sum(axis=axis) / SIDE
         turn = 1 if (axis == 0) != fading.low else -1
-        source = turn * lost * defect
-        here = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
-        none = np.zeros(middle.size)
+        source = turn * fading_fraction * defect
+        positions = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
+        zeros = np.zeros(middle.size)
         sheds = source != 0
         keep = weight(middle)
-        return strength * (keep if axis == 0 else keep[:, None]), np.array([*here, source, none, none, none])[:, sheds]
+        return strength * (keep if axis == 0 else keep[:, None]), np.array([*positions, source, zeros, zeros, zeros])[
+            :, sheds
+        ]
 
 
 @dataclass(slots=True)
@@ -281,7 +287,7 @@ class Face:
     def middles(self) -> np.ndarray:
         """Middles of the panels, shape (3, panel) [cells]."""
         panels = zip(self.spans, self.starts, self.sizes, strict=True)
-        lines = [first + starts + 0.5 * sizes for (first, _), starts, sizes in panels]
+        lines = [start + starts + 0.5 * sizes for (start, _), starts, sizes in panels]
         lines[self.axis] = np.array([float(self.spans[self.axis][0 if self.low else 1])])
         return points_of(lines)
 
@@ -292,28 +298,31 @@ class Face:
             velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
             leaving: share of the wake's flux that is left out [-].
         """
-        at = PAD + self.spans[self.axis][0 if self.low else 1]
-        parts, rises = [np.empty(0)] * 3, {}
+        face_index = PAD + self.spans[self.axis][0 if self.low else 1]
+        components, rises = [np.empty(0)] * 3, {}
         for d in range(3):
-            planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[at - 1 : at + 1]
-            both = planes[:, *(self._stretch(e, d) for e in self.along)].astype(np.float64)
+            planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[face_index - 1 : face_index + 1]
+            face_planes = planes[:, *(self._padded_span(e, d) for e in self.along)].astype(np.float64)
             if d == self.axis:
-                parts[d] = both[1]
+                components[d] = face_planes[1]
                 continue
             n = 1 + self.along.index(d)  # of cells from their two faces
-            both = 0.5 * (np.delete(both, 0, axis=n) + np.delete(both, -1, axis=n))
-            parts[d], rises[d] = 0.5 * (both[0] + both[1]), both[1] - both[0]
+            face_planes = 0.5 * (np.delete(face_planes, 0, axis=n) + np.delete(face_planes, -1, axis=n))
+            components[d], rises[d] = 0.5 * (face_planes[0] + face_planes[1]), face_planes[1] - face_planes[0]
         if leaving:
-            parts[self.axis] = parts[self.axis] - leaving * self._flux(parts[self.axis], rises)
-        first, second = (self.starts[d] for d in self.along)
-        sums = [np.add.reduceat(np.add.reduceat(part, first, axis=0), second, axis=1) for part in parts]
+            components[self.axis] = components[self.axis] - leaving * self._flux(components[self.axis], rises)
+        first_starts, second_starts = (self.starts[d] for d in self.along)
+        sums = [
+            np.add.reduceat(np.add.reduceat(component, first_starts, axis=0), second_starts, axis=1)
+            for component in components
+        ]
         means: np.ndarray = np.reshape(sums / self.cells, (3, -1))
         return means
 
-    def _stretch(self, axis: int, component: int) -> slice:
+    def _padded_span(self, axis: int, component: int) -> slice:
         """Return the padded cells of the surface along an axis; of the velocity along it their faces."""
-        first, last = self.spans[axis]
-        return slice(PAD + first, PAD + last + (axis == component))
+        start, stop = self.spans[axis]
+        return slice(PAD + start, PAD + stop + (axis == component))
 
     def _flux(self, normal: np.ndarray, rises: dict[int, np.ndarray]) -> np.ndarray:
         """Return the velocity along the axis whose integral is the flux of the wake.
@@ -332,7 +341,7 @@ class Face:
 
 def points_of(lines: Sequence[np.ndarray]) -> np.ndarray:
     """Return the points of a lattice from its coordinates along x, y and z, the first changing fastest."""
-    return np.stack([part.ravel() for part in np.meshgrid(*reversed(lines), indexing="ij")[::-1]])
+    return np.stack([coordinate.ravel() for coordinate in np.meshgrid(*reversed(lines), indexing="ij")[::-1]])
 
 
 @dataclass(slots=True)
@@ -352,20 +361,27 @@ class FarField:
 
     def __post_init__(self) -> None:
         cells, ends = self.grid.cells, list(zip(self.mirrors[::2], self.mirrors[1::2], strict=True))
-        whole = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
-        panel = max(LEAST, round(whole ** (1 / 3) / PANELS))
+        cell_count = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
+        panel = max(LEAST, round(cell_count ** (1 / 3) / PANELS))
         knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
-        self.between = [cubic(at, np.arange(n) + 0.5) for at, n in zip(knots, cells, strict=True)]
+        self.between = [cubic(axis_knots, np.arange(n) + 0.5) for axis_knots, n in zip(knots, cells, strict=True)]
         spans = []
-        for n, (low, high) in zip(cells, ends, strict=True):
-            inside = min(panel, n // (2 if low or high else 4))  # a flat domain is thinner than that
-            spans.append((inside * (not low), n - inside * (not high)))
-        centre = [0.0 if low else float(n) if high else n / 2 for n, (low, high) in zip(cells, ends, strict=True)]
-        cuts = [np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans]
-        starts, sizes = tuple(cut[:-1] for cut in cuts), tuple(np.diff(cut) for cut in cuts)
-        along = ((2, 1), (2, 0), (1, 0))
+        for n, (has_low_mirror, has_high_mirror) in zip(cells, ends, strict=True):
+            margin = min(
+                panel, n // (2 if has_low_mirror or has_high_mirror else 4)
+            )  # a flat domain is thinner than that
+            spans.append((margin * (not has_low_mirror), n - margin * (not has_high_mirror)))
+        centre = [
+            0.0 if has_low_mirror else float(n) if has_high_mirror else n / 2
+            for n, (has_low_mirror, has_high_mirror) in zip(cells, ends, strict=True)
+        ]
+        edges_by_axis = [
+            np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans
+        ]
+        starts, sizes = tuple(edges[:-1] for edges in edges_by_axis), tuple(np.diff(edges) for edges in edges_by_axis)
+        tangential_axes = ((2, 1), (2, 0), (1, 0))
         self.faces = [
-            Face(k // 2, k % 2 == 0, along[k // 2], tuple(spans), tuple(centre), starts, sizes)
+            Face(k // 2, k % 2 == 0, tangential_axes[k // 2], tuple(spans), tuple(centre), starts, sizes)
             for k, mirror in enumerate(self.mirrors)
             if not mirror
         ]
@@ -382,21 +398,27 @@ class FarField:
             induced = np.zeros((points.shape[1], 3, face.cells.size))
             for signs, shifts in self._images():  # an image is seen as its original from the image of the point
                 r = (signs[:, None] * (points - shifts[:, None]))[:, :, None] - face.middles[:, None, :]
-                share = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
+                weight = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
                 past = np.tensordot(normal, r, 1)
                 for j in range(3):
-                    induced[:, j] += share * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
+                    induced[:, j] += weight * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
             parts.append(induced)
-        both = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
-        return (both if side.low else -both).astype(np.float32)
+        matrix = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
+        return (matrix if side.low else -matrix).astype(np.float32)
 
     def _images(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Return signs and shifts of the images of the domain, itself among them: a point is seen from its image."""
-        every = []
-        for n, low, high in zip(self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True):
+        axis_images = []
+        for n, has_low_mirror, has_high_mirror in zip(
+            self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True
+        ):
             facing = [(sign, 2.0 * k * n) for k in range(-IMAGES, IMAGES + 1) for sign in (1.0, -1.0)]
-            every.append(facing if low and high else [(1.0, 0.0), (-1.0, 2.0 * n * high)][: 1 + (low or high)])
-        return [(np.array([s for s, _ in image]), np.array([b for _, b in image])) for image in product(*every)]
+            axis_images.append(
+                facing
+                if has_low_mirror and has_high_mirror
+                else [(1.0, 0.0), (-1.0, 2.0 * n * has_high_mirror)][: 1 + (has_low_mirror or has_high_mirror)]
+            )
+        return [(np.array([s for s, _ in image]), np.array([b for _, b in image])) for image in product(*axis_images)]
 
     def inward(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> list[np.ndarray]:  # noqa: ARG002
         """Return the velocity into the domain that the flow induces on the faces of each side, 0 on mirrors [m/s].
@@ -409,8 +431,11 @@ class FarField:
         The order is that of ``sides.NAMES``, in each array the last axis first.
         """
         leaving = {(fading.axis, fading.low): fading.share for fading in fadings}
-        seen = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
-        strength, cells = np.concatenate(seen, axis=1), np.concatenate([face.cells.ravel() for face in self.faces])
+        panel_velocities = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
+        strength, cells = (
+            np.concatenate(panel_velocities, axis=1),
+            np.concatenate([face.cells.ravel() for face in self.faces]),
+        )
         for d in range(3):  # the far stream, or any other that is the same everywhere: it adds nothing
             if not any(self.mirrors[2 * d : 2 * d + 2]):
                 strength[d] -= np.average(strength[d], weights=cells)
@@ -418,8 +443,8 @@ class FarField:
         cells_along = self.grid.cells[::-1]
         sides = [np.zeros([n for d, n in enumerate(cells_along) if d != 2 - k // 2]) for k in range(6)]
         for face, matrix in zip(self.faces, self.matrices, strict=True):
-            (a, share_a), (b, share_b) = (self.between[d] for d in face.along)
+            (a, weight_a), (b, weight_b) = (self.between[d] for d in face.along)
             knots = np.einsum("ps,s->p", matrix, flat).astype(np.float64).reshape(int(a[-1, -1]) + 1, -1)
-            lines = (share_a[:, :, None] * knots[a]).sum(axis=0)
-            sides[2 * face.axis + (not face.low)] = (share_b * lines[:, b]).sum(axis=1)
+            lines = (weight_a[:, :, None] * knots[a]).sum(axis=0)
+            sides[2 * face.axis + (not face.low)] = (weight_b * lines[:, b]).sum(axis=1)
         return sides

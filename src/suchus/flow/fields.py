@@ -45,15 +45,15 @@ class Fields:
     @property
     def velocity(self) -> tuple[np.ndarray, ...]:
         """Velocity relative to the grid at the cell centres, along each axis, shape (ny, nx) or (nz, ny, nx) [m/s]."""
-        return tuple(0.5 * (low + high) for low, high in self._faces(self.water.velocity))
+        return tuple(0.5 * (lower_faces + upper_faces) for lower_faces, upper_faces in self._faces(self.water.velocity))
 
     @staticmethod
     def _faces(a: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces."""
         axes, cells = len(a), slice(PAD, -PAD)
-        for d, part in enumerate(a):
-            behind = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
-            yield part[(cells,) * axes], part[behind]
+        for d, component in enumerate(a):
+            upper_slices = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
+            yield component[(cells,) * axes], component[upper_slices]
 
     @property
     def pressure(self) -> np.ndarray:
@@ -100,17 +100,17 @@ class Fields:
         values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.water.grid.cell)
         return values
 
-    def _plane_only(self, what: str, instead: str) -> None:
+    def _plane_only(self, quantity: str, instead: str) -> None:
         if self.water.axes == 3:
-            raise InvalidDesign(f"{what} is for plane grids, and this one has three axes; take {instead}.")
+            raise InvalidDesign(f"{quantity} is for plane grids, and this one has three axes; take {instead}.")
 
     @property
     def fluid_share(self) -> np.ndarray:
         """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
         faces = list(self._faces(self.water.mu0))
         total: np.ndarray = faces[0][0] + faces[0][1]
-        for low, high in faces[1:]:
-            total = total + low + high
+        for lower_faces, upper_faces in faces[1:]:
+            total = total + lower_faces + upper_faces
         return 0.5 / self.water.axes * total
 
 

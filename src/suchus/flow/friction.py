@@ -84,12 +84,12 @@ def along_stations(
         raise InvalidDesign(
             f"viscosity is {viscosity:.4g} m^2/s and density {density:.4g} kg/m^3; both must be above 0."
         )
-    wide, fast, tilt = (0.5 * (a[1:] + a[:-1]) for a in (girth, speed, slope))
+    mean_girth, mean_speed, mean_slope = (0.5 * (a[1:] + a[:-1]) for a in (girth, speed, slope))
     forces = []
     for total, (of_girth, of_speed) in ((_laminar_total, _LAMINAR), (_turbulent_total, _TURBULENT)):
-        end, start = _plate(arc, wide, fast, of_girth, of_speed)
-        rubbed = total(fast * end / viscosity) - total(fast * start / viscosity)
-        forces.append(float((0.5 * density * fast * viscosity * wide * tilt * rubbed).sum()))
+        end, start = _plate(arc, mean_girth, mean_speed, of_girth, of_speed)
+        rubbed = total(mean_speed * end / viscosity) - total(mean_speed * start / viscosity)
+        forces.append(float((0.5 * density * mean_speed * viscosity * mean_girth * mean_slope * rubbed).sum()))
     return FrictionBand(*forces)
 
 
@@ -98,12 +98,15 @@ _LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)
 
 
 def _plate(
-    arc: np.ndarray, wide: np.ndarray, fast: np.ndarray, of_girth: float, of_speed: float
+    arc: np.ndarray, mean_girth: np.ndarray, mean_speed: np.ndarray, of_girth: float, of_speed: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m]."""
-    own, ds = (wide / max(wide.max(), 1e-300)) ** of_girth * (fast / fast.max()) ** of_speed, np.diff(arc)
-    before = own[0] * arc[0] + np.concatenate([[0.0], np.cumsum(own * ds)[:-1]])
-    start = np.divide(before, own, out=np.zeros_like(own), where=own > 0)
+    growth, ds = (
+        (mean_girth / max(mean_girth.max(), 1e-300)) ** of_girth * (mean_speed / mean_speed.max()) ** of_speed,
+        np.diff(arc),
+    )
+    accumulated_growth = growth[0] * arc[0] + np.concatenate([[0.0], np.cumsum(growth * ds)[:-1]])
+    start = np.divide(accumulated_growth, growth, out=np.zeros_like(growth), where=growth > 0)
     return start + ds, start
 
 
@@ -118,8 +121,8 @@ def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
 
-    above = np.maximum(reynolds, SLOWEST)
-    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(above)
+    turbulent_reynolds = np.maximum(reynolds, SLOWEST)
+    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(turbulent_reynolds)
 
 
 def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:

@@ -41,8 +41,8 @@ def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
 
     Of a long channel up to ``LONGEST`` are left, rather than that it becomes wider.
     """
-    halvings, short = 0, min(cells)
-    while ceil(max(cells) / 2**halvings) > (COARSEST if short > 4 * 2**halvings else LONGEST):
+    halvings, min_side = 0, min(cells)
+    while ceil(max(cells) / 2**halvings) > (COARSEST if min_side > 4 * 2**halvings else LONGEST):
         halvings += 1
     step = 2**halvings
     return tuple(step * max(4, ceil(n / step)) for n in cells)
@@ -68,9 +68,9 @@ def check_kinds(value: object) -> None:
     Raises:
         InvalidDesign: naming all of them.
     """
-    wrong = [f"{field} {text}" for field, text in misfits(value)]
-    if wrong:
-        raise InvalidDesign(f"{'; '.join(wrong)}.")
+    problems = [f"{field} {text}" for field, text in misfits(value)]
+    if problems:
+        raise InvalidDesign(f"{'; '.join(problems)}.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,8 +102,8 @@ class Grid:
             raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
         if min(self.cells) < 8:
             raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.axes)} are needed.")
-        last = _coarsest(self.cells)
-        if max(last) > (LONGEST if min(last) <= NARROW else COARSEST):
+        coarsest = _coarsest(self.cells)
+        if max(coarsest) > (LONGEST if min(coarsest) <= NARROW else COARSEST):
             raise InvalidDesign(
                 f"a grid of {size} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
                 f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."
@@ -131,29 +131,30 @@ class Grid:
                 sides that are held.
         """
         pairs = (x, y) if z is None else (x, y, z)
-        what, count = ("rectangle", "two") if z is None else ("box", "three")
+        shape_name, count = ("rectangle", "two") if z is None else ("box", "three")
         if not _are_pairs((*pairs, (0.0, cell))):
             raise InvalidDesign(
-                f"the {what} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; {count} "
-                "pairs of finite numbers and one more are needed."
+                f"the {shape_name} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; "
+                f"{count} pairs of finite numbers and one more are needed."
             )
         lengths = [end - start for start, end in pairs]
         if cell > 0 and max(lengths) / MOST > cell:
             raise InvalidDesign(f"cells of {cell} m make a side of {max(lengths) / cell:.3g}; {MOST} are allowed.")
         if not (cell > 0 and min(lengths) > 0):
             raise InvalidDesign(
-                f"the {what} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a positive cell."
+                f"the {shape_name} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a "
+                f"positive cell."
             )
         cells = _fitting(tuple(max(8, ceil(side / cell - HELD)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
-            low, high = (False, False) if sides is None else sides.held(len(pairs))[d]
-            if low and high and abs(n * cell - side) > HELD * cell:
+            is_low_held, is_high_held = (False, False) if sides is None else sides.held(len(pairs))[d]
+            if is_low_held and is_high_held and abs(n * cell - side) > HELD * cell:
                 raise InvalidDesign(
                     f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "
                     f"multigrid needs, are {n * cell:.6g} m; take cells of {side / n:.12g} m."
                 )
-            origin.append(start - (n * cell - side) * (0.0 if low else 1.0 if high else 0.5))
+            origin.append(start - (n * cell - side) * (0.0 if is_low_held else 1.0 if is_high_held else 0.5))
         return cls(cells=cells, cell=cell, origin=tuple(origin))  # type: ignore[arg-type]
 
     def patch(
@@ -183,29 +184,29 @@ class Grid:
             )
         if ratio not in RATIOS or not isinstance(ratio, int):
             raise InvalidDesign(f"the ratio is {show(ratio)}; give {RATIOS[0]}, {RATIOS[1]} or {RATIOS[2]}.")
-        first, counts = [], []
-        for pair, low, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
-            a, b = ((place - low) / self.cell for place in pair)
+        first_cells, counts = [], []
+        for pair, start, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
+            a, b = ((place - start) / self.cell for place in pair)
             if not -HELD <= a < b <= n + HELD:
                 raise InvalidDesign(
-                    f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from {low:.6g} "
-                    f"to {low + n * self.cell:.6g} m; give rising places in it."
+                    f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from "
+                    f"{start:.6g} to {start + n * self.cell:.6g} m; give rising places in it."
                 )
-            first.append(floor(a + HELD))
-            counts.append(ceil(b - HELD) - first[-1])
+            first_cells.append(floor(a + HELD))
+            counts.append(ceil(b - HELD) - first_cells[-1])
         fine = _fitting(tuple(ratio * max(n, ceil(8 / ratio)) for n in counts))
-        wide = [ceil(n / ratio) for n in fine]
-        if any(a > b for a, b in zip(wide, self.cells, strict=True)):
+        coarse_cells = [ceil(n / ratio) for n in fine]
+        if any(a > b for a, b in zip(coarse_cells, self.cells, strict=True)):
             raise InvalidDesign(
-                f"a patch of {_times(tuple(ratio * n for n in wide))} cells, as multigrid needs, is larger than the "
-                f"grid around it; take a smaller patch or a larger grid."
+                f"a patch of {_times(tuple(ratio * n for n in coarse_cells))} cells, as multigrid needs, is larger "
+                f"than the grid around it; take a smaller patch or a larger grid."
             )
         corner = [
-            min(max(a - (n - asked) // 2, 0), most - n)
-            for a, asked, n, most in zip(first, counts, wide, self.cells, strict=True)
+            min(max(a - (n - requested_cells) // 2, 0), max_cells - n)
+            for a, requested_cells, n, max_cells in zip(first_cells, counts, coarse_cells, self.cells, strict=True)
         ]
-        origin = tuple(low + self.cell * k for low, k in zip(self.origin, corner, strict=True))
-        return Grid(cells=tuple(ratio * n for n in wide), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
+        origin = tuple(start + self.cell * k for start, k in zip(self.origin, corner, strict=True))
+        return Grid(cells=tuple(ratio * n for n in coarse_cells), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
 
     @property
     def axes(self) -> int:
@@ -232,13 +233,13 @@ class Grid:
         """Cell centres along z of a grid in space, shape (nz,) [m]."""
         return self.origin[2] + self.cell * (np.arange(self.cells[-1]) + 0.5)
 
-    def faces(self, first: int, end: int, axis: int) -> np.ndarray:
+    def faces(self, start: int, end: int, axis: int) -> np.ndarray:
         """Return the coordinates of the padded face indices ``first`` to ``end`` along an axis [m]."""
-        return self.origin[axis] + self.cell * (np.arange(first, end) - PAD)
+        return self.origin[axis] + self.cell * (np.arange(start, end) - PAD)
 
-    def centres(self, first: int, end: int, axis: int) -> np.ndarray:
+    def centres(self, start: int, end: int, axis: int) -> np.ndarray:
         """Return the coordinates of the padded cell indices ``first`` to ``end`` along an axis [m]."""
-        return self.origin[axis] + self.cell * (np.arange(first, end) - PAD + 0.5)
+        return self.origin[axis] + self.cell * (np.arange(start, end) - PAD + 0.5)
 
 
 def arrays_of(axes: int) -> float:

@@ -62,21 +62,21 @@ class Integrator:
     @cached_property
     def weights(self) -> np.ndarray:
         """Share of each stage in the velocity at the step's end, shape (stage,) [-]; they add up to 1."""
-        out = np.zeros(len(self.stages))
+        stage_weights = np.zeros(len(self.stages))
         for k, stage in enumerate(self.stages):
-            out *= stage.keep
-            out[k] = 1 - stage.keep
-        return out
+            stage_weights *= stage.keep
+            stage_weights[k] = 1 - stage.keep
+        return stage_weights
 
     @cached_property
     def rates(self) -> np.ndarray:
         """Butcher's table: the part that each stage has of the rates taken in each, shape (stage, stage) [steps]."""
-        out = np.zeros((len(self.stages),) * 2)
+        table = np.zeros((len(self.stages),) * 2)
         for k, stage in enumerate(self.stages):
             if k:
-                out[k] = stage.keep * out[k - 1]
-            out[k, k] = (1 - stage.keep) * stage.span
-        return out
+                table[k] = stage.keep * table[k - 1]
+            table[k, k] = (1 - stage.keep) * stage.span
+        return table
 
     @property
     def order(self) -> int:
@@ -86,14 +86,18 @@ class Integrator:
         with an error of their own.
         """
         b = self.rates[-1]
-        before = np.vstack([np.zeros(len(b)), self.rates[:-1]])  # rates are taken at what the last stage left
-        c = before.sum(axis=1)
-        asked = (1.0, ((b.sum(), 1.0),)), (2.0, ((b @ c, 1 / 2),)), (3.0, ((b @ c**2, 1 / 3), (b @ before @ c, 1 / 6)))
+        stage_table = np.vstack([np.zeros(len(b)), self.rates[:-1]])  # rates are taken at what the last stage left
+        c = stage_table.sum(axis=1)
+        order_conditions = (
+            (1.0, ((b.sum(), 1.0),)),
+            (2.0, ((b @ c, 1 / 2),)),
+            (3.0, ((b @ c**2, 1 / 3), (b @ stage_table @ c, 1 / 6))),
+        )
         order = 0
-        for reached, conditions in asked:
+        for candidate_order, conditions in order_conditions:
             if any(abs(has - needs) > ROUNDING for has, needs in conditions):
                 break
-            order = int(reached)
+            order = int(candidate_order)
         return order
 
 

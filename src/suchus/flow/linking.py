@@ -84,8 +84,8 @@ class Codegen(JITCPUCodegen):  # type: ignore[misc]
 class KernelCompiler(Compiler):  # type: ignore[misc]
     """Numba's compiler, which puts the code of a function together as ``Library`` does."""
 
-    def __init__(self, typingctx: Any, targetctx: BaseContext, *rest: Any) -> None:
-        super().__init__(typingctx, _linked_here(targetctx), *rest)
+    def __init__(self, typingctx: Any, targetctx: BaseContext, *args: Any) -> None:
+        super().__init__(typingctx, _linked_here(targetctx), *args)
 
 
 @cache

@@ -39,11 +39,11 @@ class Markers:
         y: np.ndarray = self.points[1]
         return y
 
-    def of(self, chosen: np.ndarray) -> "Markers":
+    def of(self, mask: np.ndarray) -> "Markers":
         """Return some of them, by a mask of shape (marker,)."""
-        station, side = (one[chosen] if one.size else one for one in (self.station, self.side))
+        station, side = (array[mask] if array.size else array for array in (self.station, self.side))
         return Markers(
-            points=self.points[:, chosen], share=self.share[chosen], velocities=self.velocities[:, chosen],
-            normals=self.normals[:, chosen], spins=self.spins[:, chosen],
-            part=None if self.part is None else self.part[chosen], station=station, side=side,
+            points=self.points[:, mask], share=self.share[mask], velocities=self.velocities[:, mask],
+            normals=self.normals[:, mask], spins=self.spins[:, mask],
+            part=None if self.part is None else self.part[mask], station=station, side=side,
         )  # fmt: skip

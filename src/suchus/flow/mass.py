@@ -60,9 +60,9 @@ class SpaceMass:
 
         ``matrix`` turns the body's frame into the world's, shape (3, 3).
         """
-        whole = np.zeros((6, 6))
-        whole[:3, :3], whole[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
-        return whole
+        inertia_matrix = np.zeros((6, 6))
+        inertia_matrix[:3, :3], inertia_matrix[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
+        return inertia_matrix
 
     def recoil(self, matrix: np.ndarray) -> np.ndarray:
         """Return the velocity that the deformation takes from the frame: three zeros, three angular ones [rad/s]."""
@@ -71,8 +71,8 @@ class SpaceMass:
 
 def tensor(second: np.ndarray) -> np.ndarray:
     """Return the tensor of inertia from the integrals of the products of coordinates, each of shape (3, 3) [m^5]."""
-    found: np.ndarray = np.trace(second) * np.eye(3) - second
-    return found
+    inertia_tensor: np.ndarray = np.trace(second) * np.eye(3) - second
+    return inertia_tensor
 
 
 def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:

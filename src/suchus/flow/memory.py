@@ -40,28 +40,28 @@ class Snapshot:
 def take(sim: "Simulation") -> Snapshot:
     """Return a snapshot of a simulation."""
     log, state = sim._log, sim.water.state()
-    more = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
+    extra_arrays = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
     return Snapshot(
         numbers={name: getattr(sim, name) for name in _NUMBERS},
-        arrays={name: np.array(value) for name, value in {**state, **more}.items()},
+        arrays={name: np.array(value) for name, value in {**state, **extra_arrays}.items()},
         swimmers={name: swimmer.state() for name, swimmer in sim.swimmers.items()},
         rows=(len(log.rows), len(log.control_rows), log.rows[-1] if log.rows else None),
-        watched=tuple(copy(one) for one in sim._watched), outlines=tuple(sim._outlines),
+        watched=tuple(copy(check) for check in sim._watched), outlines=tuple(sim._outlines),
     )  # fmt: skip
 
 
-def give(sim: "Simulation", kept: Snapshot) -> None:
+def give(sim: "Simulation", snapshot: Snapshot) -> None:
     """Let a simulation be what it was, but for the bodies in the equations, which are placed anew."""
-    for name, value in kept.numbers.items():
+    for name, value in snapshot.numbers.items():
         setattr(sim, name, value)
-    arrays = {name: value.copy() for name, value in kept.arrays.items()}
-    log, (count, controls, last) = sim._log, kept.rows
+    arrays = {name: value.copy() for name, value in snapshot.arrays.items()}
+    log, (count, controls, last_row) = sim._log, snapshot.rows
     del log.rows[count:], log.control_rows[controls:]
-    if last is not None:
-        log.rows[-1] = last
+    if last_row is not None:
+        log.rows[-1] = last_row
     log.held, sim.frame = arrays["held"], arrays["frame"]
     sim.water.resume(arrays)
-    for name, state in kept.swimmers.items():
+    for name, state in snapshot.swimmers.items():
         sim.swimmers[name].resume({key: value.copy() for key, value in state.items()})
-    sim._watched = [copy(one) for one in kept.watched]
-    sim._outlines = list(kept.outlines)
+    sim._watched = [copy(check) for check in snapshot.watched]
+    sim._outlines = list(snapshot.outlines)
