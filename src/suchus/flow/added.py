@@ -31,14 +31,23 @@ def added_mass(
     water: Fluid, markers: Markers, reference_point: tuple[float, ...], density: float, body: int = 0,
     requested_modes: Sequence[bool] | np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
-    """Return the added mass for accelerations along each axis and about a point, in the plane of shape (3, 3).
+    """Return the added mass for accelerations along each axis and about a point: (3, 3) in the plane, (6, 6) in space.
 
-    In space it is of shape (6, 6): along x, y and z, then about x, y and z. The bodies must have been placed; ``body``
-    counts them. The force of mode k is ``-Ma[:, k]`` per unit acceleration; other bodies stay still. It is what
-    ``momentum`` would find: the momentum that the immersion gives to the water. Units: kg/m in the plane and kg in
-    space for the translations, times m between them and the turnings, times m^2 for the turnings. Where the sides move
-    as in open water it is that of open water. What lies beyond mirrors is counted. Motions through a mirror that cuts
-    the body, which are not symmetric, have NaN, and so have those that are not ``wanted``.
+    In space the order is along x, y and z, then about x, y and z. The force of mode k is ``-Ma[:, k]`` per unit
+    acceleration; other bodies stay still. The added mass is the momentum that the immersion gives to the water, as
+    ``momentum`` finds it. Units: kg/m in the plane and kg in space for the translations; times m between translations
+    and rotations; times m^2 for the rotations.
+
+    Where the sides move as in open water the result is that of open water. What lies beyond mirrors is counted. Motions
+    through a mirror that cuts the body are not symmetric and have NaN, and so have the modes that are not requested.
+
+    Args:
+        water: with the bodies placed.
+        markers: of the body.
+        reference_point: point that the rotations are about [m].
+        density: of the water [kg/m^3].
+        body: which body, counted from 0 [-].
+        requested_modes: which modes are needed; None is all.
 
     Raises:
         NotConverged: the pressure solver got stuck.
@@ -93,11 +102,9 @@ def generalised_added_mass(
         body_modes.append([_body_motion(mode, body_rows) for mode in modes])
     rim = _rim(water, outlines, body_modes, water.cut)
     responses.fixed_side_mass += _joint_work(water, modes, responses.joint_correction)
-    times, h, corner = (
-        2 ** max(sum(mirror_cuts) for mirror_cuts in water.cut),
-        water.grid.cell,
-        np.array(water.grid.origin),
-    )
+    times = 2 ** max(sum(mirror_cuts) for mirror_cuts in water.cut)
+    h = water.grid.cell
+    corner = np.array(water.grid.origin)
     matrix: np.ndarray = times * density * (h**water.axes * responses.fixed_side_mass + rim)
     pressed = times * density * h ** (water.axes + 1) * responses.pressed
     pressed[..., 1:] = h * pressed[..., 1:] + pressed[..., :1] * corner
@@ -105,7 +112,13 @@ def generalised_added_mass(
 
 
 def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndarray) -> np.ndarray:
-    """Return the work of each mode against what takes away that links are pushed apart, shape (mode, mode)."""
+    """Return the work of each mode against what takes away that links are pushed apart, shape (mode, mode).
+
+    Args:
+        water: with the bodies placed.
+        modes: motions of all parts.
+        joint_correction: see ``_ModeResponses``.
+    """
     axes, h, corner = water.axes, water.grid.cell, np.array(water.grid.origin)
     turns = len(TURNS[axes])
     moves = np.array([
@@ -116,7 +129,11 @@ def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndar
 
 
 def symmetric(mirror_cuts: tuple[bool, ...]) -> list[bool]:
-    """Return which modes are symmetric about the mirrors that cut a body; see ``body.cuts``."""
+    """Return whether each rigid mode is symmetric about the mirrors that cut a body; translations come first.
+
+    Args:
+        mirror_cuts: whether a mirror cuts the body at the low and at the high end of each axis; see ``body.cuts``.
+    """
     has_mirror = [
         has_lower_mirror or has_upper_mirror
         for has_lower_mirror, has_upper_mirror in zip(mirror_cuts[::2], mirror_cuts[1::2], strict=True)
@@ -128,7 +145,13 @@ def symmetric(mirror_cuts: tuple[bool, ...]) -> list[bool]:
 
 
 def _rigid(water: Fluid, reference_point: tuple[float, ...], body: int) -> list[Twists]:
-    """Return the rigid motions of one body along each axis and about a point, the others at rest."""
+    """Return the rigid motions of one body along each axis and about a point, the others at rest.
+
+    Args:
+        water: with the bodies placed.
+        reference_point: point that the rotations are about [m].
+        body: which body, counted from 0 [-].
+    """
     axes, rows, modes = water.axes, water.rows[body], []
     turns = len(TURNS[axes])
     for k in range(axes + turns):
@@ -163,7 +186,14 @@ class _ModeResponses:
 
     @classmethod
     def solve(cls, water: Fluid, modes: Sequence[Twists], limit: float, *, sides_held: bool) -> "_ModeResponses":
-        """Return the answers of the water around placed bodies to a limit [-]; of sides that are held there is none."""
+        """Return the water's response to each mode.
+
+        Args:
+            water: with the bodies placed.
+            modes: motions of all parts.
+            limit: divergence that may be left, relative to the accelerations [-].
+            sides_held: whether the sides are held; then nothing is computed for sides that move as in open water.
+        """
         faces, axes = held_faces(water), water.axes
         shape = tuple(s.stop - s.start for s in water.here)
         rises, moves, side_potentials, inward, part_pressures, joint_corrections = [], [], [], [], [], []

@@ -73,7 +73,12 @@ def compile_ahead(axes: int, dtype: type) -> None:
 
 
 def compile_solver(axes: int, name: str) -> None:
-    """Compile the pressure's solver, for a grid with so many axes and fields of the type of this name."""
+    """Compile the pressure solver.
+
+    Args:
+        axes: axes of the grid, 2 or 3.
+        name: name of the fields' type, ``float32`` or ``float64``.
+    """
     water = _PressureWater(*_domain(axes), getattr(np, name))
     _place_body(water)
     water.solve()
@@ -89,6 +94,7 @@ def _place_body(water: Fluid) -> None:
 
 
 def _step(water: Fluid) -> None:
+    """Take one step of a small flow, which compiles every kernel of a step."""
     zero_velocity = (0.0,) * water.axes
     _place_body(water)
     water.step(0.01, zero_velocity, zero_velocity, _LIMITS)

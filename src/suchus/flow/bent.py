@@ -128,10 +128,8 @@ class BendingMap:
         Raises:
             InvalidDesign: the velocity is another one over half the time.
         """
-        full_tick_velocity, half_tick_velocity = (
-            self.velocity(places, time),
-            self.velocity(places, time, 0.5 * self.tick),
-        )
+        full_tick_velocity = self.velocity(places, time)
+        half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
         fastest = float(np.abs(half_tick_velocity).max())
         if (
             np.abs(full_tick_velocity - half_tick_velocity).max() > SMOOTH * fastest

@@ -52,8 +52,13 @@ MIDDLE = 1e-6
 def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple[bool, ...] = ()) -> Window:
     """Return the cells around a body that it acts on; a cell beyond a mirror that cuts the body is one of them.
 
-    ``mirrors`` says whether there is a mirror at the low and at the high end of each axis, if any; see
-    ``Sides.mirrors``.
+    Args:
+        body: the body.
+        pose: its pose.
+        grid: the grid.
+        time: when [s].
+        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.mirrors``. Empty:
+            there are none.
 
     Raises:
         InvalidDesign: the body touches a side of the domain or lies beyond it, or a mirror does not cut it in half.
@@ -80,6 +85,14 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
 
 
 def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: float) -> InvalidDesign:
+    """Return the error for a body that reaches beyond the grid.
+
+    Args:
+        body: the body.
+        grid: the grid.
+        ends: smallest and largest coordinate of the body along each axis [m].
+        time: when [s].
+    """
     reach = ", ".join(
         f"{axis} = {lower_bound:.4g} to {upper_bound:.4g} m"
         for axis, (lower_bound, upper_bound) in zip("xyz", ends, strict=False)
@@ -95,7 +108,15 @@ def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]
 
 
 def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
-    """Refuse a body that a mirror across an axis cuts anywhere but in its middle.
+    """Refuse a body that a mirror cuts anywhere but in its middle.
+
+    Args:
+        body: the body.
+        pose: its pose.
+        axis: axis across which the mirror lies: 0 is x, 1 is y, 2 is z.
+        plane: coordinate of the mirror along that axis [m].
+        h: side of a cell [m].
+        time: when [s].
 
     Raises:
         InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
@@ -164,9 +185,16 @@ class Overlap(NamedTuple):
 def measure_all(
     bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
 ) -> tuple[SpaceField, np.ndarray, Overlap]:
-    """Return the field of the bodies on a window, that of the nearest at each point; whose row it is; what overlaps.
+    """Return the field of all bodies on a window, the part that each point belongs to, and the deepest overlap.
 
-    ``points`` are the coordinates of the window along each axis [m].
+    At each point the field is that of the nearest body. The part is counted over all bodies, as ``rows_of`` does.
+
+    Args:
+        bodies: the bodies.
+        poses: the pose of each body.
+        points: coordinates of the window along each axis [m].
+        time: when [s].
+        h: side of a cell [m].
     """
     nearest_field, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
     body_rows = rows_of(bodies)
@@ -192,7 +220,7 @@ def measure_all(
 
 
 def _merge_fields(mask: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
-    """Return the one field at some points and the other elsewhere."""
+    """Return field ``a`` at the points of a mask and field ``b`` elsewhere."""
 
     def choose(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return np.where(mask, x, y)
@@ -213,7 +241,7 @@ def _closed(shape: Shape | SpaceShape, time: float) -> bool:
 
 
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
-    """Return the share of the body's length that is thinner than ``THINNEST`` cells.
+    """Return the fraction of the body's length that is thinner than ``THINNEST`` cells [-].
 
     Raises:
         InvalidDesign: the body is too thin everywhere.

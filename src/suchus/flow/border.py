@@ -29,6 +29,17 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):
 
     ``n`` is the velocity along the normal and ``t`` that along the side, normal index first; ``face`` and ``inner`` are
     the lines of the side's faces and of the cells inside it.
+
+    Args:
+        n: velocity along the normal, normal index first.
+        t: velocity along the side, normal index first.
+        face: line of the side's faces.
+        inner: line of the cells inside the side.
+        step: 1 at the low end of the axis and -1 at the high end.
+        prescribed: velocity into the domain on the side's faces [m/s].
+        straight: whether the normal velocity continues linearly beyond the side; else it stays the same.
+        condition: ``_MIRRORED``, ``_PRESCRIBED``, ``_FREE_OF_VORTICITY`` or ``_ZERO_GRADIENT``.
+        value: velocity along the side that the first two conditions take [m/s].
     """
     two, sign, width = n.dtype.type(2), n.dtype.type(step), n.shape[1]
     for i in range(PAD, width - PAD):
@@ -51,14 +62,22 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):
 
 @part
 def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: ignore[no-untyped-def]
-    """Write a row beyond a side from that on it and, where the normal velocity goes on straight, from its image."""
-    two, ghost, boundary, source, stride = (
-        a.dtype.type(2),
-        unsigned(ghost),
-        unsigned(boundary),
-        unsigned(source),
-        unsigned(stride),
-    )
+    """Write a row of the normal velocity beyond a side: its linear continuation, or the values on the side.
+
+    Args:
+        a: the component, its cells end to end.
+        ghost: index of the row's first cell.
+        boundary: the same of the row on the side.
+        source: the same of the mirror image inside.
+        stride: distance of neighbours in the row.
+        count: cells of the row.
+        straight: whether the velocity continues linearly.
+    """
+    two = a.dtype.type(2)
+    ghost = unsigned(ghost)
+    boundary = unsigned(boundary)
+    source = unsigned(source)
+    stride = unsigned(stride)
     for i in range(unsigned(count)):
         a[ghost + i * stride] = (
             two * a[boundary + i * stride] - a[source + i * stride] if straight else a[boundary + i * stride]
@@ -67,7 +86,17 @@ def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: i
 
 @part
 def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignore[no-untyped-def]
-    """Write a row of a velocity along a side beyond it from that inside it."""
+    """Write a row of a velocity along a side beyond it from that inside it.
+
+    Args:
+        a: the component, its cells end to end.
+        ghost: index of the row's first cell.
+        source: the same of the row inside.
+        stride: distance of neighbours in the row.
+        count: cells of the row.
+        condition: see ``_fill_side``.
+        value: see ``_fill_side`` [m/s].
+    """
     times, plus = a.dtype.type(-1 if condition == _MIRRORED else condition != _PRESCRIBED), value
     plus = plus + plus if condition == _MIRRORED else plus if condition == _PRESCRIBED else a.dtype.type(0)
     ghost, source, stride = unsigned(ghost), unsigned(source), unsigned(stride)
@@ -77,7 +106,19 @@ def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignor
 
 @part
 def _free_of_vorticity(a, ghost, n, boundary, previous, stride, start, stop, sign):  # type: ignore[no-untyped-def]
-    """Add to a row beyond a side what the normal velocity, whose row on the side is ``on``, rises along the side."""
+    """Add to a row beyond a side the difference of the normal velocity along the side, so that there is no vorticity.
+
+    Args:
+        a: component along the side, its cells end to end.
+        ghost: index of the row's first cell.
+        n: normal component, its cells end to end.
+        boundary: index of the first normal velocity on the side.
+        previous: index of its neighbour along the side.
+        stride: distance of neighbours in the row.
+        start: first cell of the row that is written.
+        stop: the cell after the last.
+        sign: 1 at the low end of the normal's axis and -1 at the high end.
+    """
     ghost, boundary, previous, stride = unsigned(ghost), unsigned(boundary), unsigned(previous), unsigned(stride)
     for i in range(unsigned(start), unsigned(stop)):
         a[ghost + i * stride] -= sign * (n[boundary + i * stride] - n[previous + i * stride])
@@ -85,10 +126,19 @@ def _free_of_vorticity(a, ghost, n, boundary, previous, stride, start, stop, sig
 
 @compiled
 def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, condition, values):  # type: ignore[no-untyped-def]
-    """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
+    """Write the velocity on a side in space and in the two planes beyond it, as ``_fill_side`` does in the plane.
 
-    ``velocity`` has the cells of a component end to end, ``strides`` apart along the normal and along the side's axes,
-    the last one first; ``values`` are those of the velocities along the side in the order of the axes.
+    Args:
+        velocity: components, each with its cells end to end.
+        axis: axis of the normal.
+        strides: distance of neighbours along the normal and along the side's axes, the last axis of the side first.
+        face: plane of the side's faces.
+        inner: plane of the cells inside the side.
+        step: 1 at the low end of the axis and -1 at the high end.
+        prescribed: velocity into the domain on the side's faces [m/s].
+        straight: see ``_fill_side``.
+        condition: see ``_fill_side``.
+        values: see ``_fill_side``; one for each velocity along the side, in the order of the axes [m/s].
     """
     n, (normal_stride, row_stride, stride), sign = velocity[axis], strides, velocity.dtype.type(step)
     height, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
@@ -101,10 +151,8 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
             ghost_offset = k * step * normal_stride
             _mirror_row(n, boundary - ghost_offset, boundary, boundary + ghost_offset, stride, count, straight)
         for k in range(1, 3):
-            ghost, is_vorticity_free = (
-                (inner - k * step) * normal_stride + j * row_stride,
-                condition == _FREE_OF_VORTICITY,
-            )
+            ghost = (inner - k * step) * normal_stride + j * row_stride
+            is_vorticity_free = condition == _FREE_OF_VORTICITY
             source = (
                 ghost + step * normal_stride
                 if is_vorticity_free
@@ -115,16 +163,9 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
                 _fill_row(t, ghost, source, stride, count, condition, values[c])
                 if is_vorticity_free and PAD + c <= j < height - PAD:
                     _free_of_vorticity(
-                        t,
-                        ghost,
-                        n,
-                        face_row,
-                        face_row - (row_stride if c else stride),
-                        stride,
-                        PAD + 1 - c,
-                        count - PAD,
-                        sign,
-                    )
+                        t, ghost, n, face_row, face_row - (row_stride if c else stride), stride, PAD + 1 - c,
+                        count - PAD, sign,
+                    )  # fmt: skip
 
 
 @dataclass(slots=True)
@@ -228,7 +269,12 @@ class Edge:
         return max(0.0 if slides is None else length(slides), 0.0 if inflow is None else float(np.abs(inflow).max()))
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
-        """Write this side's values to the cells and faces around the domain."""
+        """Write this side's values to the cells and faces around the domain.
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            stream: velocity of the far water [m/s].
+        """
         n, f, step = self.normal(velocity), self.face, self.sign
         inner = PAD if self.low else PAD + self.cells - 1
         tangential_axes = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
@@ -255,9 +301,13 @@ class Edge:
             _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, condition, values)
 
     def _tangential_condition(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
-        """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.
+        """Return the condition for the velocity along the side, and its value [m/s]; the condition holds for all axes.
 
-        What kind of value that is does not depend on the axis.
+        Args:
+            k: which of the side's own axes, counted from 0.
+            axis: the same axis, counted among all: 0 is x, 1 is y, 2 is z.
+            step: 1 at the low end of the normal's axis and -1 at the high end.
+            stream: velocity of the far water [m/s].
         """
         if self.slides is not None:
             return _MIRRORED, self.slides[k]
@@ -326,9 +376,16 @@ class Border:
     def prepare(
         self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...], time: float = 0.0
     ) -> None:
-        """Fix the velocity on all sides at the end of the step, at ``time`` [s], from the fields at its start.
+        """Fix the velocity on all sides at the end of the step from the fields at its start.
 
         On return as much water leaves as enters.
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            window: padded cell indices around the bodies.
+            dt: length of the step [cells per (m/s)].
+            stream: velocity of the far water at the end of the step [m/s].
+            time: end of the step [s].
 
         Raises:
             InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
@@ -401,7 +458,13 @@ class Border:
 
     @staticmethod
     def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
-        """Return the velocity on a side to which the water comes that moves out of the domain."""
+        """Return the velocity into the domain on a side at the end of the step, convected from the cells inside [m/s].
+
+        Args:
+            edge: the side.
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            dt: length of the step [cells per (m/s)].
+        """
         n = edge.normal(velocity)
         side_velocity = edge.sign * n[edge.face][edge.inside]
         inner = edge.sign * n[edge.face + edge.sign][edge.inside]
@@ -410,6 +473,10 @@ class Border:
         return outflow
 
     def _balance(self) -> None:
+        """Change the velocities on the open sides so that as much water leaves as enters.
+
+        Sides that carry water out take the difference; without them the unbounded sides take it.
+        """
         net, open_area = 0.0, 0.0
         free = any(e.leaves for e in self.edges)
         for edge in self.edges:

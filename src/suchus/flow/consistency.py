@@ -66,7 +66,7 @@ class Told(Protocol):
 
 
 def _wrap_angle(angle: np.ndarray) -> np.ndarray:
-    """Return angles without whole turns, which move nothing [rad]."""
+    """Return angles from -pi to pi: whole turns move nothing [rad]."""
     wrapped_angle: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
     return wrapped_angle
 
@@ -273,6 +273,15 @@ class Consistency:
         )
 
     def _compare(self, time: float, dt: float) -> None:
+        """Compare the declared rates with difference quotients of the positions, at the start of a step.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
+
+        Raises:
+            InvalidDesign: they disagree for the third time in a row.
+        """
         span = _COMPARISON_FRACTION * dt
         series = self.told.at([time + k * span for k in range(3)])
         declared_rate, measured_rate = series.rates[0], (4 * series.places[1] - series.places[2]) / (2 * span)
@@ -296,7 +305,7 @@ class Consistency:
 
 
 def _turn(start: Pose, end: Pose) -> np.ndarray:
-    """Return by how much a pose is turned, in space the rotation vector from another one to it [rad]."""
+    """Return the angle from one pose to another, in space their rotation vector [rad]."""
     if len(start.position) == 2:
         return _wrap_angle(np.array([end.angle - start.angle]))
     if start.pitch == end.pitch == 0 and start.roll == end.roll == 0:

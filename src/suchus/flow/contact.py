@@ -30,6 +30,7 @@ class BodyContact:
     """Pressure where the outlines touch; ten times ``density speed^2`` of the bodies' approach serves [Pa]."""
 
     def __post_init__(self) -> None:
+        """Refuse a gap or a pressure that is not positive."""
         check_kinds(self)
         for name, unit in (("gap", "m"), ("pressure", "Pa")):
             value = getattr(self, name)
@@ -63,9 +64,17 @@ def _is_within_gap(outline: Markers, other_outline: Markers, gap: float) -> bool
 
 
 def _pushes(contact: BodyContact, outline: Markers, other_outline: Markers) -> np.ndarray:
-    """Return where the markers of one outline are pushed off the other and how hard: x, y and force, shape (4, marker).
+    """Return positions and contact forces of the markers of one outline, shape (4, marker).
 
-    An edge of the other outline is the stretch of its length about its marker.
+    Rows: x and y of the marker [m], and the force along x and y [N/m].
+
+    Only markers in reach of the other outline count. An edge of the other outline is the interval of its length around
+    its marker.
+
+    Args:
+        contact: the law.
+        outline: the outline that is pushed.
+        other_outline: the outline that pushes it.
     """
     k = (outline.x > other_outline.x.min() - contact.gap) & (outline.x < other_outline.x.max() + contact.gap)
     k &= (outline.y > other_outline.y.min() - contact.gap) & (outline.y < other_outline.y.max() + contact.gap)

@@ -46,6 +46,7 @@ def eel(length: float, *, period: float = 1.0, stations: int = 257) -> Midline:
     wave = 2 * np.pi
 
     def spine(time: float) -> MidlineState:
+        """Return the midline of the eel at a time [s]."""
         phase = wave * (x - time / period)
         sin, cos = np.sin(phase), np.cos(phase)
         tangent = slope * sin + amplitude * wave * cos
@@ -79,6 +80,7 @@ def eel_in_space(length: float, *, period: float = 1.0, stations: int = 257) -> 
     integrate = partial(cumulative_simpson, x=s, initial=0.0)
 
     def spine(time: float) -> MidlineState:
+        """Return the midline of the eel in space at a time [s]."""
         t = time / period
         phase, ramp = 2 * pi * (t - WAVES * s), np.tanh(pi * t)
         bend_rate = curvature * (2 * pi * np.cos(phase) * ramp + np.sin(phase) * pi * (1 - ramp**2)) / period

@@ -24,6 +24,10 @@ def foot_parameter(p, a):
     The foot point f of a point p has ``f_i = a_i^2 p_i / (t + a_i^2)``, where t makes it lie on the surface. Newton's
     method on ``1 / |s(t)|`` with ``s_i = a_i p_i / (t + a_i^2)``, which is nearly straight, rises to that t from every
     start below it and above minus the smallest ``a_i^2``.
+
+    Args:
+        p: coordinates of the point along the half-axes, none negative.
+        a: half-axes.
     """
     min_square, t = np.inf, -np.inf
     for d in range(len(a)):
@@ -45,7 +49,12 @@ def foot_parameter(p, a):
 
 @part
 def _foot(p, a):
-    """Return the distance of a point in the first octant from an ellipsoid, and the normal there."""
+    """Return the distance of a point in the first octant from an ellipsoid, and the normal there.
+
+    Args:
+        p: coordinates of the point along the half-axes, none negative.
+        a: half-axes.
+    """
     t = foot_parameter(p, a)
     nx, ny, nz = p[0] / (t + a[0] * a[0]), p[1] / (t + a[1] * a[1]), p[2] / (t + a[2] * a[2])
     size = 1.0 / np.sqrt(nx * nx + ny * ny + nz * nz)
@@ -55,7 +64,15 @@ def _foot(p, a):
 
 @part
 def _chord(p, distance, n, a, depth):
-    """Return the shortest of the chords along the axes through the point so far inside the foot of a point."""
+    """Return the thickness at a point: the shortest chord along the three axes, ``depth`` inside the surface.
+
+    Args:
+        p: coordinates of the point along the half-axes, none negative.
+        distance: signed distance of the point from the surface.
+        n: normal at the nearest point of the surface.
+        a: half-axes.
+        depth: how far inside the surface the chords are taken.
+    """
     offset = distance + min(depth, a[0], a[1], a[2])
     x, y, z = (p[0] - offset * n[0]) / a[0], (p[1] - offset * n[1]) / a[1], (p[2] - offset * n[2]) / a[2]
     remainder = 1.0 - x * x - y * y - z * z
@@ -66,7 +83,17 @@ def _chord(p, distance, n, a, depth):
 
 @part
 def _paint_ellipsoid_point(window_field, index, offset, turn, a, reach, depth):
-    """Write distance, normal and thickness at one point, of its place in the body's frame; see ``paint_ellipsoid``."""
+    """Write distance, normal and thickness at one point; see ``paint_ellipsoid``.
+
+    Args:
+        window_field: see ``paint_ellipsoid``.
+        index: indices of the point along z, y and x.
+        offset: coordinates of the point in the body's frame.
+        turn: rotation matrix of the body's frame, shape (3, 3).
+        a: half-axes.
+        reach: see ``paint_ellipsoid``.
+        depth: see ``paint_ellipsoid``.
+    """
     q, j, i = index
     size, min_axis = 0.0, min(a[0], a[1], a[2])
     for d in range(3):
@@ -86,18 +113,23 @@ def _paint_ellipsoid_point(window_field, index, offset, turn, a, reach, depth):
 
 @compiled
 def measure_ellipse(point_field, x, y, a):
-    """Write signed distance and outward normal of an ellipse with half-axes ``a`` at points, shape (3, point)."""
+    """Write signed distance and outward normal of an ellipse at points.
+
+    Args:
+        point_field: array to write to, shape (3, point).
+        x: coordinates of the points along the first half-axis.
+        y: coordinates of the points along the second half-axis.
+        a: half-axes, shape (2,).
+    """
     for k in range(x.size):
         px, py = max(abs(x[k]), TINY * a[0]), max(abs(y[k]), TINY * a[1])
         t = foot_parameter((px, py), a)
         nx, ny = px / (t + a[0] * a[0]), py / (t + a[1] * a[1])
         size = 1.0 / np.sqrt(nx * nx + ny * ny)
         distance = (px - a[0] * a[0] * nx) * nx + (py - a[1] * a[1] * ny) * ny
-        point_field[0, k], point_field[1, k], point_field[2, k] = (
-            distance * size,
-            np.copysign(nx * size, x[k]),
-            np.copysign(ny * size, y[k]),
-        )
+        point_field[0, k] = distance * size
+        point_field[1, k] = np.copysign(nx * size, x[k])
+        point_field[2, k] = np.copysign(ny * size, y[k])
 
 
 @threaded

@@ -64,6 +64,16 @@ IMAGES = 3
 
 @part
 def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
+    """Add the circulation of one row of corners, and its moment along y, to the sums of each column.
+
+    Args:
+        total: circulation of each column so far [m/s cells].
+        moment: its moment so far.
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        row: padded row of the corners.
+        arm: distance of the row from the middle of its blocks [cells].
+    """
     j, pad = unsigned(row), unsigned(PAD)
     for k in range(UNIT, unsigned(total.size)):
         w = (v[j, k + pad] - v[j, k + pad - UNIT]) - (u[j, k + pad] - u[j - UNIT, k + pad])
@@ -73,7 +83,17 @@ def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
 
 @part
 def _spread_row(block, u, v, j, arm, b, window):  # type: ignore[no-untyped-def]
-    """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``."""
+    """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``.
+
+    Args:
+        block: strengths of the blocks, shape (4, row, column).
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        j: padded row of cells.
+        arm: distance of the row from the middle of its blocks [cells].
+        b: row of blocks.
+        window: padded cell indices around the bodies.
+    """
     for i in range(window[2], window[3]):
         spread = np.float64((u[j, i + 1] - u[j, i]) + (v[j + 1, i] - v[j, i]))
         k = (i - PAD) // SIDE
@@ -89,6 +109,12 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
 
     Corners belong to a block by their number, so its middle lies at ``SIDE b + (SIDE - 1) / 2`` cells. Strengths are
     in m/s per cell times cells squared. Divergence is counted in the bodies' window only.
+
+    Args:
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        window: padded cell indices around the bodies.
+        block: strengths to write, shape (4, row, column).
     """
     ny, nx = u.shape[0] - 2 * PAD, u.shape[1] - 2 * PAD
     for n in prange(block.shape[1]):
@@ -174,6 +200,7 @@ class OpenWater:
     """Strengths of the blocks, shape (4, row, column)."""
 
     def __post_init__(self) -> None:
+        """Lay out the blocks and the points of the sides where the velocity is summed up."""
         nx, ny = self.cells
         rows, columns = -(-ny // SIDE), -(-nx // SIDE)
         self.blocks = np.zeros((4, rows, columns))
@@ -218,6 +245,11 @@ class OpenWater:
         return self._on_faces(induced_velocity)
 
     def _on_faces(self, induced_velocity: np.ndarray) -> list[np.ndarray]:
+        """Return the velocity into the domain on the faces of each side, between the points of the sides [m/s].
+
+        Args:
+            induced_velocity: at the points of the sides, shape (2, point) [m/s].
+        """
         sides, start = [], 0
         for (index, weight), axis, sign in zip(self.between, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
             end = start + int(index[-1, -1]) + 1
@@ -226,7 +258,15 @@ class OpenWater:
         return sides
 
     def _fade(self, strength: np.ndarray, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
-        """Return faded strengths, and the sources in place of what they lack: x, y and strength, shape (6, source)."""
+        """Return the faded strengths of the blocks, and the sources that stand for the wake that has left.
+
+        A source has position x and y, then the four strengths of a block: shape (6, source).
+
+        Args:
+            strength: of the blocks, shape (4, row, column).
+            fading: the side towards which the wake is faded.
+            window: padded cell indices around the bodies.
+        """
         axis, cells = fading.axis, self.cells[fading.axis]
         axial, lateral = self.middles[axis], self.middles[1 - axis]
         middle = axial[0] if axis == 0 else axial[:, 0]
@@ -237,6 +277,7 @@ class OpenWater:
         length = max(min(FADE * cells, clearance), SIDE)
 
         def weight(position: np.ndarray) -> np.ndarray:
+            """Return the fraction of the strength that stays, at positions along the axis [cells]."""
             fraction = np.minimum(
                 np.maximum((position if fading.low else cells - position) / length, 0.0), 1.0
             )  # clip is slow
@@ -360,6 +401,7 @@ class FarField:
     """Which knots the middles of the cells along each axis take, and their weights, each of shape (4, cell) [-]."""
 
     def __post_init__(self) -> None:
+        """Lay out the faces of the surface with their panels, and fill the matrices of all sides."""
         cells, ends = self.grid.cells, list(zip(self.mirrors[::2], self.mirrors[1::2], strict=True))
         cell_count = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
         panel = max(LEAST, round(cell_count ** (1 / 3) / PANELS))
@@ -388,7 +430,12 @@ class FarField:
         self.matrices = [self._matrix(face, knots) for face in self.faces]
 
     def _matrix(self, side: Face, knots: list[np.ndarray]) -> np.ndarray:
-        """Return the velocity into the domain in the knots of the side beyond a face per velocity on the panels."""
+        """Return the velocity into the domain in the knots of the side beyond a face per velocity on the panels.
+
+        Args:
+            side: face of the surface; the side of the domain lies beyond it.
+            knots: positions along each axis where the velocity is summed up [cells].
+        """
         axis, lines = side.axis, list(knots)
         lines[axis] = np.array([0.0 if side.low else float(self.grid.cells[axis])])
         points, parts = points_of(lines), []
@@ -432,10 +479,8 @@ class FarField:
         """
         leaving = {(fading.axis, fading.low): fading.share for fading in fadings}
         panel_velocities = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
-        strength, cells = (
-            np.concatenate(panel_velocities, axis=1),
-            np.concatenate([face.cells.ravel() for face in self.faces]),
-        )
+        strength = np.concatenate(panel_velocities, axis=1)
+        cells = np.concatenate([face.cells.ravel() for face in self.faces])
         for d in range(3):  # the far stream, or any other that is the same everywhere: it adds nothing
             if not any(self.mirrors[2 * d : 2 * d + 2]):
                 strength[d] -= np.average(strength[d], weights=cells)

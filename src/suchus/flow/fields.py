@@ -84,7 +84,7 @@ class Fields:
         return np.stack([self._vorticity_about(d, e) for d, e in ((1, 2), (2, 0), (0, 1))])
 
     def _vorticity_about(self, d: int, e: int) -> np.ndarray:
-        """Return the vorticity about the axis that a turn from axis d to axis e goes around."""
+        """Return the vorticity at the cell centres about the axis of the turn from axis ``d`` to axis ``e`` [1/s]."""
         velocity = self.water.velocity
         axes = len(velocity)
         cells = [slice(PAD, 1 - PAD) if axes - 1 - n in (d, e) else slice(PAD, -PAD) for n in range(axes)]

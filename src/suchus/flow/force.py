@@ -166,6 +166,12 @@ class ControlVolume:
         """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
         Not a number in the first step.
+
+        Args:
+            water: after the step.
+            dt: length of the step [s].
+            push: uniform acceleration of the water [m/s^2].
+            density: of the water [kg/m^3].
         """
         h = water.grid.cell
         balance = np.array(
@@ -187,7 +193,13 @@ class ControlVolume:
 
 @part
 def at(a, steps, spot):
-    """Return the interpolation of a flat field at a place in padded indices, linear along each axis."""
+    """Return the interpolation of a flat field at a place in padded indices, linear along each axis.
+
+    Args:
+        a: the field, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        spot: the place, in padded indices, shape (axis,).
+    """
     total = 0.0
     for corner in range(1 << spot.size):
         weight, k = 1.0, 0
@@ -203,7 +215,14 @@ def at(a, steps, spot):
 
 @compiled
 def interpolate(a, steps, places, samples):
-    """Write the interpolation of a flat field at places, shape (axis, point), in padded indices."""
+    """Write the interpolation of a flat field at places, shape (axis, point), in padded indices.
+
+    Args:
+        a: the field, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        places: in padded indices, shape (axis, point).
+        samples: array to write to, shape (point,).
+    """
     spot = np.empty(places.shape[0])
     for m in range(places.shape[1]):
         for d in range(spot.size):
@@ -217,6 +236,14 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
 
     The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
     Read on the wall itself, the pressures of both sides of a thin tail mix and the force is ten times as noisy.
+
+    Args:
+        p: pressure over density, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        places: positions of the markers in padded indices, shape (axis, marker).
+        normals: outward normals, shape (axis, marker).
+        gap: distance of the points [cells].
+        pressure: array to write to, shape (marker,).
     """
     spot = np.empty(places.shape[0])
     for m in range(places.shape[1]):
@@ -229,11 +256,20 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
 
 @compiled
 def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear):
-    """Write the rate of shear at the markers, shape (axis, marker), from a cubic through the wall and three points.
+    """Write the rate of shear at the markers from a cubic through the wall and three points off the wall.
 
-    ``walls`` are the wall's velocities [m/s], ``spins`` its turning rates in m/s per cell, about the axes that
-    ``turns`` names by the two across them; the points lie 1, 2 and 3 times ``gap`` cells off the wall. The result is in
-    m/s per cell.
+    The points lie 1, 2 and 3 times ``gap`` cells off the wall.
+
+    Args:
+        velocity: components, each with its cells end to end [m/s].
+        steps: distance in memory of neighbours along each axis [-].
+        places: positions of the markers in padded indices, shape (axis, marker).
+        normals: outward normals, shape (axis, marker).
+        walls: velocities of the wall, shape (axis, marker) [m/s].
+        spins: angular velocities of the wall about the axes of ``turns`` [m/s per cell].
+        turns: the two axes across each axis of rotation, shape (turn, 2).
+        gap: distance of the points [cells].
+        shear: array to write to, shape (axis, marker) [m/s per cell].
     """
     axes = places.shape[0]
     spot, wall_velocity = np.empty(axes), np.empty(axes)

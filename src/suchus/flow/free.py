@@ -69,6 +69,7 @@ class FreeBody:
     """Its component along y; ``spin`` is that along z. Of a rigid body it is the angular velocity [rad/s]."""
 
     def __post_init__(self) -> None:
+        """Refuse numbers that are not finite, a density that is not positive, and negative springs or dampers."""
         check_kinds(self)
         if self.density is not None and not (isfinite(self.density) and self.density > 0):
             raise InvalidDesign(f"density of {self.name} is {self.density} kg/m3; a positive density is needed.")

@@ -100,11 +100,17 @@ _LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)
 def _plate(
     arc: np.ndarray, mean_girth: np.ndarray, mean_speed: np.ndarray, of_girth: float, of_speed: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m]."""
-    growth, ds = (
-        (mean_girth / max(mean_girth.max(), 1e-300)) ** of_girth * (mean_speed / mean_speed.max()) ** of_speed,
-        np.diff(arc),
-    )
+    """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m].
+
+    Args:
+        arc: distance of the stations from the nose [m].
+        mean_girth: of each interval [m].
+        mean_speed: of each interval [m/s].
+        of_girth: power of the girth with which the layer grows [-].
+        of_speed: power of the speed with which the layer grows [-].
+    """
+    growth = (mean_girth / max(mean_girth.max(), 1e-300)) ** of_girth * (mean_speed / mean_speed.max()) ** of_speed
+    ds = np.diff(arc)
     accumulated_growth = growth[0] * arc[0] + np.concatenate([[0.0], np.cumsum(growth * ds)[:-1]])
     start = np.divide(accumulated_growth, growth, out=np.zeros_like(growth), where=growth > 0)
     return start + ds, start
@@ -126,6 +132,7 @@ def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " 
 
 
 def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:
+    """Refuse stations for which the law does not hold; see ``along_stations``."""
     if not (arc.ndim == 1 and arc.shape == girth.shape == speed.shape and arc.size >= 2):
         raise InvalidDesign(
             f"stations have shape {arc.shape}, girths {girth.shape} and speeds {speed.shape}; give three rows of as "

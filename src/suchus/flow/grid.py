@@ -89,6 +89,7 @@ class Grid:
     """Corner of the domain with the smallest coordinates, one for each axis; all 0 if it is not given [m]."""
 
     def __post_init__(self) -> None:
+        """Refuse sizes that cannot be or that multigrid cannot halve far enough; an empty origin becomes 0."""
         check_kinds(self)
         if not self.origin:
             object.__setattr__(self, "origin", (0.0,) * len(self.cells))
@@ -243,10 +244,10 @@ class Grid:
 
 
 def arrays_of(axes: int) -> float:
-    """Return how many numbers are kept per cell, those of the coarser levels with them [-].
+    """Return how many numbers are kept per cell of a grid with so many axes; those of the coarser levels count too [-].
 
-    Velocity three times, pressure, the bodies' share; three work arrays; and, on all levels, solution, right side,
-    inverse diagonal and faces. What counts around the bodies only is kept there alone and comes on top.
+    They are: the velocity three times, pressure, and the bodies' fraction of each face; three work arrays; and, on all
+    levels, solution, right side, inverse diagonal and faces. Arrays of the window around the bodies come on top.
     """
     return 3 * axes + 1 + axes + 3 + (3 + axes) / (1 - 0.5**axes)
 

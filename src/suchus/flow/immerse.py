@@ -83,11 +83,18 @@ def moment1(distance):
 
 @threaded
 def fill(distance, normal, thickness, mu0, mu1):
-    """Fill the moments at points from signed distances, thicknesses [cells] and normals (axis, point); mu1 is halved.
+    """Fill the moments of the kernel at points.
 
-    The kernel sees both surfaces of a thin body. So the share that a tail of any thickness takes from the cells
-    around it does not depend on how it lies between the nodes; with the nearer surface alone it does, and the force
-    shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
+    The kernel sees both surfaces of a thin body. So the fraction that a tail of any thickness takes from the cells
+    around it does not depend on how it lies between the nodes. With the nearer surface alone the fraction depends on
+    it, and the force shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
+
+    Args:
+        distance: signed distance of each point from the surface [cells].
+        normal: outward normal, shape (axis, point).
+        thickness: of the body at the nearest point of the surface [cells].
+        mu0: fluid fraction to write, shape (point,).
+        mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """
     for n in prange((distance.size + POINTS - 1) // POINTS):
         block = signed(n)
@@ -174,6 +181,20 @@ def close_surface(passage, c, triangles, origin, h):
 
 @ordered_part
 def _source_row(source, b, mu0, slab, o, start, stop, shift, inner, strides):
+    """Write one row of ``(1 - mu0) div V``; see ``fill_source``.
+
+    Args:
+        source: array of the window to write to.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the faces.
+        slab: slab of the grid.
+        o: the same slab in the window.
+        start: first cell of the row in the slab.
+        stop: the cell after the last.
+        shift: index of a cell in the slab minus its index in the window's slab.
+        inner: strides within a slab of the grid.
+        strides: strides within a slab of the window.
+    """
     j, o, slab_axis = unsigned(slab), unsigned(o), unsigned(len(inner))
     unit, fraction = source.dtype.type(1.0), source.dtype.type(0.5 / (len(inner) + 1))
     for k in range(start, stop):
@@ -190,24 +211,37 @@ def _source_row(source, b, mu0, slab, o, start, stop, shift, inner, strides):
 
 
 @compiled
-def fill_source(source, b, mu0, layout, window_layout, inner):
+def fill_source(source, b, mu0, layout, near_layout, inner):
     """Write ``(1 - mu0) div V``: the divergence of the body's own motion, which the pressure leaves alone.
 
     ``source`` and ``b`` are arrays of the window ``near``.
+
+    Args:
+        source: array of the window to write to.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the faces.
+        layout: row of the multigrid's layout for the grid; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab of the grid.
     """
-    width, (r0, r1), (s, e) = row_length(inner, mu0.shape[2]), window_rows(layout, inner), window_columns(layout, inner)
-    strides, first_slab = near_strides(window_layout, inner), window_layout[len(inner) + 2]
+    row_cells = row_length(inner, mu0.shape[2])
+    r0, r1 = window_rows(layout, inner)
+    s, e = window_columns(layout, inner)
+    strides, first_slab = near_strides(near_layout, inner), near_layout[len(inner) + 2]
     for j in range(mu0.shape[1]):
         if meets(layout, inner, j):
             for row in range(r0, r1):
-                shift = near_shift(window_layout, inner, row, width)
-                _source_row(source, b, mu0, j, j - first_slab, row * width + s, row * width + e, shift, inner, strides)
+                shift = near_shift(near_layout, inner, row, row_cells)
+                _source_row(
+                    source, b, mu0, j, j - first_slab, row * row_cells + s, row * row_cells + e, shift, inner, strides
+                )
 
 
 @ordered_part
 def _immerse_slab(
     velocity, blend, raw, b, mu0, passage, mu1, p, slab, o, start, stop, shift, strides, ej, ei, dt, keep
 ):
+    """Write the immersed velocity of one component in one row of a slab; see ``immerse``."""
     j, o, slab_axis = unsigned(slab), unsigned(o), unsigned(len(strides))
     lower_slab, upper_slab = o - UNIT, o + UNIT
     for k in range(start, stop):
@@ -227,36 +261,47 @@ def _immerse_slab(
 
 
 @threaded
-def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, window_layout, inner, dt, keep):
+def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layout, inner, dt, keep):
     """Write the immersed velocity of one component to the inner cells of the window.
 
     ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[d]`` the kernel's moment
     along axis d, all arrays of the window ``near``;
     ``velocity = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+
+    Args:
+        velocity: component to write.
+        blend: the component at the last stage.
+        raw: the fluid's own update without the pressure, array of the window.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the component's faces.
+        passage: fraction of the pressure's gradient that acts on the faces.
+        mu1: first moments of the kernel, shape (axis, slab, cell), halved, array of the window.
+        p: pressure over density.
+        component: 0 is x, 1 is y, 2 is z.
+        near_layout: row of the multigrid's layout with the window of the near arrays; see ``slab``.
+        inner: strides within a slab of the grid.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stays [-].
     """
     ej = UNIT if component == len(inner) else NONE
     ei = NONE
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
     w = len(inner) + 2
-    block = block_of(inner, window_layout[w + 1] - window_layout[w], LEAST)
-    width, (r0, r1), (s, e) = (
-        row_length(inner, p.shape[1]),
-        window_rows(window_layout, inner),
-        window_columns(window_layout, inner),
-    )
-    strides = near_strides(window_layout, inner)
+    block = block_of(inner, near_layout[w + 1] - near_layout[w], LEAST)
+    row_cells = row_length(inner, p.shape[1])
+    r0, r1 = window_rows(near_layout, inner)
+    s, e = window_columns(near_layout, inner)
+    strides = near_strides(near_layout, inner)
     r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
-    for n in prange((window_layout[w + 1] - window_layout[w] + block - 1) // block):
-        first_slab = window_layout[w] + signed(n) * block
-        for j in range(max(first_slab, window_layout[w] + 1), min(first_slab + block, window_layout[w + 1] - 1)):
+    for n in prange((near_layout[w + 1] - near_layout[w] + block - 1) // block):
+        first_slab = near_layout[w] + signed(n) * block
+        for j in range(max(first_slab, near_layout[w] + 1), min(first_slab + block, near_layout[w + 1] - 1)):
             for row in range(r0, r1):
-                start, stop, shift = (
-                    row * width + s + UNIT,
-                    row * width + e - UNIT,
-                    near_shift(window_layout, inner, row, width),
-                )
+                start = row * row_cells + s + UNIT
+                stop = row * row_cells + e - UNIT
+                shift = near_shift(near_layout, inner, row, row_cells)
                 _immerse_slab(
-                    velocity, blend, raw, b, mu0, passage, mu1, p, j, j - window_layout[w], start, stop, shift, strides,
+                    velocity, blend, raw, b, mu0, passage, mu1, p, j, j - near_layout[w], start, stop, shift, strides,
                     ej, ei, dt, keep,
                 )  # fmt: skip

@@ -45,6 +45,7 @@ class Integrator:
     """Its stages, in their order."""
 
     def __post_init__(self) -> None:
+        """Refuse stages that cannot be or do not add up to the step."""
         check_kinds(self)
         for stage in self.stages:
             check_kinds(stage)

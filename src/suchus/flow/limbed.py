@@ -105,6 +105,7 @@ class Limbed(Trunk):
     """What each of them adds."""
 
     def __post_init__(self) -> None:
+        """Check where the capsules are attached and compute what each adds to the trunk."""
         Trunk.__post_init__(self)
         spine = self._spine(0.0)
         for limb in self.limbs:
@@ -118,10 +119,15 @@ class Limbed(Trunk):
         object.__setattr__(self, "lumps", tuple(lumps))
 
     def _lump(self, straight: MidlineState, limb: Capsule, earlier_limbs: tuple[Capsule, ...]) -> Lump:
-        lower_bound, upper_bound = (
-            np.minimum(limb.start, limb.end) - limb.radius,
-            np.maximum(limb.start, limb.end) + limb.radius,
-        )
+        """Return what a capsule adds to the straight trunk and to the capsules before it, summed over points inside it.
+
+        Args:
+            straight: the trunk's midline, straight.
+            limb: the capsule.
+            earlier_limbs: the capsules before it.
+        """
+        lower_bound = np.minimum(limb.start, limb.end) - limb.radius
+        upper_bound = np.maximum(limb.start, limb.end) + limb.radius
         step = 2 * limb.radius / _MIN_POINTS_ACROSS
         x, y, z = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in (
             (a, b, max(int(np.ceil((b - a) / step)), 1))
@@ -173,7 +179,16 @@ class Limbed(Trunk):
         axes: tuple[np.ndarray, ...],
         reach: float,
     ) -> None:
-        """Write a capsule to the points that are nearer to it."""
+        """Write a capsule's field to the points of a window that are nearer to it than to what is there.
+
+        Args:
+            window_field: field to change.
+            limb: the capsule.
+            spine: the trunk's midline in its own frame.
+            frame: pose of that frame in the world.
+            axes: coordinates of the window along z, y and x [m].
+            reach: distance up to which the field counts [m].
+        """
         start, end, rate, turn = limb.placed(spine)
         ends = [np.array(frame.place((*end_point, 0.0))) for end_point in (start, end)]
         lower_bound, upper_bound = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))

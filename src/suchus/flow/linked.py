@@ -147,6 +147,7 @@ class Linked(SpaceShape):
     """The links at every time, in the frame of the body [s]."""
 
     def __post_init__(self) -> None:
+        """Refuse pieces whose links are not those of the motion."""
         links = sorted({piece.link for piece in self.pieces})
         count = len(self.motion(0.0).position)
         if links != list(range(count)) or not count:
@@ -231,7 +232,15 @@ class Linked(SpaceShape):
         *,
         earlier_only: bool = False,
     ) -> np.ndarray:
-        """Return which points lie inside another piece than their own, or inside one before it."""
+        """Return which points on one piece lie inside another piece.
+
+        Args:
+            points: in the world, shape (3, point) [m].
+            piece_poses: pose of each piece.
+            piece_index: the piece that the points are on.
+            time: when [s].
+            earlier_only: whether only the pieces before it count.
+        """
         is_inside = np.zeros(points.shape[1], bool)
         lower_bound, upper_bound = points.min(axis=1), points.max(axis=1)
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
@@ -267,7 +276,10 @@ class Linked(SpaceShape):
         return self.mass(time).volume
 
     def mass(self, time: float) -> SpaceMass:
-        """Return volume, centre and moments of the union, and what its deformation carries, by points inside it."""
+        """Return volume, centre and moments of the union and the momentum of its deformation.
+
+        They are sums over points inside the pieces.
+        """
         piece_poses, points, rates, volumes = self.poses(time, Pose()), [], [], []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             inner, point_volume = _volume_samples(piece.shape)
@@ -276,11 +288,9 @@ class Linked(SpaceShape):
             points.append(world[:, is_outside])
             rates.append(np.array(piece_pose.rates(world))[:, is_outside])
             volumes.append(np.full(int(is_outside.sum()), point_volume))
-        positions, velocities, v = (
-            np.concatenate(points, axis=1),
-            np.concatenate(rates, axis=1),
-            np.concatenate(volumes),
-        )
+        positions = np.concatenate(points, axis=1)
+        velocities = np.concatenate(rates, axis=1)
+        v = np.concatenate(volumes)
         centre, drift = positions @ v / v.sum(), velocities @ v / v.sum()
         arms, relative_velocities = positions - centre[:, None], velocities - drift[:, None]
         swirl = np.cross(arms.T, relative_velocities.T).T @ v

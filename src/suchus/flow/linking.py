@@ -53,6 +53,7 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
             super()._optimize_final_module()
 
     def _finalize_final_module(self) -> None:
+        """Finish the code: a part is not emitted; in a kernel the copies of what it calls become its own."""
         if self._is_part():
             self._finalize_dynamic_globals()
             self._verify_declare_only_symbols()

@@ -58,7 +58,7 @@ class Log:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
     def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
-        """Note what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
+        """Store what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
         skin_contents = [
             0.5 ** sum(mirror_cuts) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
@@ -72,7 +72,13 @@ class Log:
     ) -> list[FlowLoads]:  # fmt: skip
         """Return what the water did to each body in the step that just ended, and to its parts.
 
-        ``before`` is what ``held`` was when the step began.
+        Args:
+            water: after the step.
+            outlines: markers of each body.
+            reference_points: point of the torques of each body, in the frame of the grid [m].
+            dt: length of the step [s].
+            push: uniform acceleration of the water [m/s^2].
+            previous_contents: ``held`` at the start of the step.
         """
         grid, loads = self.setup.grid, []
         self.hold(water, outlines)

@@ -55,6 +55,7 @@ class TriangleMesh(SpaceShape):
     _max_thickness: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Refuse a mesh that is open, wound unevenly or looks inwards; compute its normals and its thickness."""
         vertices, faces = np.array(self.vertices, float), np.array(self.faces)
         if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not np.isfinite(vertices).all():
             raise InvalidDesign(f"the vertices have shape {vertices.shape}; give rows of three finite numbers.")
@@ -89,15 +90,9 @@ class TriangleMesh(SpaceShape):
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
         normals = np.ascontiguousarray(self._normals @ frame.matrix.T)
         paint_mesh(
-            window_field,
-            px,
-            py,
-            pz,
-            np.ascontiguousarray(self._world_vertices(frame)[self.faces]),
-            normals,
-            float(reach),
-            h,
-        )
+            window_field, px, py, pz, np.ascontiguousarray(self._world_vertices(frame)[self.faces]), normals,
+            float(reach), h,
+        )  # fmt: skip
         u, v, w = (
             np.ascontiguousarray(np.broadcast_to(rate, window_field[0].shape))
             for rate in frame.rates((px, py[:, None], pz[:, None, None]))
@@ -324,10 +319,16 @@ def _dot(x1, y1, z1, x2, y2, z2):
 
 @part
 def _nearest_point(px, py, pz, t):
-    """Return the shares of the second and third corner at a triangle's point nearest to a point, and what that is on.
+    """Return two barycentric weights of a triangle's point nearest to a point, and the feature that it lies on.
 
-    0 is the face, 1 to 3 the edges after its corners, 4 to 6 the corners; by the regions of Voronoi (Ericson 2005,
-    section 5.1.5).
+    The weights are those of the second and third corner. Features: 0 is the face, 1 to 3 are the edges after its
+    corners, 4 to 6 the corners. By the regions of Voronoi (Ericson 2005, section 5.1.5).
+
+    Args:
+        px: x of the point.
+        py: y of the point.
+        pz: z of the point.
+        t: corners of the triangle, shape (corner, axis).
     """
     ux, uy, uz = t[1, 0] - t[0, 0], t[1, 1] - t[0, 1], t[1, 2] - t[0, 2]
     vx, vy, vz = t[2, 0] - t[0, 0], t[2, 1] - t[0, 1], t[2, 2] - t[0, 2]
@@ -359,7 +360,16 @@ def _nearest_point(px, py, pz, t):
 
 @part
 def _span(lower_bound, upper_bound, reach, start, h, count):
-    """Return first and end of the points of a line that lie within a reach of a stretch."""
+    """Return the first point of a line that lies within a reach of an interval, and the point after the last.
+
+    Args:
+        lower_bound: of the interval.
+        upper_bound: of the interval.
+        reach: distance around it.
+        start: coordinate of the line's first point.
+        h: distance of the points.
+        count: points of the line.
+    """
     return max(int(np.ceil((lower_bound - reach - start) / h)), 0), min(
         int(np.floor((upper_bound + reach - start) / h)) + 1, count
     )
@@ -405,11 +415,9 @@ def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
                     signed_distance = distance if side >= 0.0 else -distance
                     window_field[0, q, j, i] = signed_distance
                     if distance > 1e-9 * h:
-                        window_field[1, q, j, i], window_field[2, q, j, i], window_field[3, q, j, i] = (
-                            dx / signed_distance,
-                            dy / signed_distance,
-                            dz / signed_distance,
-                        )
+                        window_field[1, q, j, i] = dx / signed_distance
+                        window_field[2, q, j, i] = dy / signed_distance
+                        window_field[3, q, j, i] = dz / signed_distance
                     else:
                         for d in range(3):
                             window_field[1 + d, q, j, i] = normals[f, feature, d]
@@ -419,7 +427,14 @@ def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
 
 @part
 def _fill_row(window_field, q, j, reach):
-    """Give the points of a row that no triangle reached the sign of their neighbour that one did."""
+    """Give the points of a row that no triangle reached the sign of a neighbour that a triangle reached.
+
+    Args:
+        window_field: distance and normal, shape (4, z, y, x).
+        q: index of the row along z.
+        j: index of the row along y.
+        reach: absolute distance of the points that no triangle reached.
+    """
     is_inside, is_known = False, False
     for i in range(window_field.shape[3]):
         if abs(window_field[0, q, j, i]) < reach:

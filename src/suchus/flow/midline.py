@@ -42,6 +42,7 @@ class MidlineState:
     """Rate of the half-width, or None if it stays [m/s]."""
 
     def __post_init__(self) -> None:
+        """Refuse arrays that do not fit each other, are not finite, or have a negative half-width."""
         if self.x.ndim != 1 or self.x.size < 3:
             raise InvalidDesign(f"the midline has shape {self.x.shape}; give at least 3 stations in one row.")
         for name in ("x", "y", "heading", "half_width", "x_rate", "y_rate", "heading_rate", "half_width_rate"):
@@ -101,6 +102,10 @@ MOST_PARTS = 64
 
 def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
     """Refuse cuts that divide nothing.
+
+    Args:
+        cuts: arc lengths at which a body is divided [m].
+        body_kind: what the body is called in messages.
 
     Raises:
         InvalidDesign: they do not rise from 0, or are too many.
@@ -185,7 +190,14 @@ class Midline(Shape):
         return field
 
     def _nearest_parts(self, midline: MidlineState, x: np.ndarray, y: np.ndarray, is_near: np.ndarray) -> np.ndarray:
-        """Return which part holds the section through each point of a window, in the body and near it."""
+        """Return the part whose section passes through each point of a window near the body; 0 elsewhere.
+
+        Args:
+            midline: in the world.
+            x: coordinates of the window's columns [m].
+            y: coordinates of the window's rows [m].
+            is_near: which points are in or near the body, shape (y, x).
+        """
         rows, columns = np.nonzero(is_near)
         px, py = x[columns], y[rows]
         k = KDTree(np.column_stack([midline.x, midline.y])).query(np.column_stack([px, py]))[1]

@@ -38,7 +38,17 @@ def _spin_column(slab_axis):
 
 @part
 def _tilt(sums, m, component, x, y, z, impulse):
-    """Add the angular momentum about x and about y that a component of a momentum has at a place in space."""
+    """Add the angular momentum about x and about y of an impulse along one axis at a place in space.
+
+    Args:
+        sums: shape (body, ``sums_of``).
+        m: row of the body.
+        component: axis of the impulse.
+        x: place [cells].
+        y: place [cells].
+        z: place [cells].
+        impulse: along the axis.
+    """
     if component == 0:
         sums[m, 4] += z * impulse
     elif component == 1:
@@ -50,21 +60,36 @@ def _tilt(sums, m, component, x, y, z, impulse):
 
 @compiled
 def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
-    """Add to ``sums`` (body, ``sums_of``) what the immersion gave to one component of the velocity in one stage.
+    """Add what the immersion gave to one component of the velocity in one stage.
 
-    ``mean`` is the body's velocity in the window, mean of the step's start and end: with that of the end alone the
-    power is too large by half the work of the added mass in a step. The sums are of m/s per cell; lengths for the
-    moments are in cells from the grid's corner. ``mean``, ``raw``, ``mu1`` and ``owner`` are arrays of the window; see
-    ``slab``.
+    ``mean``, ``raw``, ``mu1`` and ``owner`` are near arrays, those of the window; see ``slab``. The mean velocity is
+    needed: with that of the step's end alone the power is too large by half the work of the added mass in a step.
+
+    Args:
+        sums: shape (body, ``sums_of``), to add to [m/s per cell; moments about the grid's corner, lengths in cells].
+        velocity: the component after the stage [m/s].
+        blend: the component at the last stage [m/s].
+        raw: the fluid's own update without the pressure [m/s].
+        mean: the bodies' velocity, mean of the step's start and end [m/s].
+        passage: fraction of the pressure's gradient that acts on the faces [-].
+        mu1: first moments of the kernel, shape (axis, slab, cell).
+        p: pressure over density.
+        owner: part of the bodies that each face belongs to [-].
+        component: axis of the component.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        inner: strides within a slab.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stayed [-].
     """
     slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
-    width, columns = signed(row_length(inner, p.shape[1])), layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
     r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (-1, 2)
     c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
     for j in range(layout[w] + 1, layout[w + 1] - 1):
         for row in range(r0 + 1, r1 - 1):
             for i in range(c0 + 1, c1 - 1):
-                k = row * width + i
+                k = row * row_cells + i
                 index = (row - r0) * columns + i - c0 if slab_axis > 1 else i - c0
                 is_immersed = passage[j, k] < 1
                 for d in range(slab_axis + 1):
@@ -90,7 +115,17 @@ def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component,
 
 @part
 def _add_to_owners(sums, column, owners, o, index, columns, contribution):
-    """Add what is done in a cell to the parts that own its faces, to each by as many of these as it has."""
+    """Add a cell's contribution to the parts that own its faces, an equal amount for each face.
+
+    Args:
+        sums: shape (body, column).
+        column: column to add to.
+        owners: part that each face belongs to, shape (axis, slab, cell), near arrays.
+        o: slab in the window.
+        index: cell in the slab of the window.
+        columns: cells along a row of the window.
+        contribution: of the cell.
+    """
     axes = len(owners)
     face_contribution = contribution / (2 * axes)
     for d in range(axes):
@@ -101,9 +136,20 @@ def _add_to_owners(sums, column, owners, o, index, columns, contribution):
 
 @compiled
 def dilatation_work(sums, p, source, owners, layout, inner, dt):
-    """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
+    """Subtract from the energy the work of the pressure on the divergence of the bodies' own motion inside them.
+
+    Args:
+        sums: shape (body, ``sums_of``), to change.
+        p: pressure over density.
+        source: divergence of the bodies' own motion, near array.
+        owners: part that each face belongs to, one near array for each axis.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        inner: strides within a slab.
+        dt: length of the step [cells per (m/s)].
+    """
     slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
-    width, columns = signed(row_length(inner, p.shape[1])), layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
     r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
     c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
     for j in range(layout[w], layout[w + 1]):
@@ -111,37 +157,42 @@ def dilatation_work(sums, p, source, owners, layout, inner, dt):
             for i in range(c0, c1):
                 o, index = j - layout[w], (row - r0) * columns + i - c0
                 if source[o, index] != 0:
-                    work = dt * np.float64(p[j, row * width + i]) * source[o, index]
+                    work = dt * np.float64(p[j, row * row_cells + i]) * source[o, index]
                     _add_to_owners(sums, turn + 1, owners, o, index, columns, work)
 
 
 @compiled
-def pressed(sums, p, mu0, owners, layout, window_layout, inner, weight):
-    """Add to ``sums`` (body, 1 + axes) what the pressure does inside the region of each body, times a weight.
+def pressed(sums, p, mu0, owners, layout, near_layout, inner, weight):
+    """Add the integral of the pressure inside the region of each body and its first moments, times a weight.
 
-    Columns: the pressure summed over its cells, each by the body's share, and its first moments from the grid's corner
-    [.., .. cells]. What lies in the window of ``place`` counts; ``owners``, one for each axis, are arrays of the window
-    ``near``.
+    Args:
+        sums: shape (body, 1 + axes), to add to: the pressure summed over the cells, each by the body's fraction, and
+            its first moments about the grid's corner [.., .. cells].
+        p: pressure over density.
+        mu0: fluid fraction of the faces, shape (axis, slab, cell).
+        owners: part that each face belongs to, one near array for each axis.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab.
+        weight: factor of all sums.
     """
     slab_axis, w = len(inner), len(inner) + 2
-    width, columns = (
-        signed(row_length(inner, p.shape[1])),
-        window_layout[3 * slab_axis + 3] - window_layout[3 * slab_axis + 2] + 1,
-    )
-    n0, n1 = window_layout[w + 2] if slab_axis > 1 else 0, window_layout[3 * slab_axis + 2]
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = near_layout[3 * slab_axis + 3] - near_layout[3 * slab_axis + 2] + 1
+    n0, n1 = near_layout[w + 2] if slab_axis > 1 else 0, near_layout[3 * slab_axis + 2]
     r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
     c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
     for j in range(layout[w], layout[w + 1]):
         for row in range(r0, r1):
             for i in range(c0, c1):
-                k = row * width + i
+                k = row * row_cells + i
                 mu0_sum = np.float64(mu0[slab_axis, j, k]) + mu0[slab_axis, j + 1, k]
                 for d in range(slab_axis):
                     mu0_sum += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
                 body_fraction = 1.0 - mu0_sum / (2 * slab_axis + 2)
                 if body_fraction <= 0.0:
                     continue
-                o, index = j - window_layout[w], (row - n0) * columns + i - n1
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
                 weighted_pressure = weight * body_fraction * np.float64(p[j, k])
                 _add_to_owners(sums, 0, owners, o, index, columns, weighted_pressure)
                 _add_to_owners(sums, 1, owners, o, index, columns, weighted_pressure * (i - PAD + 0.5))
@@ -153,26 +204,36 @@ def pressed(sums, p, mu0, owners, layout, window_layout, inner, weight):
 
 
 @compiled
-def parted(sums, p, mu0, owners, layout, window_layout, inner, weight):
-    """Take from ``sums`` (body, ``sums_of``) what the pressure inside bodies does across joints of their links.
+def parted(sums, p, mu0, owners, layout, near_layout, inner, weight):
+    """Subtract from the sums what the pressure inside bodies does across joints of their links.
 
-    A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure that
-    stands there pushes these apart: it cancels in their sum, and works where they turn against each other. By the
-    share of the cell in the body this is what ``dilatation_work`` takes from the power. In space only; see ``pressed``.
+    A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure in the cell
+    pushes these links apart. It cancels in their sum, and it does work where they turn against each other. By the
+    body's fraction of the cell this is what ``dilatation_work`` takes from the power. In space only.
+
+    Args:
+        sums: shape (body, ``sums_of``), to change.
+        p: see ``pressed``.
+        mu0: see ``pressed``.
+        owners: see ``pressed``.
+        layout: see ``pressed``.
+        near_layout: see ``pressed``.
+        inner: see ``pressed``.
+        weight: see ``pressed``.
     """
     w = len(inner) + 2
-    width, columns = signed(row_length(inner, p.shape[1])), window_layout[9] - window_layout[8] + 1
-    n0, n1 = window_layout[w + 2], window_layout[8]
+    row_cells, columns = signed(row_length(inner, p.shape[1])), near_layout[9] - near_layout[8] + 1
+    n0, n1 = near_layout[w + 2], near_layout[8]
     for j in range(layout[w], layout[w + 1]):
         for row in range(layout[w + 2], layout[w + 3]):
             for i in range(layout[8], layout[9]):
-                o, index = j - window_layout[w], (row - n0) * columns + i - n1
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
                 owner_left, owner_right = owners[0, o, index], owners[0, o, index + 1]
                 owner_front, owner_back = owners[1, o, index], owners[1, o, index + columns]
                 owner_below, owner_above = owners[2, o, index], owners[2, o + 1, index]
                 if owner_left == owner_right and owner_front == owner_back and owner_below == owner_above:
                     continue
-                k = row * width + i
+                k = row * row_cells + i
                 mu0_sum = np.float64(mu0[2, j, k]) + mu0[2, j + 1, k]
                 for d in range(2):
                     mu0_sum += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
@@ -196,29 +257,35 @@ def parted(sums, p, mu0, owners, layout, window_layout, inner, weight):
 
 
 @compiled
-def contents(sums, b, mu0, owner, component, layout, window_layout, inner):
-    """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
+def contents(sums, b, mu0, owner, component, layout, near_layout, inner):
+    """Add what the region of each body holds of one component of the velocity.
 
-    Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells]. What lies in the window of
-    ``place`` counts; ``b`` and ``owner`` are arrays of the window ``near``.
+    Args:
+        sums: shape (body, ``contents_of``), to add to: the sums of its motion, its volume and first moments [m/s,
+            m^2/s^2, cells].
+        b: the bodies' velocity along the component, near array [m/s].
+        mu0: fluid fraction of the component's faces.
+        owner: part that each face belongs to, near array.
+        component: axis of the component.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab.
     """
     slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
-    width, columns = (
-        signed(row_length(inner, mu0.shape[1])),
-        window_layout[3 * slab_axis + 3] - window_layout[3 * slab_axis + 2] + 1,
-    )
-    n0, n1 = window_layout[w + 2] if slab_axis > 1 else 0, window_layout[3 * slab_axis + 2]
+    row_cells = signed(row_length(inner, mu0.shape[1]))
+    columns = near_layout[3 * slab_axis + 3] - near_layout[3 * slab_axis + 2] + 1
+    n0, n1 = near_layout[w + 2] if slab_axis > 1 else 0, near_layout[3 * slab_axis + 2]
     r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
     c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
     axes = slab_axis + 1
     for j in range(layout[w], layout[w + 1]):
         for row in range(r0, r1):
             for i in range(c0, c1):
-                k = row * width + i
+                k = row * row_cells + i
                 body_fraction = 1.0 - np.float64(mu0[j, k])
                 if body_fraction == 0.0:
                     continue
-                o, index = j - window_layout[w], (row - n0) * columns + i - n1
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
                 m = owner[o, index]
                 x = i - PAD + (0.0 if component == 0 else 0.5)
                 y = (row if slab_axis > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
@@ -321,10 +388,8 @@ def reaction(
     """
     axes, turns = len(origin), TURNS[len(origin)]
     energy = axes + len(turns)
-    change, mean_contents = (
-        end_contents[..., : energy + 1] - start_contents[..., : energy + 1],
-        0.5 * (end_contents + start_contents),
-    )
+    change = end_contents[..., : energy + 1] - start_contents[..., : energy + 1]
+    mean_contents = 0.5 * (end_contents + start_contents)
     centre = (about - np.array(origin)) / h
     size, first_moments = mean_contents[..., energy + 1, None], mean_contents[..., energy + 2 :]
     force = (change[..., :axes] - impulse[..., :axes]) / dt - size * np.array(push)

@@ -94,7 +94,18 @@ def _fold(j, n, periodic):
 
 @part
 def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
-    """Write slab ``slab`` after the first smoothing steps to slab ``o`` of ``out``."""
+    """Write the solution in one slab after the first smoothing steps, which start from nothing.
+
+    Args:
+        slabs: work array of slabs, to write to.
+        o: which of its slabs is written.
+        b: right side of the level.
+        patch_values: solution in the patch where more steps are taken; see ``patch``.
+        rect: where the patch lies.
+        slab: slab of the level.
+        inner: strides within a slab.
+        repeats: whether each axis is periodic.
+    """
     first_cell, end = run_of(inner, b.shape[1])
     first_steps(slabs, o, NONE, b, slab, inner, first_cell, end)
     give_slab(slabs, o, patch_values, rect, slab, inner)
@@ -103,28 +114,52 @@ def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
 
 @part
 def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inner):
-    """Write to a coarse slab what two slabs of the right side have more than slabs 0 and 1 of ``rest``, summed."""
+    """Write the summed residual of two slabs to a slab of the coarse level's right side.
+
+    Args:
+        coarse: right side of the coarse level, to write to.
+        coarse_slab: which of its slabs.
+        residual: on entry the operator applied to the solution in both slabs, shape (2, cell); a work array then.
+        b: right side of the level.
+        slab: first of the two slabs.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+    """
     c, j = unsigned(coarse_slab), unsigned(slab)
     first_cell, end = run_of(inner, b.shape[1])
     for k in range(first_cell, end):
         residual[0, k] = (b[j, k] + b[j + UNIT, k]) - (residual[0, k] + residual[1, k])
-    width, coarse_width = row_length(inner, b.shape[1]), row_length(coarse_inner, coarse.shape[1])
+    row_cells, coarse_row_cells = row_length(inner, b.shape[1]), row_length(coarse_inner, coarse.shape[1])
     half = residual.dtype.type(0.5)
     for n in range(row_count(coarse_inner, coarse.shape[1])):
-        fine = (n + n + EDGE) * width if len(inner) > 1 else NONE
-        row = (n + EDGE) * coarse_width if len(inner) > 1 else NONE
+        fine = (n + n + EDGE) * row_cells if len(inner) > 1 else NONE
+        row = (n + EDGE) * coarse_row_cells if len(inner) > 1 else NONE
         if len(inner) > 1:
-            for k in range(fine + EDGE, fine + width - EDGE):
-                residual[0, k] = half * (residual[0, k] + residual[0, k + width])
-        for k in range(EDGE, coarse_width - EDGE):
+            for k in range(fine + EDGE, fine + row_cells - EDGE):
+                residual[0, k] = half * (residual[0, k] + residual[0, k + row_cells])
+        for k in range(EDGE, coarse_row_cells - EDGE):
             i = fine + k + k - EDGE
             coarse[c, row + k] = residual[0, i] + residual[0, i + UNIT]
 
 
 @part
-def _descend(coarse, b, faces, level_layout, workspace, rect, j0, j1, inner, coarse_inner, repeats):
-    """Write the summed residual after the first smoothing steps to slabs ``j0`` to ``j1`` of ``coarse``."""
-    size, patch_values, is_periodic = level_layout[1], patch(workspace, rect, inner, ONE), repeats[len(inner)]
+def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+    """Write the summed residual after the first smoothing steps to some slabs of the coarse level.
+
+    Args:
+        coarse: right side of the coarse level, to write to.
+        b: right side of the level.
+        faces: coefficients of the level's faces.
+        level_layout: the level's row of the layout; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rect: where the level's patch lies.
+        j0: first coarse slab.
+        j1: the coarse slab after the last.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+        repeats: whether each axis is periodic.
+    """
+    size, patch_values, is_periodic = level_layout[1], patch(buffer, rect, inner, ONE), repeats[len(inner)]
     residual, rows = np.empty((2, b.shape[1]), b.dtype), np.empty((4, b.shape[1]), b.dtype)
     lower_slot, middle_slot, upper_slot, top_slot = 0, 1, 2, 3
     j = 2 * (j0 - PAD) + PAD
@@ -143,7 +178,17 @@ def _descend(coarse, b, faces, level_layout, workspace, rect, j0, j1, inner, coa
 
 @part
 def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
-    """Add to slab ``o`` of ``out``, which is slab ``slab`` of its level, the coarse cells, linear between them."""
+    """Add to a slab the solution of the coarse level, linear between its cells.
+
+    Args:
+        slabs: work array of slabs, to add to.
+        o: which of its slabs.
+        coarse: solution of the coarse level.
+        mix: work array for a slab and a row of coarse cells.
+        slab: slab of the level.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+    """
     near_slab = unsigned((slab - PAD) // 2 + PAD)
     far_slab = near_slab - UNIT if (slab - PAD) % 2 == 0 else near_slab + UNIT
     o, near_weight, far_weight = unsigned(o), slabs.dtype.type(0.75), slabs.dtype.type(0.25)
@@ -155,23 +200,39 @@ def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
             slabs[o, i] += near_weight * mix[k] + far_weight * mix[k - UNIT]
             slabs[o, i + UNIT] += near_weight * mix[k] + far_weight * mix[k + UNIT]
         return
-    width, coarse_width = row_length(inner, slabs.shape[1]), row_length(coarse_inner, coarse.shape[1])
+    row_cells, coarse_row_cells = row_length(inner, slabs.shape[1]), row_length(coarse_inner, coarse.shape[1])
     line = unsigned(coarse.shape[1])
     for n in range(row_count(inner, slabs.shape[1])):
-        row, near_row = (n + EDGE) * width, (n // (UNIT + UNIT) + EDGE) * coarse_width
-        far_row = near_row - coarse_width if n % (UNIT + UNIT) == NONE else near_row + coarse_width
-        for k in range(EDGE - UNIT, coarse_width - EDGE + UNIT):
+        row, near_row = (n + EDGE) * row_cells, (n // (UNIT + UNIT) + EDGE) * coarse_row_cells
+        far_row = near_row - coarse_row_cells if n % (UNIT + UNIT) == NONE else near_row + coarse_row_cells
+        for k in range(EDGE - UNIT, coarse_row_cells - EDGE + UNIT):
             mix[line + k] = near_weight * mix[near_row + k] + far_weight * mix[far_row + k]
-        for k in range(EDGE, coarse_width - EDGE):
+        for k in range(EDGE, coarse_row_cells - EDGE):
             i = row + k + k - EDGE
             slabs[o, i] += near_weight * mix[line + k] + far_weight * mix[line + k - UNIT]
             slabs[o, i + UNIT] += near_weight * mix[line + k] + far_weight * mix[line + k + UNIT]
 
 
 @part
-def _ascend(x, b, coarse, faces, dinv, level_layout, workspace, rect, j0, j1, inner, coarse_inner, repeats):
-    """Write the first smoothing steps, the coarse correction and the last two steps to slabs ``j0`` to ``j1``."""
-    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(workspace, rect, inner, ONE)
+def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+    """Write the first smoothing steps, the coarse correction and the last two steps to some slabs.
+
+    Args:
+        x: solution to write.
+        b: right side of the level.
+        coarse: solution of the coarse level.
+        faces: coefficients of the level's faces.
+        dinv: inverse diagonal of the level.
+        level_layout: the level's row of the layout; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rect: where the level's patch lies.
+        j0: first slab.
+        j1: the slab after the last.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+        repeats: whether each axis is periodic.
+    """
+    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, rect, inner, ONE)
     rows = np.empty((6, b.shape[1]), b.dtype)
     mix = np.empty(coarse.shape[1] + signed(row_length(coarse_inner, coarse.shape[1])), b.dtype)
     second_weights, first_weights = weights(inner, b.dtype.type)
@@ -191,90 +252,55 @@ def _ascend(x, b, coarse, faces, dinv, level_layout, workspace, rect, j0, j1, in
         else:
             source_slab = _fold(j - 1, size, is_periodic)
             relax_slabs(
-                rows,
-                upper_slot,
-                rows,
-                a,
-                m,
-                z,
-                b,
-                faces,
-                dinv,
-                level_layout,
-                source_slab,
-                first_weights,
-                inner,
+                rows, upper_slot, rows, a, m, z, b, faces, dinv, level_layout, source_slab, first_weights, inner,
                 repeats,
-            )
+            )  # fmt: skip
         if j == PAD + 1 and not is_periodic:
             copy_slab(rows, middle_slot, rows, upper_slot)
         if j >= j0 + 2:
             relax_slabs(
-                x,
-                j - 2,
-                rows,
-                lower_slot,
-                middle_slot,
-                upper_slot,
-                b,
-                faces,
-                dinv,
-                level_layout,
-                j - 2,
-                second_weights,
-                inner,
-                repeats,
-            )
+                x, j - 2, rows, lower_slot, middle_slot, upper_slot, b, faces, dinv, level_layout, j - 2,
+                second_weights, inner, repeats,
+            )  # fmt: skip
 
 
 @threaded_part
-def _down_threaded(coarse, b, faces, level_layout, workspace, rect, inner, coarse_inner, repeats):
+def _down_threaded(coarse, b, faces, level_layout, buffer, rect, inner, coarse_inner, repeats):
+    """Do what ``_descend`` does for all slabs, on several threads."""
     end = coarse.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST // 2)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
-        _descend(
-            coarse, b, faces, level_layout, workspace, rect, j0, min(j0 + block, end), inner, coarse_inner, repeats
-        )
+        _descend(coarse, b, faces, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner, repeats)
 
 
 @threaded_part
-def _up_threaded(x, b, coarse, faces, dinv, level_layout, workspace, rect, inner, coarse_inner, repeats):
+def _up_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, coarse_inner, repeats):
+    """Do what ``_ascend`` does for all slabs, on several threads."""
     end = x.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
         _ascend(
-            x,
-            b,
-            coarse,
-            faces,
-            dinv,
-            level_layout,
-            workspace,
-            rect,
-            j0,
-            min(j0 + block, end),
-            inner,
-            coarse_inner,
+            x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner,
             repeats,
-        )
+        )  # fmt: skip
 
 
 @part
 def _live_mean(b, dinv, inner):
     """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level."""
-    end, width, total, live = b.shape[0] - PAD, signed(row_length(inner, b.shape[1])), 0.0, 0
+    end, row_cells, total, live = b.shape[0] - PAD, signed(row_length(inner, b.shape[1])), 0.0, 0
     if len(inner) == 1:
         for j in range(PAD, end):
-            for i in range(PAD, width - PAD):
+            for i in range(PAD, row_cells - PAD):
                 if dinv[j, i] > 0:
                     total += b[j, i]
                     live += 1
     else:
         for j in range(PAD, end):
-            for row in range(PAD, signed(b.shape[1]) // width - PAD):
-                for k in range(row * width + PAD, row * width + width - PAD):
+            for row in range(PAD, signed(b.shape[1]) // row_cells - PAD):
+                for k in range(row * row_cells + PAD, row * row_cells + row_cells - PAD):
                     if dinv[j, k] > 0:
                         total += b[j, k]
                         live += 1
@@ -283,10 +309,14 @@ def _live_mean(b, dinv, inner):
 
 @part
 def _reaches(cells, axes):
-    """Return how far each step on the coarsest level goes, and the weight of the Jacobi steps that they are made of.
+    """Return the relaxation factor of each step on the coarsest level, and the weight of its Jacobi steps.
 
-    Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2, with as
-    many steps, an even number, as leave the share ``LEFT`` of each.
+    Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2. It takes
+    as many steps, an even number, as leave the fraction ``LEFT`` of each error.
+
+    Args:
+        cells: of the longest side.
+        axes: of the grid.
     """
     min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / axes
     middle = 1.0 + 0.5 * min_eigenvalue
@@ -300,7 +330,7 @@ def _reaches(cells, axes):
 
 @part
 def _relax(y, step, slab, factor):
-    """Write ``y + far (step - y)`` to a slab of ``y``."""
+    """Write ``y + factor (step - y)`` to a slab of ``y``."""
     j = unsigned(slab)
     for k in range(unsigned(y.shape[1])):
         y[j, k] += factor * (step[j, k] - y[j, k])
@@ -308,13 +338,24 @@ def _relax(y, step, slab, factor):
 
 @part
 def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
+    """Solve the coarsest level by Chebyshev's semi-iteration on Jacobi steps, from nothing; ``b`` loses its mean.
+
+    Args:
+        x: solution to write; the steps are an even number, so that it has the last one.
+        b: right side of the level, changed.
+        faces: coefficients of the level's faces.
+        dinv: inverse diagonal of the level.
+        level_layout: the level's row of the layout; see ``slab``.
+        inner: strides within a slab.
+        repeats: whether each axis is periodic.
+    """
     y, step = np.zeros_like(x), np.zeros_like(x)
     x[:] = 0
-    mean, width, real = _live_mean(b, dinv, inner), row_length(inner, x.shape[1]), x.dtype.type
+    mean, row_cells, real = _live_mean(b, dinv, inner), row_length(inner, x.shape[1]), x.dtype.type
     for j in range(PAD, x.shape[0] - PAD):
         for n in range(row_count(inner, x.shape[1])):
-            s = EDGE + (EDGE + n) * width if len(inner) > 1 else EDGE
-            for k in range(s, s + width - EDGE - EDGE):
+            s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+            for k in range(s, s + row_cells - EDGE - EDGE):
                 b[unsigned(j), k] -= mean
     max_cells = 1
     for axis in range(len(inner) + 1):
@@ -329,8 +370,18 @@ def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
 
 
 @part
-def cycle(x, store, layout, workspace, rects, inner, repeats):
-    """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``."""
+def cycle(x, store, layout, buffer, rects, inner, repeats):
+    """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``.
+
+    Args:
+        x: solution to write.
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rects: where each level's patch lies.
+        inner: strides within a slab of level 0.
+        repeats: whether each axis is periodic.
+    """
     last_level = layout.shape[0] - 1
     for k in range(last_level):
         level_inner, coarse_inner = _strides(layout, inner, k), _strides(layout, inner, k + 1)
@@ -338,23 +389,14 @@ def cycle(x, store, layout, workspace, rects, inner, repeats):
         faces, level_layout, rect = faces_of(store, layout, inner, k), layout[k], rects[k]
         seal_ends(b, repeats[len(inner)])
         if rect[1] < rect[2]:
-            start(workspace, rect, b, level_inner)
+            start(buffer, rect, b, level_inner)
         if b.size < SERIAL_BELOW:
             _descend(
-                coarse,
-                b,
-                faces,
-                level_layout,
-                workspace,
-                rect,
-                PAD,
-                coarse.shape[0] - PAD,
-                level_inner,
-                coarse_inner,
+                coarse, b, faces, level_layout, buffer, rect, PAD, coarse.shape[0] - PAD, level_inner, coarse_inner,
                 repeats,
-            )
+            )  # fmt: skip
         else:
-            _down_threaded(coarse, b, faces, level_layout, workspace, rect, level_inner, coarse_inner, repeats)
+            _down_threaded(coarse, b, faces, level_layout, buffer, rect, level_inner, coarse_inner, repeats)
     _solve_coarsest(
         x if last_level == 0 else level(store, layout, inner, X, last_level),
         level(store, layout, inner, B, last_level),
@@ -371,26 +413,15 @@ def cycle(x, store, layout, workspace, rects, inner, repeats):
         level_layout, rect, solution = layout[k], rects[k], x if k == 0 else level(store, layout, inner, X, k)
         if b.size < SERIAL_BELOW:
             _ascend(
-                solution,
-                b,
-                coarse,
-                faces,
-                dinv,
-                level_layout,
-                workspace,
-                rect,
-                PAD,
-                solution.shape[0] - PAD,
-                level_inner,
-                coarse_inner,
-                repeats,
-            )
+                solution, b, coarse, faces, dinv, level_layout, buffer, rect, PAD, solution.shape[0] - PAD, level_inner,
+                coarse_inner, repeats,
+            )  # fmt: skip
         else:
             _up_threaded(
-                solution, b, coarse, faces, dinv, level_layout, workspace, rect, level_inner, coarse_inner, repeats
+                solution, b, coarse, faces, dinv, level_layout, buffer, rect, level_inner, coarse_inner, repeats
             )
         if rect[1] < rect[2]:
-            end(workspace, rect, solution, level_inner)
+            end(buffer, rect, solution, level_inner)
             if len(inner) > 1:  # there a patch has changed cells beside the sides
                 for j in range(max(rect[1], PAD), min(rect[2], solution.shape[0] - PAD)):
                     seal_slab(solution, j, level_inner, repeats)
@@ -413,10 +444,10 @@ def _coefficients(cx, cy, dinv, level_layout):
 @part
 def _coefficients_in_space(faces, dinv, level_layout, inner):
     """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0."""
-    small, slab_axis, width = dinv.dtype.type(1e-6), len(inner), signed(row_length(inner, dinv.shape[1]))
+    small, slab_axis, row_cells = dinv.dtype.type(1e-6), len(inner), signed(row_length(inner, dinv.shape[1]))
     for j in range(level_layout[4], level_layout[5]):
         for row in range(level_layout[6], level_layout[7]):
-            for k in range(row * width + level_layout[8], row * width + level_layout[9]):
+            for k in range(row * row_cells + level_layout[8], row * row_cells + level_layout[9]):
                 total = faces[slab_axis, j, k] + faces[slab_axis, j + 1, k]
                 for d in range(slab_axis):
                     total += faces[d, j, k] + faces[d, j, k + signed(inner[d])]
@@ -425,7 +456,13 @@ def _coefficients_in_space(faces, dinv, level_layout, inner):
 
 @part
 def _in_line(c0, c1, c2):
-    """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved."""
+    """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved.
+
+    Args:
+        c0: coefficient of the face before.
+        c1: of the middle face.
+        c2: of the face behind.
+    """
     resistance = c1 * c2 + 2 * c0 * c2 + c0 * c1
     return 4 * c0 * c1 * c2 / resistance if resistance > 0 else c0
 
@@ -462,17 +499,26 @@ def _joined(face, j, k, axis, inner):
 
 
 @part
-def _coarse_faces(coarse, fine, level_layout, coarse_width, inner, axis):
-    """Fill the coefficients of a coarse level's faces across one axis in its window; ``narrow``: its row's length."""
-    slab_axis, width = len(inner), signed(row_length(inner, fine.shape[1]))
+def _coarse_faces(coarse, fine, level_layout, coarse_row_cells, inner, axis):
+    """Fill the coefficients of a coarse level's faces across one axis in its window.
+
+    Args:
+        coarse: coefficients of the coarse faces, shape (slab, cell), to write to.
+        fine: those of the fine level.
+        level_layout: the coarse level's row of the layout; see ``slab``.
+        coarse_row_cells: cells along a row of the coarse level.
+        inner: strides within a slab of the fine level.
+        axis: axis that the faces lie across.
+    """
+    slab_axis, row_cells = len(inner), signed(row_length(inner, fine.shape[1]))
     r0, r1 = (level_layout[slab_axis + 4], level_layout[slab_axis + 5] + 1) if slab_axis > 1 else (0, 1)
     for cj in range(level_layout[slab_axis + 2], level_layout[slab_axis + 3] + 1):
         j = 2 * (cj - PAD) + PAD
         for row in range(r0, r1):
-            base = (2 * (row - PAD) + PAD) * width if slab_axis > 1 else 0
+            base = (2 * (row - PAD) + PAD) * row_cells if slab_axis > 1 else 0
             for ci in range(level_layout[3 * slab_axis + 2], level_layout[3 * slab_axis + 3] + 1):
                 k = base + 2 * (ci - PAD) + PAD
-                coarse[cj, row * coarse_width + ci] = _joined(fine, j, k, axis, inner)
+                coarse[cj, row * coarse_row_cells + ci] = _joined(fine, j, k, axis, inner)
 
 
 @compiled
@@ -487,16 +533,24 @@ def coarsen(store, layout, inner):
         if k + 1 == layout.shape[0]:
             return
         coarse = faces_of(store, layout, inner, k + 1)
-        coarse_width = layout[k + 1, len(inner) + 1] + 2 * PAD
+        coarse_row_cells = layout[k + 1, len(inner) + 1] + 2 * PAD
         for d in range(len(inner) + 1):
-            _coarse_faces(coarse[d], faces[d], layout[k + 1], coarse_width, level_inner, d)
+            _coarse_faces(coarse[d], faces[d], layout[k + 1], coarse_row_cells, level_inner, d)
 
 
 @compiled
-def spread(store, layout, workspace, rects, inner):
-    """Copy the coefficients of all levels to the room; see ``patch``."""
+def spread(store, layout, buffer, rects, inner):
+    """Copy the coefficients of all levels to the patches; see ``patch``.
+
+    Args:
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        buffer: values in the patches.
+        rects: where each level's patch lies.
+        inner: strides within a slab of level 0.
+    """
     for k in range(layout.shape[0] - 1):
         if rects[k, 1] < rects[k, 2]:
             dinv = level(store, layout, inner, DINV, k)
             faces = faces_of(store, layout, inner, k)
-            take_coefficients(workspace, rects[k], layout[k], faces, dinv, _strides(layout, inner, k))
+            take_coefficients(buffer, rects[k], layout[k], faces, dinv, _strides(layout, inner, k))
