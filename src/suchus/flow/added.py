@@ -12,19 +12,19 @@ from suchus.flow.twist import Twists, held_faces, none, part_of, rise
 from suchus.flow.water import Fluid
 
 _RESIDUAL_TOLERANCE = 1e-5
-"""Divergence left over, relative to the accelerations [-]."""
+"""Divergence that the pressure solve may leave, relative to the accelerations [-]."""
 _GUESS_TOLERANCE = 1e-4
-"""The same where the matrix is to guess what a step's own solve then tells [-]."""
+"""The same where the added mass only starts an iteration that solves for the pressure itself [-]."""
 
 
 class AddedMass(NamedTuple):
-    """What the water does as parts of bodies are accelerated together, in each of some modes."""
+    """Response of the water to accelerations of the bodies' parts, mode by mode."""
 
     matrix: np.ndarray
     """Added mass, shape (mode, mode): the force in mode i is ``-matrix[i, k]`` per unit acceleration of mode k."""
     pressed: np.ndarray
-    """What the pressure then does inside the parts, as ``log.FlowLoads.pressed`` but about the origin of the grid's
-    frame, shape (mode, row, 1 + axis)."""
+    """Integral of the pressure inside the parts and its first moments, as ``log.FlowLoads.pressed`` but about the
+    origin of the grid's frame, shape (mode, row, 1 + axis)."""
 
 
 def added_mass(
@@ -85,7 +85,7 @@ def generalised_added_mass(
 ) -> AddedMass:
     """Return the added mass for motions of all bodies together, such as those of joints.
 
-    The sides of the domain are held, so that it is, if anything, too large. What lies beyond mirrors is counted.
+    The sides of the domain are held, so the result is rather too large than too small. What lies beyond mirrors counts.
 
     Args:
         water: with the bodies placed.
@@ -112,7 +112,7 @@ def generalised_added_mass(
 
 
 def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndarray) -> np.ndarray:
-    """Return the work of each mode against what takes away that links are pushed apart, shape (mode, mode).
+    """Return the work of each mode against the joint correction of each other mode, shape (mode, mode).
 
     Args:
         water: with the bodies placed.
@@ -169,20 +169,20 @@ def _body_motion(mode: Twists, rows: slice) -> Twists:
 
 @dataclass(slots=True)
 class _ModeResponses:
-    """What the water does as the bodies are accelerated in some modes, over the density and the volume of a cell."""
+    """Response of the water to accelerations of the bodies, per density and per volume of a cell."""
 
     fixed_side_mass: np.ndarray
-    """What the pressure does against each mode in each, the sides held, shape (mode, mode) [m^2/s^2]."""
+    """Work of the pressure of one mode against another, with the sides held, shape (mode, mode) [m^2/s^2]."""
     region_mass: np.ndarray
-    """The same of the bodies' own region in the place of the water."""
+    """The same work for the mass of the bodies' own region, filled with water."""
     side_potentials: list[list[np.ndarray]]
     """Potential along each side, mode by mode [m/s^2 cells]."""
     inward: list[list[np.ndarray]]
     """Acceleration that each mode induces on each side; empty in bounded water [m/s^2]."""
     pressed: np.ndarray
-    """What the potential does inside each part, mode by mode; see ``Fluid.pressures``."""
+    """Integral of the potential inside each part, mode by mode; see ``Fluid.pressures``."""
     joint_correction: np.ndarray
-    """What takes away that it pushes links apart, mode by mode, shape (mode, row, ...); see ``Fluid.across``."""
+    """Correction that removes the push of the potential between links, (mode, row, ...); see ``Fluid.across``."""
 
     @classmethod
     def solve(cls, water: Fluid, modes: Sequence[Twists], limit: float, *, sides_held: bool) -> "_ModeResponses":
@@ -233,7 +233,7 @@ class _ModeResponses:
 
 
 def _work(mode: list[np.ndarray], responses: list[np.ndarray]) -> float:
-    """Return what a mode does against a field, on the bodies' share of the faces."""
+    """Return the work of a mode against a field, both on the faces that belong to the bodies."""
     return float(sum((a * response).sum() for a, response in zip(mode, responses, strict=True)))
 
 
@@ -241,7 +241,7 @@ def _rim(
     water: Fluid, outlines: Sequence[Markers], modes: Sequence[Sequence[Twists]],
     mirror_cuts: Sequence[tuple[bool, ...]],
 ) -> np.ndarray:  # fmt: skip
-    """Return the mass over the density of the skin that the immersion holds with the bodies, per mode and mode.
+    """Return the mass of the skin of water that moves with the bodies, over the density, shape (mode, mode).
 
     Args:
         water: with the bodies placed.
@@ -265,10 +265,10 @@ def _in_open_water(
     inward: list[list[np.ndarray]],
     volume: float,
 ) -> np.ndarray:
-    """Return the added mass in open water from that with the sides held.
+    """Return the added mass in open water from the added mass with the sides held.
 
-    The sides move as the water and the body together, ``held + own``, make them. What that does to the body needs no
-    further solve: by Green's theorem it is the potential along the sides times their velocity.
+    The velocity of the sides follows from water and body together, ``fixed_side_mass + region_mass``. Its action on the
+    body needs no further solve: by Green's theorem it is the potential along the sides times their velocity.
 
     Args:
         fixed_side_mass: added mass with the sides held, over the density, shape (mode, mode).

@@ -29,7 +29,7 @@ from suchus.flow.slab import (
 )
 
 ROWS = 16
-"""Rows of a slab in space that are advanced together: they and those around them stay in the nearest caches [-]."""
+"""Rows of a slab in space that are advanced together: they and their neighbours fit in the nearest caches [-]."""
 
 
 @part
@@ -54,7 +54,7 @@ def _fluxes(flux, o, shift, rate, c, d, slab, start, stop, dj, di, ej, ei, visco
     """
     o, c, d, j, half = unsigned(o), unsigned(c), unsigned(d), unsigned(slab), flux.dtype.type(0.5)
     for k in range(unsigned(start), unsigned(stop)):
-        # loaded first: a choice of loads is a branch
+        # all values are loaded first, because a conditional load would be a branch
         value_m1, value_0 = rate[c, j - dj, k - di], rate[c, j, k]
         value_m2, value_p1 = rate[c, j - dj - dj, k - di - di], rate[c, j + dj, k + di]
         speed = half * (rate[d, j - ej, k - ei] + rate[d, j, k])
@@ -165,7 +165,7 @@ def _advance(
     margin = EDGE if slab_axis > 1 else NONE
     for j in range(first_slab - 1, slabs[1]):
         for c in range(slab_axis + 1):
-            # the first face along its own axis lies on a side
+            # the first face of component c along axis c lies on a side
             start, j0, ej, ei = s, first_slab, NONE, NONE
             if c == slab_axis:
                 ej = UNIT
@@ -232,7 +232,7 @@ def advance(velocity, blend, base, rate, p, raw, layout, near_layout, inner, rep
 
 @cache
 def advance_by(scheme: Scheme):
-    """Return ``advance`` with another advection scheme; but for limited QUICK it is compiled in each process anew."""
+    """Return ``advance`` with an advection scheme. Any scheme but limited QUICK is compiled anew in each process."""
     if scheme == QUICK:
         return advance
     name = scheme.name

@@ -1,5 +1,5 @@
-# ruff: noqa: ARG002 - bodies that bend are asked as all others are, and ask their map for the time
-"""Bodies that bend as a map says: any shape of the plane, any closed mesh in space.
+# ruff: noqa: ARG002 - bodies that bend share the interface of all bodies and pass the time to their map
+"""Bodies that a map bends: any shape of the plane, any closed mesh in space.
 
 The map says of every place in the body's frame and of every time which place of the still shape is there. Corners of
 the outline or mesh go where it says that they are, by Newton's method, and compiled code places what they enclose. The
@@ -25,21 +25,21 @@ from suchus.flow.shape import Field, Shape, Solid
 from suchus.flow.solid import SpaceField, SpaceShape
 
 CORNERS = 512
-"""Corners that stand for the outline of a plane shape, at least [-]."""
+"""Least number of corners of the polygon that approximates the outline of a plane shape [-]."""
 
 TICK = 1e-4
-"""Time over which a map is differentiated, unless it is told [s]: short for all that takes a hundredth of a second."""
+"""Default time over which a map is differentiated [s]: short for any motion that takes a hundredth of a second."""
 
 SMOOTH = 1e-2
-"""Change of the fastest velocity, over itself, with half that time, from which the map is too fast for it [-]."""
+"""Largest relative change of the fastest velocity when that time is halved; beyond it the map is refused [-]."""
 
-_STEP = 1e-5  # of the shape's size, over which a map is differentiated in space
-_POSITION_TOLERANCE = 1e-9  # of the shape's size, by which a corner may miss its place
+_STEP = 1e-5  # distance over which a map is differentiated, over the shape's size
+_POSITION_TOLERANCE = 1e-9  # largest error of a corner's position, over the shape's size
 _MAX_ITERATIONS = 40  # of Newton's method
-_MAX_STEP = 0.25  # of the shape's size; how far a corner goes in one of them
+_MAX_STEP = 0.25  # largest displacement of a corner in one iteration, over the shape's size
 
 Back = Callable[..., Sequence[np.ndarray]]
-"""Of arrays of coordinates in the body's frame [m] and of a time [s]: the coordinates of the still shape there [m]."""
+"""Map from coordinates in the body's frame [m] and a time [s] to coordinates in the still shape [m]; arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class BendingMap:
     back: Back
     """The map."""
     axes: int
-    """Of the space, 2 or 3."""
+    """Number of axes, 2 or 3."""
     size: float
     """Greatest extent of the still shape [m]."""
     tick: float
@@ -126,7 +126,7 @@ class BendingMap:
         """Return the velocities of places, if the map can be differentiated there.
 
         Raises:
-            InvalidDesign: the velocity is another one over half the time.
+            InvalidDesign: the velocity changes by more than ``SMOOTH`` when it is taken over half the time.
         """
         full_tick_velocity = self.velocity(places, time)
         half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
@@ -336,7 +336,7 @@ class BentMesh(SpaceShape):
 
 @lru_cache(maxsize=16)
 def _bent_corners(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
-    """Return where the corners of a shape are, in the body's frame, shape (axis, corner) [m]; asked again and again."""
+    """Return the corners of a bent shape in the body's frame, shape (axis, corner) [m]; the last results are cached."""
     still_corners = shape._corners if isinstance(shape, BentOutline) else shape.still.vertices.T
     corners = shape.bend.forth(still_corners, time)
     corners.flags.writeable = False
@@ -344,7 +344,7 @@ def _bent_corners(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
 
 
 _TETRAHEDRON = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
-"""Weights of the corners in the four points by which second-order functions on a tetrahedron are summed exactly [-]."""
+"""Barycentric weights of the four-point quadrature on a tetrahedron, exact for polynomials of second order [-]."""
 
 
 @overload

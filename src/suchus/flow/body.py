@@ -1,4 +1,4 @@
-"""Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
+"""Bodies in the water: a shape with a motion, and the field of several bodies on the grid."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -43,7 +43,7 @@ AnyBody = Body | FreeBody
 
 
 MOST_ROWS = 127
-"""Parts of all bodies together, at most: what a byte counts [-]."""
+"""Largest number of parts of all bodies together: the parts are counted in one byte [-]."""
 
 MIDDLE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
@@ -123,7 +123,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
             oblique to it.
     """
     frame, name = pose.along(3), "xyz"[axis]
-    alignment = np.abs(frame.matrix[axis])  # how the body's axes lie to the mirror
+    alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
     upright = float(alignment.max()) > 1 - MIDDLE**2
     if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(alignment.argmax())]:
         raise InvalidDesign(
@@ -174,12 +174,12 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
 
 
 class Overlap(NamedTuple):
-    """How deep two bodies lie in each other, if any do."""
+    """Deepest overlap of two bodies, if any overlap."""
 
     depth: float
-    """Least distance, of the points inside both, of the deepest one from either surface [m]; 0 where there is none."""
+    """Distance of the deepest point inside both bodies from the nearer of their surfaces [m]; 0 without overlap."""
     bodies: tuple[int, int]
-    """Which they are, as they are counted [-]."""
+    """Indices of the two bodies [-]."""
 
 
 def measure_all(
@@ -215,7 +215,7 @@ def measure_all(
         is_nearer = body_field.distance < nearest_field.distance
         nearest_field = _merge_fields(is_nearer, body_field, nearest_field)
         owner[is_nearer] = rows.start if part_index is None else rows.start + part_index[is_nearer]
-    assert nearest_field is not None  # there is a window around bodies only
+    assert nearest_field is not None  # a window exists only if there are bodies
     return nearest_field, owner, overlap
 
 

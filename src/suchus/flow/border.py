@@ -1,4 +1,4 @@
-"""Boundary values: fills the cells around the domain from what its sides say, in flow units.
+"""Boundary values: fills the cells around the domain from the conditions on its sides, in flow units.
 
 Each side is seen with its normal first: ``normal[k]`` and ``tangent[k]`` are lines parallel to the side, so every
 kind of side is written once.
@@ -17,18 +17,15 @@ from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 
 LOST = 1e-6
-"""Share of the water that enters which may find no way out [-]: what rounding leaves in single precision."""
+"""Largest net inflow, over the flow through all sides: the rounding error of single precision [-]."""
 
 _MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
-"""What the velocity along a side is beyond it: mirrored about a value, that value, and so on."""
+"""Conditions for the velocity along a side beyond it: mirrored about a value, that value, no vorticity, no gradient."""
 
 
 @compiled
 def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):  # type: ignore[no-untyped-def]
-    """Write the velocity on a side and in the two lines beyond it; ``step`` is 1 at the low end and -1 at the high one.
-
-    ``n`` is the velocity along the normal and ``t`` that along the side, normal index first; ``face`` and ``inner`` are
-    the lines of the side's faces and of the cells inside it.
+    """Write the velocity on a side and in the two lines of cells beyond it.
 
     Args:
         n: velocity along the normal, normal index first.
@@ -170,12 +167,12 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
 
 @dataclass(slots=True)
 class Edge:
-    """One side of the domain at work."""
+    """One side of the domain during a run."""
 
     name: str
-    """Which side it is."""
+    """Name of the side; see ``sides.NAMES``."""
     side: Side
-    """What the side is."""
+    """Kind of the side."""
     axis: int
     """Axis of the normal: 0 is x, 1 is y, 2 is z."""
     low: bool
@@ -189,11 +186,11 @@ class Edge:
     unbounded: bool
     """Whether the side is one of an unbounded domain."""
     leaves: float = 0.0
-    """Share of this step in which water is carried out here instead of held to the far water [-]."""
+    """Weight of the convective outflow condition in this step; the rest of the velocity follows the far water [-]."""
     slides: tuple[float, ...] | None = None
-    """Velocity of what the water sticks to there, along the other axes; None without friction [m/s]."""
+    """Velocity of the wall along the other axes, for a side with friction; else None [m/s]."""
     induced: np.ndarray = field(init=False)
-    """Velocity into the domain that the flow in it induces, at the end of the last step [m/s]."""
+    """Velocity into the domain that the flow inside induces on the side, at the end of the last step [m/s]."""
     seen: np.ndarray = field(init=False)
     """The same one step earlier [m/s]."""
     order: tuple[int, ...] = field(init=False)
@@ -228,12 +225,12 @@ class Edge:
         return a.transpose(self.order)  # np.moveaxis takes ten times as long
 
     def asked(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
-        """Return what the side says at a time [s]: the velocity of what the water sticks to, and that into the domain.
+        """Return the velocity of the wall along the side and the velocity of the water through it, at a time [s].
 
-        None without friction, and None where the side gives no velocity through it [m/s].
+        The first is None without friction, the second is None where the side prescribes none [m/s].
 
         Raises:
-            InvalidDesign: it says something that is no velocity.
+            InvalidDesign: the side gives something that is no velocity.
         """
         slides, inflow = self.side.along(time, 1 + self.prescribed.ndim), None
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
@@ -252,11 +249,11 @@ class Edge:
         return slides, inflow
 
     def impose(self, time: float, outward: float) -> None:
-        """Take what the side says of the water at a time.
+        """Set the velocities that the side prescribes at a time.
 
         Args:
             time: when [s].
-            outward: what share of the far stream's speed is across the side, positive outward [-].
+            outward: component of the far stream along the outward normal, over its speed [-].
         """
         self.leaves = self.side.carries(outward)
         self.slides, inflow = self.asked(time)
@@ -320,7 +317,7 @@ class Edge:
 
 @dataclass(slots=True)
 class Border:
-    """The sides at work; ``prepare`` once a step, ``fill`` whenever the velocity changed."""
+    """The sides during a run; call ``prepare`` once a step and ``fill`` whenever the velocity changed."""
 
     edges: list[Edge]
     """Left, right, bottom, top, and in space low and high; without those at which the domain does not end."""
@@ -418,7 +415,7 @@ class Border:
         self._refuse_gain(time)
 
     def _refuse_gain(self, time: float) -> None:
-        """Refuse water that enters through sides and cannot leave, or the reverse."""
+        """Refuse a net flow through the sides where no side can balance it."""
         if any(e.leaves or e.unbounded for e in self.edges):
             return
         side_inflows = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
@@ -433,10 +430,10 @@ class Border:
             )
 
     def update_induced(self, velocity: np.ndarray, window: Window) -> float:
-        """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].
+        """Set the induced velocities from the fields at the end of the step; return the largest change [m/s].
 
-        ``prepare`` could only carry on from the last steps. Without this a cylinder in a domain of 4 diameters that
-        shakes once in 20 steps has 5 % less drag, and 23 % less with the last step's value alone.
+        ``prepare`` could only extrapolate from the last steps. Without this update a cylinder in a domain of 4
+        diameters that shakes once in 20 steps has 5 % less drag, and 23 % less with the last step's value alone.
         """
         change = 0.0
         if self.water is None:

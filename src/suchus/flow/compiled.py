@@ -36,14 +36,14 @@ PAD = 2
 """Rows and columns around the domain, for the boundary values [-]."""
 
 unsigned = np.uint64
-"""What rows and columns are counted in by the kernels."""
+"""Type of row and column indices in the kernels."""
 
 signed = np.int64
-"""What kernels make of the number of a ``prange`` loop: numba counts on threads and without them in different types,
-and the parts would be compiled for both."""
+"""Type of the index of a ``prange`` loop in the kernels. numba counts in different types with and without threads, and
+the parts would be compiled for both."""
 
 UNIT = unsigned(1)
-"""One, as they count: with a signed one, numbers of rows would become floats [-]."""
+"""One, in the type of the indices: with a signed one, row numbers would become floats [-]."""
 
 Window = tuple[int, ...]
 """Padded cell indices around the bodies, first and end along each axis, the last axis first."""
@@ -76,7 +76,7 @@ FOLDER = folder()
 
 
 class _Notice(event.Listener):  # type: ignore[misc]
-    """Says on the error stream that kernels are being compiled, once that has taken ``DELAY``."""
+    """Prints on the error stream that kernels are being compiled, once compilation has taken ``DELAY``."""
 
     DELAY = 2.0  # [s]
 
@@ -84,7 +84,7 @@ class _Notice(event.Listener):  # type: ignore[misc]
         self._open, self._since, self._compile_time, self._is_printed = 0, 0.0, 0.0, False
 
     def on_start(self, compilation: event.Event) -> None:
-        """Note when a kernel begins to be compiled."""
+        """Store the time at which a compilation starts."""
         if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             if self._open == 0:
                 self._since = monotonic()
@@ -97,7 +97,7 @@ class _Notice(event.Listener):  # type: ignore[misc]
             self._open += 1
 
     def on_end(self, compilation: event.Event) -> None:
-        """Add up what it took."""
+        """Add the time of a compilation to the total."""
         if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             self._open -= 1
             if self._open == 0:
@@ -125,7 +125,7 @@ def threaded(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def threaded_with(kernel: Any, **parts: Any) -> Any:
-    """Compile a threaded kernel as it would be had its module other parts; its code is not kept.
+    """Compile a threaded kernel with other parts in place of those of its module; its code is not kept.
 
     Args:
         kernel: that ``threaded`` made.
@@ -135,19 +135,19 @@ def threaded_with(kernel: Any, **parts: Any) -> Any:
 
 
 def part_with(kernel_part: "Part[P, R]", **parts: Any) -> "Part[P, R]":
-    """Return a part as it would be had its module other parts; see ``threaded_with``."""
+    """Return a part with other parts in place of those of its module; see ``threaded_with``."""
     return Part(_rewritten(kernel_part.py_func, parts))
 
 
 def _rewritten(function: Any, names: dict[str, Any]) -> Any:
-    """Return a function that finds other things under some of the names of its module."""
+    """Return a copy of a function for which some names of its module have other values."""
     function_copy = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__)
     function_copy.__module__, function_copy.__qualname__ = function.__module__, function.__qualname__
     return function_copy
 
 
 class PartType(numba.types.Dispatcher):  # type: ignore[misc]
-    """What a part is to the kernels that call it.
+    """Type of a part in the kernels that call it.
 
     numba compiles a function once more for each constant that it is called with. Kernels take their parts in, and the
     constants with them, so for a part this changes nothing but the time that compiling takes: a third of it.

@@ -1,6 +1,7 @@
-"""Whether the rates that a motion or a bending body gives are those of its positions.
+"""Check that the rates that a motion or a bending body declares are the time derivatives of its positions.
 
-The wall moves with the ones and stands at the others: where they differ, forces and power are wrong without a trace.
+The solver takes the velocity of the wall from the rates and its place from the positions. Where they differ, forces and
+power are wrong and nothing else shows it.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,27 +17,27 @@ from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
 
 SHARE = 0.1
-"""Difference of the two, over the larger one, from which they disagree [-]."""
+"""Largest difference of declared and measured rate, over the larger of the two [-]."""
 
 QUIET = 0.05
-"""Speed, over the fastest so far, below which differences count relative to that [-]."""
+"""Speed, over the fastest so far, below which differences are compared with this speed instead of the rates [-]."""
 
 MINOR = 0.05
-"""Speed, over the fastest now, by which one kind of rate may be off beside the others [-]: half-widths follow what an
-undulation does to arc lengths by some 2 %, and a heading's rate moves an eel's sides by 7 % and more."""
+"""Speed, over the fastest now, up to which one kind of rate may be wrong [-]. An undulation changes arc lengths, and so
+half-widths, by some 2 %; the rate of a heading moves an eel's sides by 7 % and more."""
 
 NOTHING = 1e-5
-"""Distance by which the two may part in a step without further question [cells]."""
+"""Distance between the two in one step that is always allowed [cells]."""
 
 PATIENCE = 3
-"""Times in a row that they must disagree: at a kink of the motion they do so once [-]."""
+"""Consecutive disagreements that raise an error: a kink of the motion causes one [-]."""
 
 LEAP = 1.0
-"""Distance by which a body may be off the place that its rates lead to [cells]. To it comes what a kink within a step,
-where they change at once, may make: half of the distance at the greatest rate so far."""
+"""Largest distance of a body from the position that its rates lead to [cells]. A kink within a step, where the rates
+change at once, may add half of the distance that the greatest rate so far covers in a step."""
 
-_HALVINGS = 40  # of a first step, until nothing goes farther than a cell
-_COMPARISON_FRACTION = 0.01  # share of a step over which positions are compared
+_HALVINGS = 40  # of the first step, until no point moves farther than a cell
+_COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compared
 
 
 class Watched(NamedTuple):
@@ -45,24 +46,24 @@ class Watched(NamedTuple):
     places: np.ndarray
     """Coordinates less those at the first time [m, rad]."""
     rates: np.ndarray
-    """Their rates as they are given [m/s, rad/s]."""
+    """Their declared rates [m/s, rad/s]."""
     arms: np.ndarray
-    """How far one unit of each moves the surface, shape (coordinate,) [m/m, m/rad]."""
+    """Displacement of the surface per unit of each coordinate, shape (coordinate,) [m/m, m/rad]."""
     kinds: np.ndarray
-    """What kind of coordinate each is, counted from 0, shape (coordinate,) [-]."""
+    """Kind of each coordinate, counted from 0, shape (coordinate,) [-]."""
 
 
 class Told(Protocol):
-    """What gives coordinates and their rates."""
+    """A source of coordinates and their rates."""
 
     def at(self, times: Sequence[float]) -> Watched:
-        """Return what is told of some times [s]."""
+        """Return the coordinates and rates at some times [s]."""
 
     def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
-        """Return what is wrong with a coordinate's rate, given and seen, and the remedy."""
+        """Return a sentence with the declared and the measured rate of a coordinate, and the remedy."""
 
     def place(self, index: int) -> str:
-        """Return what a coordinate is called."""
+        """Return the name of a coordinate for messages."""
 
 
 def _wrap_angle(angle: np.ndarray) -> np.ndarray:
@@ -199,14 +200,14 @@ class GivenLinks(NamedTuple):
 
 @dataclass(slots=True)
 class Consistency:
-    """A motion or a bending body under watch."""
+    """Checks the rates of one motion or bending body, step by step."""
 
     told: Told
-    """What is watched."""
+    """The motion or body."""
     cell: float
     """Side of a cell [m]."""
     every: int = 1
-    """Steps from one close look at the rates to the next [-]; for leaps every step is looked at."""
+    """Steps between two comparisons of the rates [-]; leaps are looked for in every step."""
     top: float = 0.0
     """Fastest speed so far, of either kind [m/s]."""
     strikes: int = 0
@@ -214,16 +215,16 @@ class Consistency:
     steps: int = 0
     """Steps looked at [-]."""
     slack: float = 0.0
-    """Farthest that half of a step led so far [m]."""
+    """Largest distance that the rates covered in half a step so far [m]."""
     drift: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    """Way of each coordinate less what its rates add up to [m]."""
+    """Displacement of each coordinate minus the integral of its rate [m]."""
     path: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    """Way of each coordinate, to and fro [m]."""
+    """Length of the path of each coordinate [m]."""
 
     def longest(self, time: float, dt: float) -> float:
-        """Return how much of a step [s] it takes until a place has gone a cell; all of it for a body that leaps.
+        """Return the longest first step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
 
-        A body that begins at rest in water at rest says nothing yet of how fast it will be.
+        The speed at the start does not bound the step of a body that starts from rest.
         """
         step = dt
         for _ in range(_HALVINGS):
@@ -239,7 +240,7 @@ class Consistency:
         Raises:
             InvalidDesign: rates and positions disagree, with both numbers.
         """
-        for k in reversed(range(PATIENCE)):  # the message then tells of the start
+        for k in reversed(range(PATIENCE)):  # last at the start of the step, so that the message is about the start
             self._compare(time + k * dt / PATIENCE, dt)
         self.strikes = 0
 
@@ -247,8 +248,7 @@ class Consistency:
         """Compare rates and positions at the start of a step, a time [s] and ``dt`` [s], and over all of it.
 
         Raises:
-            InvalidDesign: they disagree for the third time in a row, with both numbers, or the body is not where its
-                rates have led it.
+            InvalidDesign: they disagree for the third time in a row, or the body is not where its rates lead.
         """
         if self.steps % self.every == 0:
             self._compare(time, dt)

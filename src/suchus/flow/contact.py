@@ -1,9 +1,9 @@
-"""A short-range force between bodies that nearly touch, so that they do not run through each other.
+"""A short-range force between bodies that nearly touch, so that they do not overlap.
 
-It stands for no physics of the water: the film between two bodies, which would keep them apart, is thinner than the
-grid carries once the gap is below some two cells. It is the usual remedy of fluid solvers for that, a force that grows
-with the square of how deep one body is in the other's reach, spread over the outlines instead of between two centres so
-that it serves any shape.
+The force is numerical. Water between two bodies would keep them apart, but the grid does not resolve it once the gap
+is below some two cells. Fluid solvers usually add a force for this that grows with the square of the depth of one body
+in the other's range. Here it is spread over the outlines instead of acting between two centres, so that it serves any
+shape.
 """
 
 from dataclasses import dataclass
@@ -20,14 +20,14 @@ from suchus.flow.markers import Markers
 class BodyContact:
     """A pressure ``pressure (1 - d / gap)^2`` between outlines whose distance d is below ``gap``.
 
-    It pushes both bodies alike, hardly takes energy, and knows no friction. A body whose motion is given is not moved
-    by it.
+    It pushes both bodies with the same force, takes almost no energy, and has no friction. It does not move a body
+    whose motion is given.
     """
 
     gap: float
-    """Distance from which on it acts; two to three cells serve [m]."""
+    """Distance below which it acts; two to three cells are right [m]."""
     pressure: float
-    """Pressure where the outlines touch; ten times ``density speed^2`` of the bodies' approach serves [Pa]."""
+    """Pressure where the outlines touch; ten times ``density speed^2`` of the bodies' approach is right [Pa]."""
 
     def __post_init__(self) -> None:
         """Refuse a gap or a pressure that is not positive."""
@@ -52,7 +52,7 @@ def forces(contact: BodyContact, outlines: list[Markers], centres: list[np.ndarr
             if a == b or not _is_within_gap(outline, other_outline, contact.gap):
                 continue
             x, y, fx, fy = _pushes(contact, outline, other_outline)
-            for body, sense in ((a, 0.5), (b, -0.5)):  # half of it from either outline's markers
+            for body, sense in ((a, 0.5), (b, -0.5)):  # half of the force from the markers of each outline
                 rx, ry = x - centres[body][0], y - centres[body][1]
                 total[body] += sense * np.array([fx.sum(), fy.sum(), (rx * fy - ry * fx).sum()])
     return total

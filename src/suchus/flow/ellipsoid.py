@@ -8,13 +8,13 @@ from numba import prange
 from suchus.flow.compiled import compiled, part, signed, threaded
 
 _MAX_STEPS = 12
-"""Newton steps to the foot point on an ellipsoid at most [-]: with 8 the distance is right to rounding on a 20:1."""
+"""Largest number of Newton steps [-]: with 8 the distance is exact to rounding on an ellipsoid of aspect ratio 20."""
 
 _STEP_TOLERANCE = 1e-12
-"""Change of the foot point's parameter, over the square of the smallest half-axis, at which they end [-]."""
+"""Change of the foot point's parameter, over the square of the smallest half-axis, at which the steps end [-]."""
 
 TINY = 1e-9
-"""Distance from a plane of symmetry, over the half-axis, below which a point counts as so far off it [-]."""
+"""Least distance of a point from a plane of symmetry, over the half-axis; smaller ones are set to it [-]."""
 
 
 @part
@@ -137,12 +137,12 @@ def paint_ellipsoid(window_field, x, y, z, turn, centre, velocity, spins, a, rea
     """Write distance, normal (3), velocity (3) and thickness of an ellipsoid to a window, shape (8, z, y, x).
 
     Args:
-        window_field: where to; normals and thicknesses that are not reached stay as they are.
+        window_field: array to write to; normals and thicknesses beyond ``reach`` stay as they are.
         x: coordinates of the points.
         y: coordinates of the points.
         z: coordinates of the points.
         turn: rotation matrix of the body's frame, shape (3, 3).
-        centre: its middle, shape (3,).
+        centre: middle of the ellipsoid, shape (3,).
         velocity: of the middle, shape (3,).
         spins: angular velocity, shape (3,).
         a: half-axes, shape (3,).

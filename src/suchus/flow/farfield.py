@@ -43,7 +43,7 @@ SIDE = 8
 """Cells along a block, and faces between two points of a side where the induced velocity is summed up [-]."""
 
 FAINT = 1e-6
-"""Strength over the largest one below which a block is left out: single precision has no more [-]."""
+"""Strength, over the largest one, below which a block is left out: the limit of single precision [-]."""
 
 FADE = 0.25
 """Share of the domain's length over which a wake is faded before it leaves: about a wavelength of a street [-]."""
@@ -53,13 +53,13 @@ PANELS = 16
 sides as a panel is long [-]."""
 
 LEAST = 2
-"""Cells along a panel, at least [-]."""
+"""Smallest number of cells along a panel [-]."""
 
 KNOT = 1.5
 """Panels between two knots of a side, where the velocity is summed up; between them it is cubic [-]."""
 
 IMAGES = 3
-"""Images to each side that count where two mirrors face each other, whose images have no end [-]."""
+"""Images that count to each side where two mirrors face each other and have infinitely many [-]."""
 
 
 @part
@@ -156,14 +156,14 @@ def _induced_at(x, y, block_centres, strength, min_square):  # type: ignore[no-u
 
 @threaded
 def induce(points, block_centres, strength, velocity):  # type: ignore[no-untyped-def]
-    """Write the velocity at ``points`` (2, point) to ``out``; all lengths in cells."""
+    """Write the velocity at ``points`` (2, point) to ``velocity``; all lengths in cells."""
     min_square = 0.25 * SIDE**2
     for t in prange(points.shape[1]):
         velocity[0, t], velocity[1, t] = _induced_at(points[0, t], points[1, t], block_centres, strength, min_square)
 
 
 def cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which four knots a cubic through them takes at each ``x``, and their weights, both of shape (4, x)."""
+    """Return the indices and weights of the four knots for cubic interpolation at each ``x``, both of shape (4, x)."""
     step = knots[1] - knots[0]
     first_knot = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
     t = (x - knots[first_knot]) / step
@@ -191,7 +191,7 @@ class OpenWater:
     cells: tuple[int, ...]
     """Cells along x and y."""
     points: np.ndarray = field(init=False)
-    """Where the sides are summed up, side after side, shape (2, point) [cells]."""
+    """Points of the sides where the velocity is summed up, side after side, shape (2, point) [cells]."""
     between: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
     """Which points of a side each face takes, and their weights, per side, each of shape (4, face) [-]."""
     middles: tuple[np.ndarray, np.ndarray] = field(init=False)
@@ -307,13 +307,13 @@ class Face:
     axis: int
     """Axis of its normal: 0 is x, 1 is y, 2 is z."""
     low: bool
-    """Whether it is that at the smaller coordinate."""
+    """Whether the face is at the smaller coordinate."""
     along: tuple[int, int]
     """The two axes in it, the later one first, as the arrays have them."""
     spans: tuple[tuple[int, int], ...]
     """First and last cell face of the surface along each axis [-]."""
     centre: tuple[float, ...]
-    """Where the moments of vorticity are taken about, along each axis [cells]."""
+    """Point that the moments of vorticity are about [cells]."""
     starts: tuple[np.ndarray, ...]
     """First cells of the panels along each axis, counted from the span's [-]."""
     sizes: tuple[np.ndarray, ...]
@@ -443,7 +443,10 @@ class FarField:
             normal = np.zeros(3)
             normal[face.axis] = -1.0 if face.low else 1.0
             induced = np.zeros((points.shape[1], 3, face.cells.size))
-            for signs, shifts in self._images():  # an image is seen as its original from the image of the point
+            for (
+                signs,
+                shifts,
+            ) in self._images():  # the velocity of an image is that of its original at the image of the point
                 r = (signs[:, None] * (points - shifts[:, None]))[:, :, None] - face.middles[:, None, :]
                 weight = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
                 past = np.tensordot(normal, r, 1)
@@ -454,7 +457,7 @@ class FarField:
         return (matrix if side.low else -matrix).astype(np.float32)
 
     def _images(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Return signs and shifts of the images of the domain, itself among them: a point is seen from its image."""
+        """Return signs and shifts that map a point to its images, the point itself among them."""
         axis_images = []
         for n, has_low_mirror, has_high_mirror in zip(
             self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True
@@ -472,7 +475,7 @@ class FarField:
 
         Args:
             velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
-            window: padded cell indices around the bodies, which are inside the surface.
+            window: not used; the bodies are inside the surface.
             fadings: the sides that carry a wake out.
 
         The order is that of ``sides.NAMES``, in each array the last axis first.
@@ -481,7 +484,7 @@ class FarField:
         panel_velocities = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
         strength = np.concatenate(panel_velocities, axis=1)
         cells = np.concatenate([face.cells.ravel() for face in self.faces])
-        for d in range(3):  # the far stream, or any other that is the same everywhere: it adds nothing
+        for d in range(3):  # a uniform stream adds nothing to the integral
             if not any(self.mirrors[2 * d : 2 * d + 2]):
                 strength[d] -= np.average(strength[d], weights=cells)
         flat = strength.astype(np.float32).ravel()

@@ -1,4 +1,4 @@
-"""What there is to see of a flow: velocity, pressure and vorticity on plain grids."""
+"""Fields of a flow for the user: velocity, pressure and vorticity without the padding."""
 
 from collections.abc import Iterator
 
@@ -31,7 +31,7 @@ class Fields:
 
     @property
     def domain(self) -> "Fields":
-        """The fields of the whole domain: around a patch, and in it, on the coarser cells; else these themselves."""
+        """The fields of the whole domain on the coarser cells, if there is a patch; else these fields."""
         return self if len(self.water.layers) == 1 else _Domain(self)
 
     def probe(self, points: np.ndarray | tuple[float, ...]) -> Sample:
@@ -106,7 +106,7 @@ class Fields:
 
     @property
     def fluid_share(self) -> np.ndarray:
-        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
+        """Volume fraction of the fluid in the cells, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
         faces = list(self._faces(self.water.mu0))
         total: np.ndarray = faces[0][0] + faces[0][1]
         for lower_faces, upper_faces in faces[1:]:
@@ -115,7 +115,7 @@ class Fields:
 
 
 class _Domain(Fields):
-    """What there is to see on the coarser cells around a patch."""
+    """Fields on the coarser cells around and in a patch."""
 
     def __init__(self, patch: Fields) -> None:
         self.setup, self.water, self.time, self.frame = patch.setup, patch.water.layers[-1], patch.time, patch.frame

@@ -18,14 +18,14 @@ GAP = 1.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """What the water does to a body; in the plane per metre of depth."""
+    """Load of the water on a body; in the plane per metre of depth."""
 
     pressure: tuple[float, ...]
     """Force by pressure, along each axis [N/m, N]."""
     shear: tuple[float, ...]
     """Force by friction, along each axis [N/m, N]."""
     moment: tuple[float, ...]
-    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
+    """Torque about the axes through a reference point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
     power: float
     """Power that the body's surface gives to the water [W/m, W]."""
 
@@ -42,9 +42,9 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surface:
-    """Pressure and friction along a body's outline or over its skin: where the load sits.
+    """Distribution of pressure and friction along a body's outline or over its skin.
 
-    ``resolution.ALONG_THE_SKIN`` says how far off they are. For the sum take ``Record.force``.
+    For their errors see ``resolution.ALONG_THE_SKIN``. For the total force take ``Record.force``.
     """
 
     markers: Markers
@@ -78,7 +78,7 @@ def padded(points: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def steps_of(a: np.ndarray) -> np.ndarray:
-    """Return how far apart in memory the neighbours along x, y (and z) of a field lie [-]."""
+    """Return the distance in memory between neighbours of a field along x, y (and z) [-]."""
     return np.array([stride // a.itemsize for stride in reversed(a.strides)])
 
 
@@ -116,7 +116,7 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
 
 
 def through(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
-    """Return what enters a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
+    """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
 
     Args:
         velocity: on the faces before the cells, shape (axis, ...) [m/s].

@@ -64,7 +64,7 @@ class FreeBody:
     roll: float = 0.0
     """Roll at time 0, in space [rad]."""
     spin_x: float = 0.0
-    """Component along x, in space, of what times the tensor of inertia is the angular momentum at time 0 [rad/s]."""
+    """Component along x, in space, of the tensor of inertia's inverse times the angular momentum at time 0 [rad/s]."""
     spin_y: float = 0.0
     """Its component along y; ``spin`` is that along z. Of a rigid body it is the angular velocity [rad/s]."""
 
@@ -94,14 +94,14 @@ class FreeBody:
 
     @property
     def still(self) -> bool:
-        """A free body is never taken for still."""
+        """False: a free body can always move."""
         return False
 
     def check_plane(self) -> None:
-        """Refuse what only space has, for a body in the plane.
+        """Refuse fields that need three axes, for a body in the plane.
 
         Raises:
-            InvalidDesign: naming it.
+            InvalidDesign: such a field is set.
         """
         if len(self.start) > 2:
             raise InvalidDesign(f"{self.name} starts at {self.start} m, and the grid has two axes; give (x, y).")

@@ -1,8 +1,8 @@
 """Friction of a boundary layer on a body whose layer no grid carries: a law along stations, and its band.
 
-The layer at a station rubs as that of a flat plate with the same momentum thickness. Laminar from the nose to
-the end is the least friction, turbulent from the nose on the most: the two are the band. The law holds where the layer
-stays attached; behind a separation it says nothing, and it leaves out what the layer does to the pressure.
+The friction at a station is that of a flat plate whose layer has the same momentum thickness. A layer that is laminar
+to the end has the least friction, a layer that is turbulent from the nose on the most: the two are the band. The law
+holds where the layer stays attached, not behind a separation. It leaves out the effect of the layer on the pressure.
 
 Sources: Blasius 1908, Z. Math. Phys. 56, 1-37, and Thwaites 1949, Aeronaut. Q. 1, 245-280, with the girth after Mangler
 1948, Z. angew. Math. Mech. 28, 97-103 (laminar); ITTC 1957, 8th International Towing Tank Conference, Madrid, the
@@ -94,7 +94,7 @@ def along_stations(
 
 
 _LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)
-"""Powers of girth and speed with which a layer remembers where it has been [-]."""
+"""Powers of girth and speed that weight the history of a layer, laminar and turbulent [-]."""
 
 
 def _plate(
@@ -122,7 +122,7 @@ def _laminar_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n
 
 
 def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the integral of ``ittc`` over the Reynolds number, but for a constant."""
+    """Return the integral of ``ittc`` over the Reynolds number, up to a constant."""
 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)

@@ -21,7 +21,7 @@ MOST = 2**16
 
 
 HELD = 1e-6
-"""Share of a cell by which a side of the domain may lie off the place that is asked for [-]."""
+"""Largest distance of a side of the domain from the requested position, over a cell [-]."""
 
 RATIOS = 2, 4, 8
 """Fine cells of a patch along a cell of the grid around it [-]."""
@@ -39,7 +39,7 @@ def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
 def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
     """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side.
 
-    Of a long channel up to ``LONGEST`` are left, rather than that it becomes wider.
+    A long channel may keep up to ``LONGEST`` cells along its length, so that it does not become wider.
     """
     halvings, min_side = 0, min(cells)
     while ceil(max(cells) / 2**halvings) > (COARSEST if min_side > 4 * 2**halvings else LONGEST):
@@ -49,7 +49,7 @@ def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _times(values: tuple[object, ...]) -> str:
-    """Return numbers or pairs as the size of a rectangle or box is written."""
+    """Return numbers or pairs as text, such as ``2 x 3 x 4``."""
     return " x ".join(str(value) for value in values)
 
 
@@ -63,10 +63,10 @@ def _are_pairs(ends: tuple[object, ...]) -> bool:
 
 
 def check_kinds(value: object) -> None:
-    """Refuse a setting whose fields hold other kinds of things than they declare.
+    """Refuse a setting whose fields have values of other types than they declare.
 
     Raises:
-        InvalidDesign: naming all of them.
+        InvalidDesign: the message names all such fields.
     """
     problems = [f"{field} {text}" for field, text in misfits(value)]
     if problems:
@@ -117,15 +117,15 @@ class Grid:
     ) -> "Grid":  # fmt: skip
         """Return the smallest fitting grid that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m].
 
-        What it is larger goes evenly to both ends of each axis, or where one end is held all to the other.
+        The excess length is split evenly between both ends of each axis, or added to one end where the other is held.
 
         Args:
             x: first and last place along x [m].
             y: the same along y.
             z: the same along z, in space.
             cell: side of a cell [m].
-            sides: those of the setup; each that is no ``Stream`` and no ``Outflow`` stays where it is asked for.
-                Without them a mirror or a wall may move by some cells.
+            sides: those of the setup; each that is no ``Stream`` and no ``Outflow`` stays at the requested
+                position. Without them a mirror or a wall may move by some cells.
 
         Raises:
             InvalidDesign: an empty rectangle or box, a cell that is not positive, or one that does not fit between two
@@ -163,8 +163,8 @@ class Grid:
     ) -> "Grid":  # fmt: skip
         """Return a grid of finer cells that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m], nested in this one.
 
-        It fills whole cells of this one, as many as multigrid needs; what it is larger goes evenly to both ends of each
-        axis, as far as this grid reaches.
+        It fills whole cells of this one, as many as multigrid needs. The excess is split evenly between both ends of
+        each axis, as far as this grid reaches.
 
         Args:
             x: first and last place along x [m].
@@ -259,10 +259,10 @@ def needed_memory(grid: Grid, dtype: type) -> int:
 
 
 def check_memory(grid: Grid, dtype: type) -> None:
-    """Refuse a grid whose fields the machine cannot hold, or hardly and nobody said that it may, see ``core.large``.
+    """Refuse a grid whose fields need too much memory; see ``core.large``.
 
     Raises:
-        InvalidDesign: with both numbers, and the cell that would do.
+        InvalidDesign: the fields need too much; the message has both numbers and the cell that fits.
     """
     need, have = needed_memory(grid, dtype), large.memory()
     if have is None:

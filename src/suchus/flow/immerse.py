@@ -32,29 +32,29 @@ POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 
 FLAT = 1e-9
-"""Share of a cell, or of a triangle, by which a line of cells may pass it by and still meet it [-]."""
+"""Largest distance, over a cell or a triangle, at which a line of cells that misses it still counts as a hit [-]."""
 
 LEAST_SHARE = 1e-3
-"""Share of the fluid kept inside the bodies, so that the pressure equation has no pockets cut off from the rest [-]."""
+"""Fluid fraction kept inside the bodies, so that the pressure equation has no isolated regions [-]."""
 
 THINNEST = 2.0 + 2.0**0.5
-"""Thickness below which no cell is wholly inside [cells]."""
+"""Thickness below which no cell lies completely inside the body [cells]."""
 
 THINNEST_CLOSED = 1.0
-"""Thickness that a body needs somewhere through whose middle no pressure acts [cells]: from there on the added mass and
-work of a plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they are 7 % off.
-In space the added mass of a disc as thick, across itself, is within 4 % of potential theory."""
+"""Smallest maximum thickness of a body whose middle surface is closed to the pressure [cells]. At this thickness the
+added mass and work of a plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they
+differ by 7 %. In space the added mass of a disc of this thickness, across itself, is within 4 % of potential theory."""
 
 
 def wall_offset(spread: float) -> float:
-    """Return how far outside the surface the immersion must act for the water to stick to the surface [cells].
+    """Return the offset of the immersion outside the surface at which the water sticks to the surface [cells].
 
     Applied step after step, the immersion lets friction pull the resting point of a linear profile into the body,
     the farther the larger the step. The fit is to the exact steady state of the discrete one-dimensional profile,
     averaged over the wall's position between the nodes: 0.03 cells at a spread of 0.001, 0.10 at 0.01, 0.27 at 0.1,
-    0.35 at 0.2. Without it a cylinder has too little drag by 2 % at 32 cells a diameter. It has to follow the step
-    that is taken: with the offset of another one, the force jumps by 27 % of the drag of a cylinder at Re 40 when the
-    step is halved at once, and with its own by 2.3 %.
+    0.35 at 0.2. Without it a cylinder has too little drag by 2 % at 32 cells a diameter. The offset has to follow
+    the step: when the step is halved at once, the force on a cylinder at Re 40 jumps by 27 % of the drag with the old
+    offset, and by 2.3 % with the new one.
 
     Args:
         spread: viscosity times the step over the cell squared [-].
@@ -64,7 +64,7 @@ def wall_offset(spread: float) -> float:
 
 @part
 def moment0(distance):
-    """Return the share of the fluid at a signed distance [cells] from the surface, 0 inside to 1 outside."""
+    """Return the fluid fraction at a signed distance [cells] from the surface, 0 inside to 1 outside."""
     if distance <= -1.0:
         return 0.0
     if distance >= 1.0:
@@ -117,11 +117,11 @@ def _lines_within(p, q, r, origin, h, count):
 
 @compiled
 def close(passage, x, y, x0, y0, h):
-    """Let the pressure not act on the faces of one direction whose two cells lie on either side of a line.
+    """Close the faces of one direction whose two cells lie on either side of a line to the pressure.
 
-    What the kernel of a body thinner than its own width leaves to the fluid is driven through it by the pressure,
-    step after step: half a cell thick, a plate that heaves has a twentieth of its added mass. No path from cell to
-    cell crosses the line when these faces are closed, however it lies.
+    The kernel of a body thinner than the kernel's width leaves some fluid inside, which the pressure drives through the
+    body in every step: a plate that heaves and is half a cell thick has a twentieth of its added mass. When these faces
+    are closed, no path from cell to cell crosses the line.
 
     Args:
         passage: share of the pressure's gradient that acts on the faces of a window, shape (row, face); changed.

@@ -20,7 +20,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 
 ROUNDING = 1e-9
-"""How far sums over stages may be off what a method of some order asks [-]."""
+"""Largest error of the sums over stages in the conditions of an order [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +28,9 @@ class Stage:
     """One stage of an integrator."""
 
     keep: float
-    """Share of the last stage's velocity that stays, 0 to 1 [-]; 0 in the first stage, which has none before it."""
+    """Weight of the last stage's velocity, 0 to 1 [-]; 0 in the first stage."""
     span: float
-    """How far the stage goes from the step's start, in steps [-]."""
+    """Length of the stage from the step's start, in steps [-]."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Integrator:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Share of each stage in the velocity at the step's end, shape (stage,) [-]; they add up to 1."""
+        """Weight of each stage in the velocity at the step's end, shape (stage,) [-]; the sum is 1."""
         stage_weights = np.zeros(len(self.stages))
         for k, stage in enumerate(self.stages):
             stage_weights *= stage.keep
@@ -71,7 +71,7 @@ class Integrator:
 
     @cached_property
     def rates(self) -> np.ndarray:
-        """Butcher's table: the part that each stage has of the rates taken in each, shape (stage, stage) [steps]."""
+        """Butcher's table: coefficient of the rates of each stage in each stage, shape (stage, stage) [steps]."""
         table = np.zeros((len(self.stages),) * 2)
         for k, stage in enumerate(self.stages):
             if k:
@@ -87,7 +87,9 @@ class Integrator:
         with an error of their own.
         """
         b = self.rates[-1]
-        stage_table = np.vstack([np.zeros(len(b)), self.rates[:-1]])  # rates are taken at what the last stage left
+        stage_table = np.vstack(
+            [np.zeros(len(b)), self.rates[:-1]]
+        )  # rates are taken at the velocity of the last stage
         c = stage_table.sum(axis=1)
         order_conditions = (
             (1.0, ((b.sum(), 1.0),)),
@@ -103,10 +105,10 @@ class Integrator:
 
 
 EULER = Integrator((Stage(0.0, 1.0),))
-"""Euler's method, of first order: to compare with; its vortices grow by themselves unless steps are small."""
+"""Euler's method, of first order, for comparison; vortices grow unless the steps are small."""
 
 HEUN = Integrator((Stage(0.0, 1.0), Stage(0.5, 1.0)))
 """Heun's method, of second order."""
 
 SHU_OSHER = Integrator((Stage(0.0, 1.0), Stage(0.25, 1 / 3), Stage(2 / 3, 2.0)))
-"""The method of third order of Shu and Osher, for half as much time again as Heun's."""
+"""The method of third order of Shu and Osher; it takes one and a half times as long as Heun's."""

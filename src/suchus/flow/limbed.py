@@ -78,7 +78,7 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lump:
-    """What a capsule adds to a trunk: its part outside of the straight trunk and of the capsules before it."""
+    """Volume and moments that a capsule adds to a trunk: its part outside the straight trunk and earlier capsules."""
 
     volume: float
     """Volume [m^3]."""
@@ -93,7 +93,7 @@ class Lump:
 class Limbed(Trunk):
     """The union of a trunk and capsules, whose axes lie in the plane of its midline.
 
-    What a capsule shares with the trunk is that of the straight trunk, however it bends.
+    The overlap of capsule and trunk is computed for the straight trunk and kept when the trunk bends.
 
     Raises:
         InvalidDesign: see ``Trunk``; or a capsule that is attached beyond the trunk's ends.
@@ -102,7 +102,7 @@ class Limbed(Trunk):
     limbs: tuple[Capsule, ...] = ()
     """The capsules."""
     lumps: tuple[Lump, ...] = field(init=False, repr=False, default=())
-    """What each of them adds."""
+    """Volume and moments that each capsule adds."""
 
     def __post_init__(self) -> None:
         """Check where the capsules are attached and compute what each adds to the trunk."""
@@ -208,7 +208,9 @@ class Limbed(Trunk):
             component * present_component[box]
             for component, present_component in zip(normal, window_field.normal, strict=True)
         )
-        sunk = trunk < facing * (distance + 2 * limb.radius)  # the capsule's far side lies in what is there already
+        sunk = trunk < facing * (
+            distance + 2 * limb.radius
+        )  # the capsule's far side lies in the body that the field has already
         limb_velocity = turned(
             frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
         )
@@ -227,7 +229,7 @@ class Limbed(Trunk):
         return int(np.searchsorted(self.cuts, limb.at, side="right"))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points over what is outside of trunk and capsules: those inside stand for no area."""
+        """Return points over trunk and capsules; points inside the body have no area."""
         spine, frame = self.placed(time, pose)
         skin = self._skin(spine, spacing)
         points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
@@ -307,12 +309,13 @@ def _straight(spine: MidlineState) -> MidlineState:
 def around_rod(length: float, radius: float, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return points over a rod with round ends, normals and areas.
 
-    Points and normals are along its axis, from the middle of its first end, and twice across; they are kept.
+    Coordinates are along the axis, from the middle of the first end, and along two axes across it. The arrays are
+    cached.
 
     Args:
         length: between the middles of its ends [m].
         radius: of the rod [m].
-        spacing: about how far the points are apart [m].
+        spacing: approximate distance of the points [m].
     """
     r = radius
     count = max(_MIN_POINTS_AROUND, int(np.ceil(2 * np.pi * r / spacing)))

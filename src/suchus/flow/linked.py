@@ -197,7 +197,7 @@ class Linked(SpaceShape):
             thickness = np.where(np.isfinite(piece_field.thickness), piece_field.thickness, 0.0)
             sunk = present_distance < facing * (
                 piece_field.distance + thickness
-            )  # its far side lies in what is there already
+            )  # the piece's far side lies in the body that the field has already
             values = [
                 (window_field.distance, piece_field.distance),
                 (window_field.thickness, np.where(sunk, np.inf, piece_field.thickness)),
@@ -210,7 +210,7 @@ class Linked(SpaceShape):
         return window_field
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points over what is outside of all pieces: those inside another one stand for no area."""
+        """Return points over all pieces; points inside another piece have no area."""
         piece_poses, skins = self.poses(time, pose), []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             skin = piece.shape.markers(time, piece_pose, spacing)
@@ -315,7 +315,7 @@ def _corners(bounds: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=128)
 def _volume_samples(shape: Spherocylinder | Ellipsoid) -> tuple[np.ndarray, float]:
-    """Return points spread evenly inside a shape, in its own frame, and the volume that each stands for [m], [m3]."""
+    """Return points of a regular lattice inside a shape, in its own frame [m], and the volume per point [m^3]."""
     half = shape.half
     step = 2 * float(half.min()) / _MIN_POINTS_ACROSS
     lines = [(np.arange(n) + 0.5) * 2 * a / n - a for a, n in ((a, int(np.ceil(2 * a / step))) for a in half)]
@@ -325,7 +325,13 @@ def _volume_samples(shape: Spherocylinder | Ellipsoid) -> tuple[np.ndarray, floa
 
 
 def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
-    """Return the pose of a piece in the world, its link being in a frame."""
+    """Return the pose of a piece in the world.
+
+    Args:
+        piece: the piece.
+        links: states of the links in the body's frame.
+        frame: pose of that frame in the world.
+    """
     k, outer = piece.link, frame.matrix
     link_matrix = links.matrix[k]
     arm = link_matrix @ np.array(piece.at)
@@ -339,21 +345,22 @@ def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
 
 
 def onward(states: LinkStates, time: float) -> LinkStates:
-    """Return links that have gone on at their rates for a time [s]."""
+    """Return the links after they have moved at constant rates for a time [s]."""
     matrix = rotation.turns(time * states.spin) @ states.matrix if time else states.matrix
     return states._replace(position=states.position + time * states.velocity, matrix=matrix)
 
 
 def between(start: LinkStates, end: LinkStates, span: float, fraction: float) -> LinkStates:
-    """Return links on their way from one state to another: cubics with the places and rates of both ends.
+    """Return links between two states: cubics with the positions and rates of both ends.
 
-    Turns are rotation vectors from the start. Before and after, the links go on at the rates of the nearer end.
+    Rotations are interpolated as rotation vectors from the start. Before the start and after the end the rates are
+    constant, those of the nearer end.
 
     Args:
-        start: where the way begins.
-        end: where it ends.
-        span: time from the one to the other [s].
-        fraction: of the way; 0 at the start, 1 at the end [-].
+        start: state at fraction 0.
+        end: state at fraction 1.
+        span: time from the start to the end [s].
+        fraction: of the time; 0 at the start, 1 at the end [-].
     """
     if not 0.0 < fraction < 1.0:
         return onward(start, fraction * span) if fraction <= 0.0 else onward(end, (fraction - 1.0) * span)

@@ -1,4 +1,4 @@
-"""The book that a simulation keeps: what acts on each body in every step, and the rows of the record."""
+"""Log of a simulation: the loads on each body in every step, and the rows of the record."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ FASTEST = 100.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlowLoads:
-    """What the water did to one body in one step."""
+    """Loads of the water on one body in one step."""
 
     about: np.ndarray
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
@@ -35,8 +35,8 @@ class FlowLoads:
     """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
     about ``about``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
 
-    Parts press on each other so, which is not the water's doing: taken as rigid pieces, they work against it where
-    the body bends."""
+    By this pressure the parts push each other; it is no load of the water. Rigid parts do work against it where the
+    body bends."""
 
 
 @dataclass(slots=True)
@@ -48,7 +48,7 @@ class Log:
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)
-    """What the region of each part of each body held at the end of the last step; see ``momentum.contents``."""
+    """Contents of the region of each part of each body at the end of the last step; see ``momentum.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
     control_rows: list[tuple[float, ...]] = field(default_factory=list)
@@ -58,7 +58,7 @@ class Log:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
     def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
-        """Store what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
+        """Store the contents of the placed bodies' regions; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
         skin_contents = [
             0.5 ** sum(mirror_cuts) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
@@ -70,7 +70,7 @@ class Log:
         self, water: Fluid, outlines: Sequence[Markers], reference_points: list[tuple[float, ...]], dt: float,
         push: tuple[float, ...], previous_contents: np.ndarray,
     ) -> list[FlowLoads]:  # fmt: skip
-        """Return what the water did to each body in the step that just ended, and to its parts.
+        """Return the loads on each body and its parts in the step that just ended.
 
         Args:
             water: after the step.
@@ -101,12 +101,12 @@ class Log:
         return loads
 
     def control(self, water: Fluid, dt: float, push: tuple[float, ...]) -> None:
-        """Note the force from the box, if there is one."""
+        """Append the force from the control volumes, if there are any."""
         for box in self.controls:
             self.control_rows.append(box.force(water, dt, push, self.setup.density))
 
     def refuse_nonsense(self, fastest: float, reference: float, row: np.ndarray, good: dict[str, np.ndarray]) -> None:
-        """Refuse fields that are no longer finite or far too fast; the error keeps the last good ones.
+        """Refuse fields that are not finite or far too fast; the error has the last good velocities.
 
         Args:
             fastest: fastest water now [m/s].
@@ -130,7 +130,9 @@ class Log:
     def record(self) -> Record:
         """The time series so far."""
         bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
-        counts = [len(rows) if _is_told(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)]
+        counts = [
+            len(rows) if _is_divided(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)
+        ]
         body_columns, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
         rows = np.array(self.rows).reshape(len(self.rows), HEAD + body_columns + parts * len(PART_COLUMNS))
         return Record(
@@ -142,8 +144,8 @@ class Log:
         )  # fmt: skip
 
 
-def _is_told(body: AnyBody) -> bool:
-    """Return whether the record has the parts of a body, which then lie one behind the other."""
+def _is_divided(body: AnyBody) -> bool:
+    """Return whether the record has the parts of a body: those along a midline."""
     return isinstance(body.shape, Trunk | Midline)
 
 
@@ -152,9 +154,9 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
 
     Args:
         load: pressure and friction along its outline; None in space.
-        act: what the water did to it.
+        act: load of the water on the body.
         frame: mean velocity of the grid [m/s].
-        place: where it is.
+        place: pose of the body.
         error: estimated error of its force [-].
     """
     power = float(act.power - frame @ act.force)
@@ -174,14 +176,14 @@ def part_columns(
 
     Args:
         body: which.
-        acts: what the water did to each part, its torque about one point.
+        acts: load of the water on each part, its torque about one point.
         reference_point: that point, in the frame of the grid [m].
         pose: of the body, in the frame of the grid.
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """
     force, torque = acts.force, acts.moment
-    if len(force) < 2 or not _is_told(body):
+    if len(force) < 2 or not _is_divided(body):
         return []
     assert isinstance(body.shape, Trunk | Midline)
     power = acts.power - force @ frame

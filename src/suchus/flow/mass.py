@@ -1,4 +1,4 @@
-"""Area, centre and moments of a body's shape, and the momentum that its deformation alone would carry."""
+"""Area, centre and moments of a body's shape, and the momentum of its deformation."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -31,7 +31,7 @@ class Mass:
         return np.diag([self.area, self.area, self.moment])
 
     def recoil(self, _: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: 0, 0 and an angular one [rad/s]."""
+        """Return the velocity that the deformation takes from the frame: 0, 0 and the angular velocity [rad/s]."""
         return np.array([0.0, 0.0, self.swirl / self.moment])
 
 
@@ -65,7 +65,7 @@ class SpaceMass:
         return inertia_matrix
 
     def recoil(self, matrix: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: three zeros, three angular ones [rad/s]."""
+        """Return the velocity that the deformation takes from the frame: 0, 0, 0 and the angular velocity [rad/s]."""
         return np.concatenate([np.zeros(3), matrix @ np.linalg.solve(self.moments, self.swirl)])
 
 
@@ -90,7 +90,7 @@ def of_midline(spine: np.ndarray) -> Mass:
     """Return the mass of a body from the rows of its midline.
 
     Rows: x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s]. Each
-    cross-section is a rod; where the midline bends, its outer half counts for more than its inner one.
+    cross-section is a rod; where the midline bends, the outer half of the rod weighs more than the inner half.
     """
     w = (spine[3, 1:] + spine[3, :-1]) / 2
     area, centre, rate, second, swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)

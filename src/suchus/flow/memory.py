@@ -18,9 +18,9 @@ _NUMBERS = ("time", "_last", "_speed", "_reference", "_fastest", "_placed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Snapshot:
-    """All that changes of a simulation, in copies; ``Simulation.restore`` goes back to it, as often as it is asked to.
+    """Copies of all of a simulation that changes; ``Simulation.restore`` can go back to it any number of times.
 
-    What a ``Body`` is told from outside is not in it: its shape and motion must be what they were at that time.
+    Shape and motion of a ``Body`` are not part of it: they must be the same as at that time.
     """
 
     numbers: Mapping[str, float]
@@ -32,7 +32,7 @@ class Snapshot:
     rows: tuple[int, int, np.ndarray | None]
     """Rows of the record and of its control volume, and the last row."""
     watched: tuple[Consistency, ...]
-    """How rates and places agreed so far."""
+    """State of the checks of the declared rates."""
     outlines: tuple[Markers, ...]
     """Skins of the bodies."""
 
@@ -51,7 +51,7 @@ def take(sim: "Simulation") -> Snapshot:
 
 
 def give(sim: "Simulation", snapshot: Snapshot) -> None:
-    """Let a simulation be what it was, but for the bodies in the equations, which are placed anew."""
+    """Restore a simulation from a snapshot; the bodies are placed anew in the next step."""
     for name, value in snapshot.numbers.items():
         setattr(sim, name, value)
     arrays = {name: value.copy() for name, value in snapshot.arrays.items()}

@@ -28,13 +28,13 @@ from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
 _SYMMETRY_TOLERANCE = 1e-6
 """Distance of corners from their mirror images, over the mesh's size, up to which it is symmetric [-]."""
 _PROBES = 8
-"""Points along the radius of the largest ball that may lie in the mesh, when its thickness is sought [-]."""
+"""Points along the radius of the largest ball that fits in the mesh, in the search for its thickness [-]."""
 _AMPLE = 1.05
 """Margin of that radius [-]."""
 _CELLS_ALONG_BOX = 100
-"""Cells along the longest side of a box in which a surface is sought [-]."""
+"""Cells along the longest side of the box in which the surface of a signed distance is searched [-]."""
 _NEWTON = 3
-"""Steps by which its corners are put onto it [-]."""
+"""Newton steps that move the corners onto the surface [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,7 +50,7 @@ class TriangleMesh(SpaceShape):
     vertices: np.ndarray
     """Corners in the body's own frame, shape (vertex, 3) [m]."""
     faces: np.ndarray
-    """Which three make each triangle, counter-clockwise seen from outside, shape (face, 3) [-]."""
+    """Indices of the corners of each triangle, counter-clockwise seen from outside, shape (face, 3) [-]."""
     _normals: np.ndarray = field(init=False, repr=False)
     _max_thickness: float = field(init=False, repr=False)
 
@@ -161,7 +161,7 @@ def _six_volumes(corners: np.ndarray) -> np.ndarray:
 
 
 def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
-    """Return the mass of what is still inside a closed mesh, by the corners of its faces (face, corner, axis) [m]."""
+    """Return the mass inside a rigid closed mesh, from the corners of its faces (face, corner, axis) [m]."""
     six, total, zero = _six_volumes(corners), corners.sum(axis=1), (0.0, 0.0, 0.0)
     volume = float(six.sum()) / 6
     centre = (six[:, None] * total).sum(axis=0) / 24 / volume
@@ -176,7 +176,7 @@ def middles_of(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndar
 
     Args:
         corners: of the faces, shape (face, corner, axis) [m].
-        spacing: about how far apart the middles are to be [m].
+        spacing: approximate distance of the middles [m].
     """
     edges = np.roll(corners, -1, axis=1) - corners
     parts = np.maximum(1, np.ceil(np.sqrt((edges**2).sum(axis=2)).max(axis=1) / spacing)).astype(int)
@@ -250,10 +250,10 @@ def mesh_of_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> 
 
 
 def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
-    """Refuse a surface that is not closed, or whose faces do not all look to one side of it.
+    """Refuse a surface that is not closed, or whose faces have different orientations.
 
     Raises:
-        InvalidDesign: naming an edge, and the remedy.
+        InvalidDesign: the message names an edge and the remedy.
     """
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     edge_keys, reverse_keys = start * len(vertices) + end, end * len(vertices) + start
@@ -282,7 +282,8 @@ def _point_text(point: np.ndarray) -> str:
 def pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return the pseudo-normals of each face, its three edges and its three corners, shape (face, 7, 3) [-].
 
-    An edge's is the sum of its faces' normals, a corner's that of all around it, weighted by their angles there.
+    The pseudo-normal of an edge is the sum of the normals of its two faces. That of a corner is the sum of the normals
+    of all faces around it, weighted by their angles at the corner.
     """
     corners = vertices[faces]
     edges = np.roll(corners, -1, axis=1) - corners

@@ -39,7 +39,7 @@ class MidlineState:
     heading_rate: np.ndarray
     """Rate of the heading [rad/s]."""
     half_width_rate: np.ndarray | None = None
-    """Rate of the half-width, or None if it stays [m/s]."""
+    """Rate of the half-width, or None if it is constant [m/s]."""
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit each other, are not finite, or have a negative half-width."""
@@ -64,7 +64,7 @@ class MidlineState:
 
     @property
     def swell(self) -> np.ndarray:
-        """Rate of the half-width, zero if it stays [m/s]."""
+        """Rate of the half-width, zero if it is constant [m/s]."""
         return np.zeros(self.x.size) if self.half_width_rate is None else self.half_width_rate.astype(np.float64)
 
     @property
@@ -117,17 +117,17 @@ def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
 
 
 class Remembered:
-    """A midline over time that remembers what it was, and where: a step asks for the same times often."""
+    """A midline over time that caches its last states: a step needs the midline at the same times often."""
 
     LAST = 4
-    """Times that are remembered [-]."""
+    """Number of times that are cached [-]."""
 
     def __init__(self, spine: Callable[[float], MidlineState]) -> None:
         self._spine, self._states = spine, dict[float, MidlineState]()
         self._world_state: tuple[float, Pose, MidlineState] | None = None
 
     def __call__(self, time: float) -> MidlineState:
-        """Return the midline at a time [s]; its arrays are its own, whatever becomes of those that were given."""
+        """Return the midline at a time [s]; its arrays are copies."""
         if time not in self._states:
             state = copy(self._spine(time))
             for attribute in fields(state):
@@ -145,7 +145,7 @@ class Remembered:
         return self._world_state[2]
 
     def forget(self) -> None:
-        """Ask anew from now on: the body has become another."""
+        """Clear the cache, because the body has changed."""
         self._states.clear()
         self._world_state = None
 
@@ -159,8 +159,7 @@ class Midline(Shape):
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
-    [m]."""
+    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.along`` [m]."""
 
     def __post_init__(self) -> None:
         check_cuts(self.cuts, "midline")
@@ -246,7 +245,7 @@ class Midline(Shape):
         )  # fmt: skip
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the midline, but for its ends where they are round: wider than the way to the tip is long."""
+        """Return the midline without its round ends, where the half-width is larger than the distance to the tip."""
         midline = self._world_midline(time, pose)
         to_tip = np.minimum(midline.arc, midline.arc[-1] - midline.arc)
         slender_stations = np.flatnonzero(midline.half_width < to_tip)

@@ -2,12 +2,12 @@
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """Forces on bodies from the momentum that the immersion itself exchanges with the water.
 
-In each step the immersion changes the momentum of the cells in and around a body by a known amount. What of it does
-not go into the momentum of the region that the body fills is what the body gives to the water: the balance of the
-discrete equations is exact, whatever the wall looks like between the nodes. Angular momentum gives the torque and
-energy the power in the same way. The immersion holds a skin ``wall_offset`` thick with the body; it counts as water.
-With it as a part of the body the torque of a turning cylinder is 6 % off at 32 cells a diameter, without 0.8 %. (The
-inertia of a translating one, whose skin also keeps the water away, comes out 2 to 3 % too large.)
+In each step the immersion changes the momentum of the cells in and around a body by a known amount. One part of it
+changes the momentum of the region that the body fills; the body gives the rest to the water. This balance is exact for
+the discrete equations, whatever the wall looks like between the nodes. Angular momentum gives the torque and energy the
+power in the same way. The immersion moves a skin of thickness ``wall_offset`` with the body; the skin counts as water.
+If it counted as body, the torque of a turning cylinder would be wrong by 6 % at 32 cells a diameter; as water it is
+wrong by 0.8 %. (The inertia of a translating cylinder, whose skin also keeps the water away, is 2 to 3 % too large.)
 """
 
 from dataclasses import dataclass
@@ -21,18 +21,18 @@ from suchus.flow.slab import row_length
 
 
 def sums_of(axes: int) -> int:
-    """Return how many sums are kept per body: momentum, angular momentum (in the plane that about z), energy."""
+    """Return the number of sums per body: momentum, angular momentum (in the plane only about z), energy."""
     return axes + len(TURNS[axes]) + 1
 
 
 def contents_of(axes: int) -> int:
-    """Return how much is kept of a body's region: the sums of its motion, its volume and its first moments."""
+    """Return the number of sums per body's region: the sums of its motion, its volume and its first moments."""
     return sums_of(axes) + 1 + axes
 
 
 @part
 def _spin_column(slab_axis):
-    """Return where the angular momentum about z is kept; those about x and y, in space, stand before it."""
+    """Return the column of the angular momentum about z; in space those about x and y come before it."""
     return slab_axis + 1 if slab_axis == 1 else slab_axis + 3
 
 
@@ -60,7 +60,7 @@ def _tilt(sums, m, component, x, y, z, impulse):
 
 @compiled
 def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
-    """Add what the immersion gave to one component of the velocity in one stage.
+    """Add the impulse of the immersion on one component of the velocity in one stage, with its moments and energy.
 
     ``mean``, ``raw``, ``mu1`` and ``owner`` are near arrays, those of the window; see ``slab``. The mean velocity is
     needed: with that of the step's end alone the power is too large by half the work of the added mass in a step.
@@ -308,7 +308,7 @@ def contents(sums, b, mu0, owner, component, layout, near_layout, inner):
 def skins(
     markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
-    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, part by part.
+    """Return the contents of the skin of water, ``offset`` cells thick, that ``contents`` counts as body, part by part.
 
     Args:
         markers: of one body.
@@ -333,12 +333,12 @@ def skins(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What the water does to a body, or to each of its parts, mean over a step; in the plane per metre of depth."""
+    """Load of the water on a body, or on each of its parts, mean over a step; in the plane per metre of depth."""
 
     force: np.ndarray
     """Force (x, y) or (x, y, z), shape (..., axis) [N/m, N]."""
     moment: np.ndarray
-    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z), shape
+    """Torque about the axes through a reference point, (z,) in the plane, counter-clockwise, or (x, y, z), shape
     (..., turn) [N, N m]."""
     power: np.ndarray
     """Power that the surface gives to the water, in the frame of the grid, shape (...) [W/m, W]."""
@@ -349,11 +349,11 @@ class Reaction:
         return self.moment[..., -1]
 
     def __getitem__(self, index: int | slice) -> "Reaction":
-        """Return that on one or some of several bodies or parts."""
+        """Return the loads on one or some of several bodies or parts."""
         return Reaction(force=self.force[index], moment=self.moment[index], power=self.power[index])
 
     def whole(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
-        """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.
+        """Return the load on the whole body, if mirrors cut it and this is the load on the part in the domain.
 
         Forces through a mirror, and torques about the axes in it, vanish.
         """
@@ -373,10 +373,10 @@ def reaction(
     impulse: np.ndarray, start_contents: np.ndarray, end_contents: np.ndarray, *, dt: float,
     push: tuple[float, ...], about: np.ndarray, origin: tuple[float, ...], h: float, density: float,
 ) -> Reaction:  # fmt: skip
-    """Return the water's action on a body, or on each of its parts, over a step.
+    """Return the mean load of the water on a body, or on each of its parts, over a step.
 
     Args:
-        impulse: what the immersion gave over the step, shape (..., ``sums_of``) [m/s and so on].
+        impulse: sums that the immersion added over the step, shape (..., ``sums_of``) [m/s and so on].
         start_contents: contents of the region at the start of the step, shape (..., ``contents_of``).
         end_contents: the same at its end.
         dt: the step [s].

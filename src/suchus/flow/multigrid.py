@@ -42,22 +42,22 @@ from suchus.flow.stencil import (
 )  # fmt: skip
 
 X, B, DINV, FACES = range(4)
-"""What a level holds: solution, right side, inverse diagonal, and from there on face coefficients, axis by axis."""
+"""Kinds of values of a level: solution, right side, inverse diagonal, then face coefficients, axis by axis."""
 
 COARSEST = 32
-"""Most cells along a side of the last level, which is solved by Jacobi steps alone [-]."""
+"""Largest number of cells along a side of the coarsest level, which is solved by Jacobi steps alone [-]."""
 
 LONGEST = 16 * COARSEST
 """Largest number of cells along a side of the coarsest level of a long channel, which takes more steps there [-]."""
 
 LEFT = 0.02
-"""Share of each error that solving the coarsest level leaves [-]. Where it left half of the smoothest, a patch of the
-started cylinder at Re 1000 that stopped after one cycle a stage shook by up to 6 % of its drag."""
+"""Fraction of each error that the solve of the coarsest level leaves [-]. With half of the smoothest error left and one
+cycle a stage, the drag of an impulsively started cylinder in a patch, at Re 1000, oscillated by up to 6 %."""
 
 
 @part
 def _shape(layout, k, inner):
-    """Return how many slabs a level has, and how many cells a slab of it, those around the domain with them."""
+    """Return the number of slabs of a level, and of cells in a slab, both with the padding."""
     rows = layout[k, 2] + 2 * PAD if len(inner) > 1 else 1
     return layout[k, 1] + 2 * PAD, rows * (layout[k, len(inner) + 1] + 2 * PAD)
 
@@ -86,7 +86,7 @@ def _strides(layout, inner, k):
 
 @part
 def _fold(j, n, periodic):
-    """Return the slab of the domain that slab ``j``, which may lie beyond a wall, is a copy of."""
+    """Return the slab of the domain whose values slab ``j`` has; ``j`` may lie beyond a wall."""
     if periodic:
         return (j - PAD + n) % n + PAD
     return min(max(j, PAD), PAD + n - 1)
@@ -194,7 +194,7 @@ def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
     o, near_weight, far_weight = unsigned(o), slabs.dtype.type(0.75), slabs.dtype.type(0.25)
     for k in range(EDGE - UNIT, unsigned(coarse.shape[1]) - EDGE + UNIT):
         mix[k] = near_weight * coarse[near_slab, k] + far_weight * coarse[far_slab, k]
-    if len(inner) == 1:  # apart: where a row is too short to be vectorised its sums are contracted in another way
+    if len(inner) == 1:  # separate loop: a row that is too short to be vectorised would be rounded in another way
         for k in range(EDGE, unsigned(coarse.shape[1]) - EDGE):
             i = k + k - EDGE
             slabs[o, i] += near_weight * mix[k] + far_weight * mix[k - UNIT]
@@ -422,7 +422,7 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
             )
         if rect[1] < rect[2]:
             end(buffer, rect, solution, level_inner)
-            if len(inner) > 1:  # there a patch has changed cells beside the sides
+            if len(inner) > 1:  # the patch has changed cells next to the sides
                 for j in range(max(rect[1], PAD), min(rect[2], solution.shape[0] - PAD)):
                     seal_slab(solution, j, level_inner, repeats)
         seal_ends(solution, repeats[len(inner)])
@@ -432,7 +432,7 @@ def cycle(x, store, layout, buffer, rects, inner, repeats):
 def _coefficients(cx, cy, dinv, level_layout):
     """Fill the inverse diagonal of a plane level in the window; a cell with no open face gets 0.
 
-    The quotient is estimated and improved where it is vectorised: written like the one below it has another last digit.
+    It is not written like the one for space below: vectorised division there rounds the last digit in another way.
     """
     small = cx.dtype.type(1e-6)
     for j in range(level_layout[3], level_layout[4]):
@@ -471,8 +471,8 @@ def _in_line(c0, c1, c2):
 def _joined(face, j, k, axis, inner):
     """Return a coarse face's coefficient from those of its fine faces and of the faces before and behind them.
 
-    What they carry side by side lets the water through bodies thinner than a coarse cell; what the faces carry in
-    line blocks it beside their ends too. With the geometric mean of both a solve needs half the cycles of the first.
+    Faces in parallel let water through bodies thinner than a coarse cell; faces in series block it beside the bodies'
+    ends too. With the geometric mean of both a solve needs half the cycles that it needs with the first.
 
     Args:
         face: coefficients of the fine level's faces across one axis.
