@@ -58,6 +58,10 @@ class BendingMap:
     def __call__(self, places: np.ndarray, time: float) -> np.ndarray:
         """Return where in the still shape places are, both of shape (axis, ...) [m].
 
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+
         Raises:
             InvalidDesign: the map gives something that is no place.
         """
@@ -78,7 +82,12 @@ class BendingMap:
         return still_points
 
     def gradient(self, places: np.ndarray, time: float) -> np.ndarray:
-        """Return the gradient of the map, shape (..., coordinate of the still shape, coordinate) [-]."""
+        """Return the gradient of the map, shape (..., coordinate of the still shape, coordinate) [-].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+        """
         step, columns = _STEP * self.size, []
         for d in range(self.axes):
             offset = np.zeros((self.axes, *(1,) * (places.ndim - 1)))
@@ -87,17 +96,27 @@ class BendingMap:
         return np.moveaxis(np.stack(columns, axis=1), (0, 1), (-2, -1))
 
     def velocity(self, places: np.ndarray, time: float, tick: float | None = None) -> np.ndarray:
-        """Return the velocity of what is at places, shape (axis, ...) [m/s]."""
+        """Return the velocity of the body's material at places, shape (axis, ...) [m/s].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+            tick: time over which the map is differentiated; None is that of the map [s].
+        """
         half = 0.5 * (tick or self.tick)
         goes = (self(places, time + half) - self(places, time - half)) / (2 * half)
         rates = np.linalg.solve(self.gradient(places, time), np.moveaxis(goes, 0, -1)[..., None])[..., 0]
         return -np.moveaxis(rates, -1, 0)
 
     def forth(self, still_points: np.ndarray, time: float) -> np.ndarray:
-        """Return where places of the still shape are, both of shape (axis, place) [m].
+        """Return the positions of points of the still shape in the body's frame, shape (axis, point) [m].
+
+        Args:
+            still_points: points of the still shape, shape (axis, point) [m].
+            time: when [s].
 
         Raises:
-            InvalidDesign: the map folds the body, or it is not found where a place has gone.
+            InvalidDesign: the map folds the body, or no position was found.
         """
         places = still_points.copy()
         for _ in range(_MAX_ITERATIONS):
@@ -123,7 +142,11 @@ class BendingMap:
         )
 
     def check(self, places: np.ndarray, time: float) -> np.ndarray:
-        """Return the velocities of places, if the map can be differentiated there.
+        """Return the velocities at places, if the map can be differentiated there, shape (axis, ...) [m/s].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
 
         Raises:
             InvalidDesign: the velocity changes by more than ``SMOOTH`` when it is taken over half the time.

@@ -162,10 +162,10 @@ def unite(windows: list[Window], axes: int) -> Window:
 
 
 def rows_of(bodies: list[AnyBody]) -> list[range]:
-    """Return the rows of each body where sums are kept for every part of every body.
+    """Return the range of rows of each body in arrays that have one row for each part of every body.
 
     Raises:
-        InvalidDesign: there are more of them than a byte counts.
+        InvalidDesign: there are more than ``MOST_ROWS`` parts.
     """
     ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
     if ends[-1] > MOST_ROWS:
@@ -242,6 +242,11 @@ def _closed(shape: Shape | SpaceShape, time: float) -> bool:
 
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
     """Return the fraction of the body's length that is thinner than ``THINNEST`` cells [-].
+
+    Args:
+        body: the body.
+        grid: the grid.
+        time: when [s].
 
     Raises:
         InvalidDesign: the body is too thin everywhere.

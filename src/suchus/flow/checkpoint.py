@@ -47,6 +47,10 @@ class Resumable(Protocol):
 def save(sim: Resumable, path: Path) -> None:
     """Write the state to a file; a kill in between leaves the old file whole.
 
+    Args:
+        sim: the simulation.
+        path: file to write.
+
     Raises:
         Unwritable: naming the place.
     """
@@ -58,6 +62,10 @@ def save(sim: Resumable, path: Path) -> None:
 
 def load(sim: Resumable, path: Path) -> None:
     """Set the simulation to the state in a file.
+
+    Args:
+        sim: the simulation to resume.
+        path: file to read.
 
     Raises:
         UnreadableFile: not a checkpoint, of another version, damaged, or of another setup.

@@ -53,7 +53,7 @@ _FAST = {"contract", "reassoc", "nsz", "arcp"}
 
 _OPTIONS = {"fastmath": _FAST, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True, **linking.options()}
 
-_SOURCE_FOLDER = Path(__file__).parent
+_HERE = Path(__file__).parent
 _MAKERS = re.compile(
     r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|ordered_part|threaded_part)\b", re.M
 )
@@ -62,12 +62,12 @@ _BASE_FILES = ("compiled.py", "linking.py")
 
 def folder() -> Path | None:
     """Return where the code of these sources is kept; None where no place can be written to."""
-    return kernel_cache.folder(_SOURCE_FOLDER, kernel_files(), "kernels-")
+    return kernel_cache.folder(_HERE, kernel_files(), "kernels-")
 
 
 def kernel_files() -> list[Path]:
     """Return the files of this room that hold kernels or parts of them, and those that say how they are compiled."""
-    files = sorted(_SOURCE_FOLDER.glob("*.py"))
+    files = sorted(_HERE.glob("*.py"))
     return [file for file in files if file.name in _BASE_FILES or _MAKERS.search(file.read_text(encoding="utf-8"))]
 
 

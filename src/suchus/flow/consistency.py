@@ -225,6 +225,10 @@ class Consistency:
         """Return the longest first step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
 
         The speed at the start does not bound the step of a body that starts from rest.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step that is wanted [s].
         """
         step = dt
         for _ in range(_HALVINGS):
@@ -235,7 +239,11 @@ class Consistency:
         return dt
 
     def start(self, time: float, dt: float) -> None:
-        """Look at the first step, of about ``dt`` [s].
+        """Compare rates and positions in the first step.
+
+        Args:
+            time: start of the step [s].
+            dt: approximate length of the step [s].
 
         Raises:
             InvalidDesign: rates and positions disagree, with both numbers.
@@ -245,7 +253,11 @@ class Consistency:
         self.strikes = 0
 
     def look(self, time: float, dt: float) -> None:
-        """Compare rates and positions at the start of a step, a time [s] and ``dt`` [s], and over all of it.
+        """Compare rates and positions at the start of a step and over all of it.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
 
         Raises:
             InvalidDesign: they disagree for the third time in a row, or the body is not where its rates lead.

@@ -49,7 +49,11 @@ class Fields:
 
     @staticmethod
     def _faces(a: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces."""
+        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces.
+
+        Args:
+            a: field on the faces before the cells, padded, shape (axis, ...).
+        """
         axes, cells = len(a), slice(PAD, -PAD)
         for d, component in enumerate(a):
             upper_slices = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))

@@ -83,7 +83,13 @@ def steps_of(a: np.ndarray) -> np.ndarray:
 
 
 def sample(water: Fluid, markers: Markers, density: float) -> Surface:
-    """Return pressure and friction at the markers; densities in [kg/m^3]."""
+    """Return pressure and friction at the markers; densities in [kg/m^3].
+
+    Args:
+        water: with its pressure and velocity.
+        markers: points on the body's surface.
+        density: of the water [kg/m^3].
+    """
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
     steps = steps_of(water.p)

@@ -48,7 +48,13 @@ class Capsule:
                 raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
 
     def placed(self, spine: MidlineState) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-        """Return both ends, the velocity of the first end and the rate of turning, shapes (2,) and a number."""
+        """Return the capsule's ends, the velocity of the first end and the rate of turning, in the midline's frame.
+
+        Shapes: (2,) [m], (2,) [m], (2,) [m/s] and a number [rad/s].
+
+        Args:
+            spine: midline of the trunk.
+        """
         x, y, heading, u, v, turn = (
             float(np.interp(self.at, spine.arc, profile))
             for profile in (spine.x, spine.y, spine.heading, spine.x_rate, spine.y_rate, spine.heading_rate)
@@ -65,7 +71,14 @@ class Capsule:
     def reach(
         self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState
     ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """Return the vectors from the capsule's axis to points, and their lengths [m]."""
+        """Return the vectors from the capsule's axis to points, and their lengths [m].
+
+        Args:
+            px: x of the points [m].
+            py: y of the points [m].
+            pz: distance of the points from the plane of the midline [m].
+            spine: midline of the trunk.
+        """
         start, end, *_ = self.placed(spine)
         axis = end - start
         square = float(axis @ axis)
@@ -150,7 +163,14 @@ class Limbed(Trunk):
         return Lump(volume=cell_volume * x.size, centre=(cx, cy), second=second)
 
     def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
-        """Return which points lie inside the trunk alone, pz from the plane of the midline [m]."""
+        """Return which points lie inside the trunk alone.
+
+        Args:
+            px: x of the points [m].
+            py: y of the points [m].
+            pz: distance of the points from the plane of the midline [m].
+            spine: midline of the trunk.
+        """
         nearest_station = ((px[:, None] - spine.x) ** 2 + (py[:, None] - spine.y) ** 2).argmin(axis=1)
         cos, sin = np.cos(spine.heading[nearest_station]), np.sin(spine.heading[nearest_station])
         dx, dy = px - spine.x[nearest_station], py - spine.y[nearest_station]

@@ -380,6 +380,10 @@ def between(start: LinkStates, end: LinkStates, span: float, fraction: float) ->
 def _rolled(vector: Float[np.ndarray, "link 3"], rate: Float[np.ndarray, "link 3"]) -> Float[np.ndarray, "link 3"]:
     """Return the angular velocities of rotations whose vectors change at a rate [rad/s].
 
+    Args:
+        vector: rotation vectors [rad].
+        rate: their rates [rad/s].
+
     Source: the left Jacobian of rotations, Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (145).
     """
     angle = np.linalg.norm(vector, axis=1, keepdims=True)
@@ -391,7 +395,12 @@ def _rolled(vector: Float[np.ndarray, "link 3"], rate: Float[np.ndarray, "link 3
 
 
 def _unrolled(vector: Float[np.ndarray, "link 3"], spin: Float[np.ndarray, "link 3"]) -> Float[np.ndarray, "link 3"]:
-    """Return the rates of rotation vectors at angular velocities: the inverse of ``_rolled`` [rad/s]."""
+    """Return the rates of rotation vectors at angular velocities: the inverse of ``_rolled`` [rad/s].
+
+    Args:
+        vector: rotation vectors [rad].
+        spin: angular velocities [rad/s].
+    """
     angle = np.linalg.norm(vector, axis=1, keepdims=True)
     safe = np.maximum(angle, 1e-3)
     two = np.where(angle < 1e-3, 1 / 12, (1 - 0.5 * safe / np.tan(0.5 * safe)) / safe**2)

@@ -58,7 +58,8 @@ class SpaceMass:
     def inertia(self, matrix: np.ndarray) -> np.ndarray:
         """Return the mass matrix over the density for motions along and about the world's axes, shape (6, 6).
 
-        ``matrix`` turns the body's frame into the world's, shape (3, 3).
+        Args:
+            matrix: rotation matrix from the body's frame to the world's, shape (3, 3).
         """
         inertia_matrix = np.zeros((6, 6))
         inertia_matrix[:3, :3], inertia_matrix[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
@@ -76,7 +77,12 @@ def tensor(second: np.ndarray) -> np.ndarray:
 
 
 def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
-    """Return the mass of a rigid polygon, counter-clockwise [m]."""
+    """Return the mass of a rigid polygon, counter-clockwise [m].
+
+    Args:
+        x: coordinates of the corners [m].
+        y: coordinates of the corners [m].
+    """
     p, q = np.roll(x, -1), np.roll(y, -1)
     cross = x * q - p * y
     area = float(cross.sum() / 2)
@@ -89,8 +95,10 @@ def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
 def of_midline(spine: np.ndarray) -> Mass:
     """Return the mass of a body from the rows of its midline.
 
-    Rows: x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s]. Each
-    cross-section is a rod; where the midline bends, the outer half of the rod weighs more than the inner half.
+    Each cross-section is a rod; where the midline bends, the outer half of the rod weighs more than the inner half.
+
+    Args:
+        spine: rows x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s].
     """
     w = (spine[3, 1:] + spine[3, :-1]) / 2
     area, centre, rate, second, swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)
@@ -98,7 +106,12 @@ def of_midline(spine: np.ndarray) -> Mass:
 
 
 def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
-    """Return the mass of a body with elliptic sections, from the rows of its midline and its half-heights [m]."""
+    """Return the mass of a body with elliptic sections from the rows of its midline.
+
+    Args:
+        spine: rows of the midline; see ``of_midline``.
+        half_height: of the sections at the stations [m].
+    """
     w, h = (spine[3, 1:] + spine[3, :-1]) / 2, (half_height[1:] + half_height[:-1]) / 2
     volume, centre, rate, (moment, xx, xy), swirl = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
     zz = float((np.pi * w * h**3 / 4 * np.hypot(np.diff(spine[0]), np.diff(spine[1]))).sum())

@@ -252,6 +252,10 @@ def mesh_of_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> 
 def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
     """Refuse a surface that is not closed, or whose faces have different orientations.
 
+    Args:
+        vertices: corners of the mesh, shape (vertex, 3) [m].
+        faces: indices of each triangle's corners, shape (face, 3).
+
     Raises:
         InvalidDesign: the message names an edge and the remedy.
     """
@@ -284,6 +288,10 @@ def pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
     The pseudo-normal of an edge is the sum of the normals of its two faces. That of a corner is the sum of the normals
     of all faces around it, weighted by their angles at the corner.
+
+    Args:
+        vertices: corners of the mesh, shape (vertex, 3) [m].
+        faces: indices of each triangle's corners, shape (face, 3).
     """
     corners = vertices[faces]
     edges = np.roll(corners, -1, axis=1) - corners

@@ -64,7 +64,15 @@ def _shape(layout, k, inner):
 
 @part
 def level(store, layout, inner, kind, k):
-    """Return the array of one kind on level ``k``; see ``slab`` for the rows of the layout."""
+    """Return the array of one kind on level ``k``; see ``slab`` for the rows of the layout.
+
+    Args:
+        store: arrays of all levels, end to end.
+        layout: one row for each level; see ``slab``.
+        inner: strides within a slab of level 0.
+        kind: ``X``, ``B`` or ``DINV``.
+        k: level; 0 is the finest.
+    """
     slab_count, length = _shape(layout, k, inner)
     start = layout[k, 0] + kind * slab_count * length
     return store[start : start + slab_count * length].reshape(slab_count, length)
@@ -289,7 +297,13 @@ def _up_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, c
 
 @part
 def _live_mean(b, dinv, inner):
-    """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level."""
+    """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level.
+
+    Args:
+        b: right side of the level.
+        dinv: inverse diagonal; 0 in a cell without an open face.
+        inner: strides within a slab.
+    """
     end, row_cells, total, live = b.shape[0] - PAD, signed(row_length(inner, b.shape[1])), 0.0, 0
     if len(inner) == 1:
         for j in range(PAD, end):
@@ -433,6 +447,12 @@ def _coefficients(cx, cy, dinv, level_layout):
     """Fill the inverse diagonal of a plane level in the window; a cell with no open face gets 0.
 
     It is not written like the one for space below: vectorised division there rounds the last digit in another way.
+
+    Args:
+        cx: coefficients of the faces across x.
+        cy: coefficients of the faces across y.
+        dinv: inverse diagonal to write.
+        level_layout: the level's row of the layout; see ``slab``.
     """
     small = cx.dtype.type(1e-6)
     for j in range(level_layout[3], level_layout[4]):
@@ -443,7 +463,14 @@ def _coefficients(cx, cy, dinv, level_layout):
 
 @part
 def _coefficients_in_space(faces, dinv, level_layout, inner):
-    """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0."""
+    """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0.
+
+    Args:
+        faces: coefficients of the faces, shape (axis, slab, cell).
+        dinv: inverse diagonal to write.
+        level_layout: the level's row of the layout; see ``slab``.
+        inner: strides within a slab.
+    """
     small, slab_axis, row_cells = dinv.dtype.type(1e-6), len(inner), signed(row_length(inner, dinv.shape[1]))
     for j in range(level_layout[4], level_layout[5]):
         for row in range(level_layout[6], level_layout[7]):
@@ -523,7 +550,13 @@ def _coarse_faces(coarse, fine, level_layout, coarse_row_cells, inner, axis):
 
 @compiled
 def coarsen(store, layout, inner):
-    """Fill the inverse diagonals and every coarser level's coefficients inside the windows."""
+    """Fill the inverse diagonals and every coarser level's coefficients inside the windows.
+
+    Args:
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        inner: strides within a slab of level 0.
+    """
     for k in range(layout.shape[0]):
         faces, level_inner = faces_of(store, layout, inner, k), _strides(layout, inner, k)
         if len(inner) == 1:
