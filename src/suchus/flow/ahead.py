@@ -1,7 +1,7 @@
-"""The kernels' first compilation in two processes at once: the pressure's solver in one, all others in the other.
+"""First compilation of the kernels in two processes at once: the pressure solver in one, all others in the other.
 
-numba compiles in one thread, and on a new machine that would be the whole wait for a first picture. The solver takes
-half of it.
+numba compiles in one thread. On a new machine this is most of the time before the first picture. The pressure solver
+takes half of it.
 """
 
 import subprocess
@@ -23,18 +23,18 @@ from suchus.flow.water import Fluid
 
 _CELLS = 32
 """Cells of the small domain along each axis [-]."""
-_LIMITS = 1e-5, 1e-4  # what a pressure solve leaves [m/s per cell]
+_LIMITS = 1e-5, 1e-4  # divergence that a pressure solve may leave [m/s per cell]
 
 
-class _Unsolved(Fluid):
-    """Water whose pressure is not solved for."""
+class _NoPressureWater(Fluid):
+    """Water without a pressure solve."""
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
         return poisson.Solve(1, *limits), (self.dtype(0), self.dtype(0))
 
 
-class _Solved(Fluid):
-    """Water whose pressure can be solved for by itself."""
+class _PressureWater(Fluid):
+    """Water whose pressure solve can be called by itself."""
 
     def solve(self) -> poisson.Solve:
         """Solve for the pressure of water at rest."""
@@ -42,10 +42,10 @@ class _Solved(Fluid):
 
 
 def compile_ahead(axes: int, dtype: type) -> None:
-    """Compile what a flow with a body needs, if this is the first flow of its kind with these sources on this machine.
+    """Compile the kernels of a flow with a body if no flow of this kind has run with these sources on this machine.
 
-    It is left to the flow itself where only one thread is to be used, where no place can be written to, and where
-    another process has begun with it.
+    Nothing is compiled here if only one thread may be used, if the cache folder cannot be written to, or if another
+    process has started to compile. The flow then compiles its kernels itself.
 
     Args:
         axes: of the grid, 2 or 3.
@@ -56,22 +56,31 @@ def compile_ahead(axes: int, dtype: type) -> None:
         return
     try:
         (folder / f"begun-{axes}-{dtype.__name__}").touch(exist_ok=False)
-    except OSError:  # most often: it is there
+    except OSError:  # most often the file exists: another process compiles
         return
-    words = [sys.executable, "-c", f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')"]
-    with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
+    command = [
+        sys.executable,
+        "-c",
+        f"from {__name__} import compile_solver; compile_solver({axes}, '{dtype.__name__}')",
+    ]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as solver_process:
         try:
-            _step(_Unsolved(*_domain(axes), dtype))
-            other.wait()
+            _step(_NoPressureWater(*_domain(axes), dtype))
+            solver_process.wait()
         finally:
             with suppress(OSError):
-                other.kill()
+                solver_process.kill()
 
 
 def compile_solver(axes: int, name: str) -> None:
-    """Compile the pressure's solver, for a grid with so many axes and fields of the type of this name."""
-    water = _Solved(*_domain(axes), getattr(np, name))
-    _placed(water)
+    """Compile the pressure solver.
+
+    Args:
+        axes: axes of the grid, 2 or 3.
+        name: name of the fields' type, ``float32`` or ``float64``.
+    """
+    water = _PressureWater(*_domain(axes), getattr(np, name))
+    _place_body(water)
     water.solve()
 
 
@@ -79,14 +88,15 @@ def _domain(axes: int) -> tuple[Grid, Sides, float]:
     return Grid.covering(*[(-2.0, 2.0)] * axes, cell=4.0 / _CELLS), Sides(), 0.05
 
 
-def _placed(water: Fluid) -> None:
+def _place_body(water: Fluid) -> None:
     shape = Cylinder(diameter=1.0) if water.axes == 2 else Sphere(diameter=1.0)
     water.place([Body(shape=shape)], [Pose().along(water.axes)], 0.0)
 
 
 def _step(water: Fluid) -> None:
-    still = (0.0,) * water.axes
-    _placed(water)
-    water.step(0.01, still, still, _LIMITS)
+    """Take one step of a small flow, which compiles every kernel of a step."""
+    zero_velocity = (0.0,) * water.axes
+    _place_body(water)
+    water.step(0.01, zero_velocity, zero_velocity, _LIMITS)
     water.fastest()
     water.contents()

@@ -1,5 +1,5 @@
-# ruff: noqa: ARG002 - bodies that bend are asked as all others are, and ask their map for the time
-"""Bodies that bend as a map says: any shape of the plane, any closed mesh in space.
+# ruff: noqa: ARG002 - bodies that bend share the interface of all bodies and pass the time to their map
+"""Bodies that a map bends: any shape of the plane, any closed mesh in space.
 
 The map says of every place in the body's frame and of every time which place of the still shape is there. Corners of
 the outline or mesh go where it says that they are, by Newton's method, and compiled code places what they enclose. The
@@ -25,21 +25,21 @@ from suchus.flow.shape import Field, Shape, Solid
 from suchus.flow.solid import SpaceField, SpaceShape
 
 CORNERS = 512
-"""Corners that stand for the outline of a plane shape, at least [-]."""
+"""Least number of corners of the polygon that approximates the outline of a plane shape [-]."""
 
 TICK = 1e-4
-"""Time over which a map is differentiated, unless it is told [s]: short for all that takes a hundredth of a second."""
+"""Default time over which a map is differentiated [s]: short for any motion that takes a hundredth of a second."""
 
 SMOOTH = 1e-2
-"""Change of the fastest velocity, over itself, with half that time, from which the map is too fast for it [-]."""
+"""Largest relative change of the fastest velocity when that time is halved; beyond it the map is refused [-]."""
 
-_STEP = 1e-5  # of the shape's size, over which a map is differentiated in space
-_NEAR = 1e-9  # of the shape's size, by which a corner may miss its place
-_ROUNDS = 40  # of Newton's method
-_LONGEST = 0.25  # of the shape's size; how far a corner goes in one of them
+_STEP = 1e-5  # distance over which a map is differentiated, over the shape's size
+_POSITION_TOLERANCE = 1e-9  # largest error of a corner's position, over the shape's size
+_MAX_ITERATIONS = 40  # of Newton's method
+_MAX_STEP = 0.25  # largest displacement of a corner in one iteration, over the shape's size
 
 Back = Callable[..., Sequence[np.ndarray]]
-"""Of arrays of coordinates in the body's frame [m] and of a time [s]: the coordinates of the still shape there [m]."""
+"""Map from coordinates in the body's frame [m] and a time [s] to coordinates in the still shape [m]; arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class BendingMap:
     back: Back
     """The map."""
     axes: int
-    """Of the space, 2 or 3."""
+    """Number of axes, 2 or 3."""
     size: float
     """Greatest extent of the still shape [m]."""
     tick: float
@@ -58,80 +58,112 @@ class BendingMap:
     def __call__(self, places: np.ndarray, time: float) -> np.ndarray:
         """Return where in the still shape places are, both of shape (axis, ...) [m].
 
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+
         Raises:
             InvalidDesign: the map gives something that is no place.
         """
-        found = self.back(*places, time)
-        if len(found) != self.axes:
-            raise InvalidDesign(f"the map that bends the body gives {len(found)} coordinates; {self.axes} are needed.")
-        there: np.ndarray = np.stack([np.broadcast_to(np.asarray(row, float), places[0].shape) for row in found])
-        if not np.isfinite(there).all():
-            at = places[:, ~np.isfinite(there).all(axis=0)][:, 0]
+        coordinates = self.back(*places, time)
+        if len(coordinates) != self.axes:
+            raise InvalidDesign(
+                f"the map that bends the body gives {len(coordinates)} coordinates; {self.axes} are needed."
+            )
+        still_points: np.ndarray = np.stack(
+            [np.broadcast_to(np.asarray(row, float), places[0].shape) for row in coordinates]
+        )
+        if not np.isfinite(still_points).all():
+            failing_point = places[:, ~np.isfinite(still_points).all(axis=0)][:, 0]
             raise InvalidDesign(
                 f"at t = {time:.4g} s the map that bends the body gives no finite place for "
-                f"({', '.join(f'{x:.4g}' for x in at)}) m; it must, in and around the body."
+                f"({', '.join(f'{x:.4g}' for x in failing_point)}) m; it must, in and around the body."
             )
-        return there
+        return still_points
 
     def gradient(self, places: np.ndarray, time: float) -> np.ndarray:
-        """Return the gradient of the map, shape (..., coordinate of the still shape, coordinate) [-]."""
+        """Return the gradient of the map, shape (..., coordinate of the still shape, coordinate) [-].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+        """
         step, columns = _STEP * self.size, []
         for d in range(self.axes):
-            off = np.zeros((self.axes, *(1,) * (places.ndim - 1)))
-            off[d] = step
-            columns.append((self(places + off, time) - self(places - off, time)) / (2 * step))
+            offset = np.zeros((self.axes, *(1,) * (places.ndim - 1)))
+            offset[d] = step
+            columns.append((self(places + offset, time) - self(places - offset, time)) / (2 * step))
         return np.moveaxis(np.stack(columns, axis=1), (0, 1), (-2, -1))
 
     def velocity(self, places: np.ndarray, time: float, tick: float | None = None) -> np.ndarray:
-        """Return the velocity of what is at places, shape (axis, ...) [m/s]."""
+        """Return the velocity of the body's material at places, shape (axis, ...) [m/s].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
+            tick: time over which the map is differentiated; None is that of the map [s].
+        """
         half = 0.5 * (tick or self.tick)
         goes = (self(places, time + half) - self(places, time - half)) / (2 * half)
         rates = np.linalg.solve(self.gradient(places, time), np.moveaxis(goes, 0, -1)[..., None])[..., 0]
         return -np.moveaxis(rates, -1, 0)
 
-    def forth(self, still: np.ndarray, time: float) -> np.ndarray:
-        """Return where places of the still shape are, both of shape (axis, place) [m].
+    def forth(self, still_points: np.ndarray, time: float) -> np.ndarray:
+        """Return the positions of points of the still shape in the body's frame, shape (axis, point) [m].
+
+        Args:
+            still_points: points of the still shape, shape (axis, point) [m].
+            time: when [s].
 
         Raises:
-            InvalidDesign: the map folds the body, or it is not found where a place has gone.
+            InvalidDesign: the map folds the body, or no position was found.
         """
-        places = still.copy()
-        for _ in range(_ROUNDS):
-            off = self(places, time) - still
+        places = still_points.copy()
+        for _ in range(_MAX_ITERATIONS):
+            residual = self(places, time) - still_points
             slope = self.gradient(places, time)
-            turned_over = np.linalg.det(slope) <= 0
-            if np.abs(off).max() < _NEAR * self.size:
-                if turned_over.any():
+            is_inverted = np.linalg.det(slope) <= 0
+            if np.abs(residual).max() < _POSITION_TOLERANCE * self.size:
+                if is_inverted.any():
                     raise InvalidDesign(
                         f"at t = {time:.4g} s the map folds the body or turns it inside out, at "
-                        f"{_row(places[:, turned_over][:, 0])} m; bend it less."
+                        f"{_row(places[:, is_inverted][:, 0])} m; bend it less."
                     )
                 return places
-            slope[turned_over] = np.eye(self.axes)
-            step = np.linalg.solve(slope, off.T[..., None])[..., 0].T
+            slope[is_inverted] = np.eye(self.axes)
+            step = np.linalg.solve(slope, residual.T[..., None])[..., 0].T
             size = np.sqrt((step**2).sum(axis=0))
-            places -= step * np.minimum(1.0, _LONGEST * self.size / np.maximum(size, 1e-300))
-        worst = int(np.abs(off).max(axis=0).argmax())
+            places -= step * np.minimum(1.0, _MAX_STEP * self.size / np.maximum(size, 1e-300))
+        worst_index = int(np.abs(residual).max(axis=0).argmax())
         raise InvalidDesign(
-            f"at t = {time:.4g} s no place was found that the map takes to {_row(still[:, worst])} m of the still "
-            f"shape; it says of each place in the body's frame where that is in the still shape. Bend it less."
+            f"at t = {time:.4g} s no place was found that the map takes to {_row(still_points[:, worst_index])} m of "
+            f"the still shape; it says of each place in the body's frame where that is in the still shape. Bend it "
+            "less."
         )
 
     def check(self, places: np.ndarray, time: float) -> np.ndarray:
-        """Return the velocities of places, if the map can be differentiated there.
+        """Return the velocities at places, if the map can be differentiated there, shape (axis, ...) [m/s].
+
+        Args:
+            places: coordinates in the body's frame, shape (axis, ...) [m].
+            time: when [s].
 
         Raises:
-            InvalidDesign: the velocity is another one over half the time.
+            InvalidDesign: the velocity changes by more than ``SMOOTH`` when it is taken over half the time.
         """
-        whole, half = self.velocity(places, time), self.velocity(places, time, 0.5 * self.tick)
-        fastest = float(np.abs(half).max())
-        if np.abs(whole - half).max() > SMOOTH * fastest and fastest * self.tick > _NEAR * self.size:
+        full_tick_velocity = self.velocity(places, time)
+        half_tick_velocity = self.velocity(places, time, 0.5 * self.tick)
+        fastest = float(np.abs(half_tick_velocity).max())
+        if (
+            np.abs(full_tick_velocity - half_tick_velocity).max() > SMOOTH * fastest
+            and fastest * self.tick > _POSITION_TOLERANCE * self.size
+        ):
             raise InvalidDesign(
-                f"at t = {time:.4g} s the map that bends the body gives {np.abs(whole).max():.4g} m/s over a tick of "
-                f"{self.tick:.3g} s and {fastest:.4g} m/s over half of it: it leaps, or is too fast for it. Give a "
-                f"smooth map, or a shorter tick."
+                f"at t = {time:.4g} s the map that bends the body gives {np.abs(full_tick_velocity).max():.4g} m/s "
+                f"over a tick of {self.tick:.3g} s and {fastest:.4g} m/s over half of it: it leaps, or is too fast for "
+                f"it. Give a smooth map, or a shorter tick."
             )
-        return whole
+        return full_tick_velocity
 
 
 def _row(place: np.ndarray) -> str:
@@ -159,39 +191,41 @@ class BentOutline(Shape):
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window, as far as ``reach``."""
         h = float(x[-1] - x[0]) / (x.size - 1)
-        corners = np.stack(pose.to_world(*_gone(self, time)))
+        corners = np.stack(pose.to_world(*_bent_corners(self, time)))
         flat = 1e-9 * self.bend.size
         d, nx, ny = paint_outline(corners, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), flat)
         wx, wy = np.meshgrid(x, y)
         vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.carry(wx, wy))
-        near = d < reach
-        own = pose.turn(*self.bend.velocity(np.stack(pose.to_body(wx[near], wy[near])), time))
-        vx[near] += own[0]
-        vy[near] += own[1]
+        is_near = d < reach
+        bend_velocity = pose.turn(*self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time))
+        vx[is_near] += bend_velocity[0]
+        vy[is_near] += bend_velocity[1]
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges."""
-        corners = _gone(self, time)
-        around = float(np.hypot(*(np.roll(corners, -1, axis=1) - corners)).sum())
-        still = np.stack([np.array(row, float) for row in self.still.outline(max(32, int(np.ceil(around / spacing))))])
-        here = self.bend.forth(still, time)
-        rates = self.bend.check(here, time)
-        ahead, after = np.roll(here, -1, axis=1), np.roll(rates, -1, axis=1)
-        along, more = ahead - here, after - rates
-        long = np.hypot(*along)
-        points = np.stack(pose.to_world(*(0.5 * (here + ahead))))
-        velocities = np.stack(pose.carry(*points)) + np.stack(pose.turn(*(0.5 * (rates + after))))
+        corners = _bent_corners(self, time)
+        perimeter = float(np.hypot(*(np.roll(corners, -1, axis=1) - corners)).sum())
+        still_points = np.stack(
+            [np.array(row, float) for row in self.still.outline(max(32, int(np.ceil(perimeter / spacing))))]
+        )
+        vertices = self.bend.forth(still_points, time)
+        rates = self.bend.check(vertices, time)
+        next_vertices, next_rates = np.roll(vertices, -1, axis=1), np.roll(rates, -1, axis=1)
+        edges, rate_change = next_vertices - vertices, next_rates - rates
+        edge_lengths = np.hypot(*edges)
+        points = np.stack(pose.to_world(*(0.5 * (vertices + next_vertices))))
+        velocities = np.stack(pose.carry(*points)) + np.stack(pose.turn(*(0.5 * (rates + next_rates))))
         return Markers(
-            points=points, share=long, velocities=velocities,
-            normals=np.stack(pose.turn(*(np.stack([along[1], -along[0]]) / long))),
-            spins=(pose.spin + (along[0] * more[1] - along[1] * more[0]) / long**2)[None],
-            station=np.cumsum(long) - long / 2, side=np.zeros(long.size),
+            points=points, share=edge_lengths, velocities=velocities,
+            normals=np.stack(pose.turn(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
+            spins=(pose.spin + (edges[0] * rate_change[1] - edges[1] * rate_change[0]) / edge_lengths**2)[None],
+            station=np.cumsum(edge_lengths) - edge_lengths / 2, side=np.zeros(edge_lengths.size),
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the corners."""
-        x, y = pose.to_world(*_gone(self, time))
+        x, y = pose.to_world(*_bent_corners(self, time))
         return float(x.min()), float(x.max()), float(y.min()), float(y.max())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -200,19 +234,21 @@ class BentOutline(Shape):
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments of the corners' polygon, and the momentum of what bends in it."""
-        corners = _gone(self, time)
-        whole = of_outline(*corners)
-        centre = np.array(whole.centre)[:, None]
-        ahead = np.roll(corners, -1, axis=1)
-        first, second = corners - centre, ahead - centre
-        share = (first[0] * second[1] - first[1] * second[0]) / 6  # a third of each triangle from the centre
-        at = np.concatenate([0.5 * (corners + centre), 0.5 * (ahead + centre), 0.5 * (corners + ahead)], axis=1)
-        weights, rates = np.tile(share, 3), self.bend.velocity(at, time)
-        rate = (rates * weights).sum(axis=1) / whole.area
-        (dx, dy), (u, v) = at - centre, rates - rate[:, None]
+        corners = _bent_corners(self, time)
+        polygon = of_outline(*corners)
+        centre = np.array(polygon.centre)[:, None]
+        next_corners = np.roll(corners, -1, axis=1)
+        arms, next_arms = corners - centre, next_corners - centre
+        share = (arms[0] * next_arms[1] - arms[1] * next_arms[0]) / 6  # a third of each triangle from the centre
+        quadrature_points = np.concatenate(
+            [0.5 * (corners + centre), 0.5 * (next_corners + centre), 0.5 * (corners + next_corners)], axis=1
+        )
+        weights, rates = np.tile(share, 3), self.bend.velocity(quadrature_points, time)
+        rate = (rates * weights).sum(axis=1) / polygon.area
+        (dx, dy), (u, v) = quadrature_points - centre, rates - rate[:, None]
         return Mass(
-            area=whole.area, centre=whole.centre, centre_rate=(float(rate[0]), float(rate[1])), moment=whole.moment,
-            swirl=float(((dx * v - dy * u) * weights).sum()),
+            area=polygon.area, centre=polygon.centre, centre_rate=(float(rate[0]), float(rate[1])),
+            moment=polygon.moment, swirl=float(((dx * v - dy * u) * weights).sum()),
         )  # fmt: skip
 
 
@@ -232,46 +268,51 @@ class BentMesh(SpaceShape):
         """It bends."""
         return False
 
-    def _now(self, time: float) -> np.ndarray:
+    def _corners_at(self, time: float) -> np.ndarray:
         """Return the corners in the body's frame, shape (3, vertex) [m]."""
-        return _gone(self, time)
+        return _bent_corners(self, time)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, as far as ``reach``."""
-        place, faces = pose.along(3), self.still.faces
+        frame, faces = pose.along(3), self.still.faces
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        out = np.zeros((4, z.size, y.size, x.size))
+        window_field = np.zeros((4, z.size, y.size, x.size))
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        corners = np.stack(place.place(self._now(time)), axis=1)
+        corners = np.stack(frame.place(self._corners_at(time)), axis=1)
         normals = np.ascontiguousarray(pseudo_normals(corners, faces))
-        paint_mesh(out, px, py, pz, np.ascontiguousarray(corners[faces]), normals, float(reach), h)
+        paint_mesh(window_field, px, py, pz, np.ascontiguousarray(corners[faces]), normals, float(reach), h)
         wz, wy, wx = np.meshgrid(pz, py, px, indexing="ij")
-        rates = [np.array(np.broadcast_to(rate, out[0].shape)) for rate in place.rates((wx, wy, wz))]
-        near = out[0] < reach
-        own = self._velocity(np.stack([wx[near], wy[near], wz[near]]), time, place)
-        for rate, part in zip(rates, own, strict=True):
-            rate[near] += part
+        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.rates((wx, wy, wz))]
+        is_near = window_field[0] < reach
+        bend_velocity = self._velocity(np.stack([wx[is_near], wy[is_near], wz[is_near]]), time, frame)
+        for rate, component in zip(rates, bend_velocity, strict=True):
+            rate[is_near] += component
         u, v, w = rates
-        return SpaceField(out[0], (out[1], out[2], out[3]), (u, v, w), np.full(out[0].shape, np.inf))
+        return SpaceField(
+            window_field[0],
+            (window_field[1], window_field[2], window_field[3]),
+            (u, v, w),
+            np.full(window_field[0].shape, np.inf),
+        )
 
-    def _velocity(self, points: np.ndarray, time: float, place: Pose) -> np.ndarray:
+    def _velocity(self, points: np.ndarray, time: float, frame: Pose) -> np.ndarray:
         """Return what bending adds to the velocity at points of the world, shape (3, point) [m/s]."""
-        body = place.matrix.T @ (points - np.array(place.position)[:, None])
-        return np.stack(turned(place.matrix, self.bend.velocity(body, time)))
+        body = frame.matrix.T @ (points - np.array(frame.position)[:, None])
+        return np.stack(turned(frame.matrix, self.bend.velocity(body, time)))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        place, now = pose.along(3), self._now(time)
-        self.bend.check(now, time)
-        at, share, normals = middles_of(np.stack(place.place(now), axis=1)[self.still.faces], spacing)
-        velocities = np.stack(place.rates(at)) + self._velocity(at, time, place)
-        spins = np.broadcast_to(place.spins[:, None], at.shape)
-        return Markers(points=at, share=share, velocities=velocities, normals=normals, spins=spins)
+        frame, corners = pose.along(3), self._corners_at(time)
+        self.bend.check(corners, time)
+        points, share, normals = middles_of(np.stack(frame.place(corners), axis=1)[self.still.faces], spacing)
+        velocities = np.stack(frame.rates(points)) + self._velocity(points, time, frame)
+        spins = np.broadcast_to(frame.spins[:, None], points.shape)
+        return Markers(points=points, share=share, velocities=velocities, normals=normals, spins=spins)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        at = np.stack(pose.along(3).place(self._now(time)))
-        return tuple(np.stack([at.min(axis=1), at.max(axis=1)], axis=1).ravel().tolist())
+        corners = np.stack(pose.along(3).place(self._corners_at(time)))
+        return tuple(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1).ravel().tolist())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return that of the still mesh."""
@@ -288,35 +329,45 @@ class BentMesh(SpaceShape):
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume, centre and moments of the bent mesh, and the momentum of what bends in it."""
-        faces = self._now(time).T[self.still.faces]
-        whole = mass_of_mesh(faces)
-        centre = np.array(whole.centre)[:, None]
+        faces = self._corners_at(time).T[self.still.faces]
+        mesh_mass = mass_of_mesh(faces)
+        centre = np.array(mesh_mass.centre)[:, None]
         corners = faces.transpose(1, 2, 0) - centre  # of tetrahedra from the centre
         share = np.einsum("df,df->f", corners[0], np.cross(corners[1], corners[2], axis=0)) / 24
-        far, near = _TETRAHEDRON
+        corner_weight, other_weight = _TETRAHEDRON
         total = corners.sum(axis=0)
-        at = np.concatenate([near * total, *(near * total + (far - near) * one for one in corners)], axis=1)
-        weights, rates = np.tile(share, 4), self.bend.velocity(at + centre, time)
-        rate = (rates * weights).sum(axis=1) / whole.volume
-        swirl = (np.cross(at, rates - rate[:, None], axis=0) * weights).sum(axis=1)
+        quadrature_points = np.concatenate(
+            [
+                other_weight * total,
+                *(other_weight * total + (corner_weight - other_weight) * corner for corner in corners),
+            ],
+            axis=1,
+        )
+        weights, rates = np.tile(share, 4), self.bend.velocity(quadrature_points + centre, time)
+        rate = (rates * weights).sum(axis=1) / mesh_mass.volume
+        swirl = (np.cross(quadrature_points, rates - rate[:, None], axis=0) * weights).sum(axis=1)
         u, v, w = rate.tolist()
         a, b, c = swirl.tolist()
         return SpaceMass(
-            volume=whole.volume, centre=whole.centre, centre_rate=(u, v, w), moments=whole.moments, swirl=(a, b, c)
+            volume=mesh_mass.volume,
+            centre=mesh_mass.centre,
+            centre_rate=(u, v, w),
+            moments=mesh_mass.moments,
+            swirl=(a, b, c),
         )
 
 
 @lru_cache(maxsize=16)
-def _gone(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
-    """Return where the corners of a shape are, in the body's frame, shape (axis, corner) [m]; asked again and again."""
-    still = shape._corners if isinstance(shape, BentOutline) else shape.still.vertices.T
-    gone = shape.bend.forth(still, time)
-    gone.flags.writeable = False
-    return gone
+def _bent_corners(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
+    """Return the corners of a bent shape in the body's frame, shape (axis, corner) [m]; the last results are cached."""
+    still_corners = shape._corners if isinstance(shape, BentOutline) else shape.still.vertices.T
+    corners = shape.bend.forth(still_corners, time)
+    corners.flags.writeable = False
+    return corners
 
 
 _TETRAHEDRON = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
-"""Weights of the corners in the four points by which second-order functions on a tetrahedron are summed exactly [-]."""
+"""Barycentric weights of the four-point quadrature on a tetrahedron, exact for polynomials of second order [-]."""
 
 
 @overload

@@ -1,4 +1,4 @@
-"""Bodies in the water: a shape with a motion, and what several of them say together on the grid."""
+"""Bodies in the water: a shape with a motion, and the field of several bodies on the grid."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -43,7 +43,7 @@ AnyBody = Body | FreeBody
 
 
 MOST_ROWS = 127
-"""Parts of all bodies together, at most: what a byte counts [-]."""
+"""Largest number of parts of all bodies together: the parts are counted in one byte [-]."""
 
 MIDDLE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
@@ -52,8 +52,13 @@ MIDDLE = 1e-6
 def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple[bool, ...] = ()) -> Window:
     """Return the cells around a body that it acts on; a cell beyond a mirror that cuts the body is one of them.
 
-    ``mirrors`` says whether there is a mirror at the low and at the high end of each axis, if any; see
-    ``Sides.mirrors``.
+    Args:
+        body: the body.
+        pose: its pose.
+        grid: the grid.
+        time: when [s].
+        mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.mirrors``. Empty:
+            there are none.
 
     Raises:
         InvalidDesign: the body touches a side of the domain or lies beyond it, or a mirror does not cut it in half.
@@ -62,25 +67,39 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
     ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
     mirrors, window = mirrors or (False,) * (2 * grid.axes), []
     for d in reversed(range(grid.axes)):
-        (low, high), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
-        cut = mirrors[2 * d] and low < start < high, mirrors[2 * d + 1] and low < end < high
-        if not ((cut[0] or low - margin > start) and (cut[1] or high + margin < end)):
-            raise _outside(body, grid, ends, time)
-        for plane in [plane for plane, is_cut in zip((start, end), cut, strict=True) if is_cut]:
+        (lower_bound, upper_bound), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
+        end_cuts = (
+            mirrors[2 * d] and lower_bound < start < upper_bound,
+            mirrors[2 * d + 1] and lower_bound < end < upper_bound,
+        )
+        if not ((end_cuts[0] or lower_bound - margin > start) and (end_cuts[1] or upper_bound + margin < end)):
+            raise _out_of_grid_error(body, grid, ends, time)
+        for plane in [plane for plane, is_cut in zip((start, end), end_cuts, strict=True) if is_cut]:
             check_cut(body, pose, d, plane, h, time)
-        last = min(int((high + margin - start) / h) + 2, grid.cells[d])
+        end_cell = min(int((upper_bound + margin - start) / h) + 2, grid.cells[d])
         window += [
-            PAD - 1 if cut[0] else int((low - margin - start) / h) + PAD,
-            PAD + (grid.cells[d] + 1 if cut[1] else last),
+            PAD - 1 if end_cuts[0] else int((lower_bound - margin - start) / h) + PAD,
+            PAD + (grid.cells[d] + 1 if end_cuts[1] else end_cell),
         ]
     return tuple(window)
 
 
-def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: float) -> InvalidDesign:
-    reach = ", ".join(f"{axis} = {low:.4g} to {high:.4g} m" for axis, (low, high) in zip("xyz", ends, strict=False))
+def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: float) -> InvalidDesign:
+    """Return the error for a body that reaches beyond the grid.
+
+    Args:
+        body: the body.
+        grid: the grid.
+        ends: smallest and largest coordinate of the body along each axis [m].
+        time: when [s].
+    """
+    reach = ", ".join(
+        f"{axis} = {lower_bound:.4g} to {upper_bound:.4g} m"
+        for axis, (lower_bound, upper_bound) in zip("xyz", ends, strict=False)
+    )
     domain = ", ".join(
-        f"{axis} = {low:.4g} to {low + size:.4g} m"
-        for axis, low, size in zip("xyz", grid.origin, grid.size, strict=False)
+        f"{axis} = {start:.4g} to {start + size:.4g} m"
+        for axis, start, size in zip("xyz", grid.origin, grid.size, strict=False)
     )
     return InvalidDesign(
         f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the grid {domain} "
@@ -89,32 +108,40 @@ def _outside(body: AnyBody, grid: Grid, ends: list[tuple[float, float]], time: f
 
 
 def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time: float) -> None:
-    """Refuse a body that a mirror across an axis cuts anywhere but in its middle.
+    """Refuse a body that a mirror cuts anywhere but in its middle.
+
+    Args:
+        body: the body.
+        pose: its pose.
+        axis: axis across which the mirror lies: 0 is x, 1 is y, 2 is z.
+        plane: coordinate of the mirror along that axis [m].
+        h: side of a cell [m].
+        time: when [s].
 
     Raises:
         InvalidDesign: its halves differ, its middle lies off the plane, it moves through the plane, or its axes are
             oblique to it.
     """
-    place, name = pose.along(3), "xyz"[axis]
-    across = np.abs(place.matrix[axis])  # how the body's axes lie to the mirror
-    upright = float(across.max()) > 1 - MIDDLE**2
-    if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(across.argmax())]:
+    frame, name = pose.along(3), "xyz"[axis]
+    alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
+    upright = float(alignment.max()) > 1 - MIDDLE**2
+    if isinstance(body.shape, SpaceShape) and upright and not body.shape.even[int(alignment.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
         )
-    if abs(place.position[axis] - plane) > MIDDLE * h or place.velocity[axis] != 0:
+    if abs(frame.position[axis] - plane) > MIDDLE * h or frame.velocity[axis] != 0:
         raise InvalidDesign(
-            f"at t = {time:.4g} s the middle of {body.name} is at {name} = {place.position[axis]:.4g} m and moves with "
-            f"{place.velocity[axis]:.4g} m/s along {name}; the Mirror that cuts it, at {name} = {plane:.4g} m, needs "
+            f"at t = {time:.4g} s the middle of {body.name} is at {name} = {frame.position[axis]:.4g} m and moves with "
+            f"{frame.velocity[axis]:.4g} m/s along {name}; the Mirror that cuts it, at {name} = {plane:.4g} m, needs "
             f"it to stay there. Move the body or the grid, or take another side."
         )
-    if not upright or np.delete(place.spins, axis).any():
-        tilt = [round(part, 9) + 0.0 for part in (place.pitch, place.roll)]
-        more = f", pitch {tilt[0]:.4g} and roll {tilt[1]:.4g} rad," if any(tilt) else ""
-        spins = ", ".join(f"{part:.4g}" for part in place.spins)
+    if not upright or np.delete(frame.spins, axis).any():
+        tilt = [round(angle, 9) + 0.0 for angle in (frame.pitch, frame.roll)]
+        tilt_text = f", pitch {tilt[0]:.4g} and roll {tilt[1]:.4g} rad," if any(tilt) else ""
+        spins = ", ".join(f"{spin:.4g}" for spin in frame.spins)
         raise InvalidDesign(
-            f"at t = {time:.4g} s {body.name} stands at an angle of {place.angle:.4g} rad{more} and turns with "
+            f"at t = {time:.4g} s {body.name} stands at an angle of {frame.angle:.4g} rad{tilt_text} and turns with "
             f"({spins}) rad/s; the Mirror that cuts it across {name} needs one of its axes along {name} and lets it "
             f"turn about {name} alone. Take another side there."
         )
@@ -123,7 +150,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
 def cuts(window: Window, grid: Grid) -> tuple[bool, ...]:
     """Return whether a mirror cuts the bodies of a window at the low and at the high end of each axis."""
     ends = list(zip(window[::2], window[1::2], strict=True))[::-1]
-    pairs = [(first < PAD, last > n + PAD) for (first, last), n in zip(ends, grid.cells, strict=True)]
+    pairs = [(start < PAD, stop > n + PAD) for (start, stop), n in zip(ends, grid.cells, strict=True)]
     return tuple(end for pair in pairs for end in pair)
 
 
@@ -135,61 +162,68 @@ def unite(windows: list[Window], axes: int) -> Window:
 
 
 def rows_of(bodies: list[AnyBody]) -> list[range]:
-    """Return the rows of each body where sums are kept for every part of every body.
+    """Return the range of rows of each body in arrays that have one row for each part of every body.
 
     Raises:
-        InvalidDesign: there are more of them than a byte counts.
+        InvalidDesign: there are more than ``MOST_ROWS`` parts.
     """
     ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
     if ends[-1] > MOST_ROWS:
         raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MOST_ROWS} are allowed. Cut them less.")
-    return [range(first, end) for first, end in pairwise(ends)]
+    return [range(start, end) for start, end in pairwise(ends)]
 
 
 class Overlap(NamedTuple):
-    """How deep two bodies lie in each other, if any do."""
+    """Deepest overlap of two bodies, if any overlap."""
 
     depth: float
-    """Least distance, of the points inside both, of the deepest one from either surface [m]; 0 where there is none."""
+    """Distance of the deepest point inside both bodies from the nearer of their surfaces [m]; 0 without overlap."""
     bodies: tuple[int, int]
-    """Which they are, as they are counted [-]."""
+    """Indices of the two bodies [-]."""
 
 
 def measure_all(
     bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
 ) -> tuple[SpaceField, np.ndarray, Overlap]:
-    """Return the field of the bodies on a window, that of the nearest at each point; whose row it is; what overlaps.
+    """Return the field of all bodies on a window, the part that each point belongs to, and the deepest overlap.
 
-    ``points`` are the coordinates of the window along each axis [m].
+    At each point the field is that of the nearest body. The part is counted over all bodies, as ``rows_of`` does.
+
+    Args:
+        bodies: the bodies.
+        poses: the pose of each body.
+        points: coordinates of the window along each axis [m].
+        time: when [s].
+        h: side of a cell [m].
     """
-    first, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
-    every = rows_of(bodies)
-    for number, (rows, body, pose) in enumerate(zip(every, bodies, poses, strict=True)):
+    nearest_field, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
+    body_rows = rows_of(bodies)
+    for number, (rows, body, pose) in enumerate(zip(body_rows, bodies, poses, strict=True)):
         measure: Callable[..., Field | SpaceField] = body.shape.measure
         f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
-        other = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
-        part = getattr(f, "part", None)
-        if first is None:
-            first = other
-            owner = owner if part is None else part.astype(np.int8)
+        body_field = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
+        part_index = getattr(f, "part", None)
+        if nearest_field is None:
+            nearest_field = body_field
+            owner = owner if part_index is None else part_index.astype(np.int8)
             continue
-        shared = np.maximum(other.distance, first.distance)
+        shared = np.maximum(body_field.distance, nearest_field.distance)
         deepest = np.unravel_index(int(shared.argmin()), shared.shape)
         if -shared[deepest] > overlap.depth:
-            under = next(k for k, those in enumerate(every) if owner[deepest] in those)
-            overlap = Overlap(-float(shared[deepest]), (under, number))
-        nearer = other.distance < first.distance
-        first = _chosen(nearer, other, first)
-        owner[nearer] = rows.start if part is None else rows.start + part[nearer]
-    assert first is not None  # there is a window around bodies only
-    return first, owner, overlap
+            other_body = next(k for k, candidate_rows in enumerate(body_rows) if owner[deepest] in candidate_rows)
+            overlap = Overlap(-float(shared[deepest]), (other_body, number))
+        is_nearer = body_field.distance < nearest_field.distance
+        nearest_field = _merge_fields(is_nearer, body_field, nearest_field)
+        owner[is_nearer] = rows.start if part_index is None else rows.start + part_index[is_nearer]
+    assert nearest_field is not None  # a window exists only if there are bodies
+    return nearest_field, owner, overlap
 
 
-def _chosen(where: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
-    """Return the one field at some points and the other elsewhere."""
+def _merge_fields(mask: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
+    """Return field ``a`` at the points of a mask and field ``b`` elsewhere."""
 
     def choose(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return np.where(where, x, y)
+        return np.where(mask, x, y)
 
     return SpaceField(
         choose(a.distance, b.distance),
@@ -207,20 +241,26 @@ def _closed(shape: Shape | SpaceShape, time: float) -> bool:
 
 
 def thin_share(body: AnyBody, grid: Grid, time: float) -> float:
-    """Return the share of the body's length that is thinner than ``THINNEST`` cells.
+    """Return the fraction of the body's length that is thinner than ``THINNEST`` cells [-].
+
+    Args:
+        body: the body.
+        grid: the grid.
+        time: when [s].
 
     Raises:
         InvalidDesign: the body is too thin everywhere.
     """
     station, thickness = body.shape.thickness(time)
-    least, most = THINNEST * grid.cell, float(thickness.max())
-    needed = THINNEST_CLOSED if _closed(body.shape, time) else THINNEST
-    if most < needed * grid.cell:
+    min_thickness, max_thickness = THINNEST * grid.cell, float(thickness.max())
+    min_cells = THINNEST_CLOSED if _closed(body.shape, time) else THINNEST
+    if max_thickness < min_cells * grid.cell:
         raise InvalidDesign(
-            f"{body.name} is {most:.4g} m thick at most, {most / grid.cell:.2g} cells of {grid.cell:.4g} m; at least "
-            f"{needed:.2f} cells are needed. Take cells of at most {most / needed:.3g} m."
+            f"{body.name} is {max_thickness:.4g} m thick at most, {max_thickness / grid.cell:.2g} cells of "
+            f"{grid.cell:.4g} m; at least {min_cells:.2f} cells are needed. Take cells of at most "
+            f"{max_thickness / min_cells:.3g} m."
         )
     if station.size == 1:
-        return float(most < least)
-    thin = 0.5 * ((thickness[1:] < least).astype(float) + (thickness[:-1] < least).astype(float))
-    return float((thin * np.diff(station)).sum() / (station[-1] - station[0]))
+        return float(max_thickness < min_thickness)
+    thin_weight = 0.5 * ((thickness[1:] < min_thickness).astype(float) + (thickness[:-1] < min_thickness).astype(float))
+    return float((thin_weight * np.diff(station)).sum() / (station[-1] - station[0]))

@@ -1,4 +1,4 @@
-"""Boundary values: fills the cells around the domain from what its sides say, in flow units.
+"""Boundary values: fills the cells around the domain from the conditions on its sides, in flow units.
 
 Each side is seen with its normal first: ``normal[k]`` and ``tangent[k]`` are lines parallel to the side, so every
 kind of side is written once.
@@ -17,99 +17,162 @@ from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
 
 LOST = 1e-6
-"""Share of the water that enters which may find no way out [-]: what rounding leaves in single precision."""
+"""Largest net inflow, over the flow through all sides: the rounding error of single precision [-]."""
 
-_MIRRORED, _GIVEN, _FREE_OF_VORTICITY, _AS_INSIDE = range(4)
-"""What the velocity along a side is beyond it: mirrored about a value, that value, and so on."""
+_MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
+"""Conditions for the velocity along a side beyond it: mirrored about a value, that value, no vorticity, no gradient."""
 
 
 @compiled
-def _fill_side(n, t, face, inner, step, prescribed, straight, how, value):  # type: ignore[no-untyped-def]
-    """Write the velocity on a side and in the two lines beyond it; ``step`` is 1 at the low end and -1 at the high one.
+def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):  # type: ignore[no-untyped-def]
+    """Write the velocity on a side and in the two lines of cells beyond it.
 
-    ``n`` is the velocity along the normal and ``t`` that along the side, normal index first; ``face`` and ``inner`` are
-    the lines of the side's faces and of the cells inside it.
+    Args:
+        n: velocity along the normal, normal index first.
+        t: velocity along the side, normal index first.
+        face: line of the side's faces.
+        inner: line of the cells inside the side.
+        step: 1 at the low end of the axis and -1 at the high end.
+        prescribed: velocity into the domain on the side's faces [m/s].
+        straight: whether the normal velocity continues linearly beyond the side; else it stays the same.
+        condition: ``_MIRRORED``, ``_PRESCRIBED``, ``_FREE_OF_VORTICITY`` or ``_ZERO_GRADIENT``.
+        value: velocity along the side that the first two conditions take [m/s].
     """
-    two, sign, wide = n.dtype.type(2), n.dtype.type(step), n.shape[1]
-    for i in range(PAD, wide - PAD):
+    two, sign, width = n.dtype.type(2), n.dtype.type(step), n.shape[1]
+    for i in range(PAD, width - PAD):
         n[face, i] = sign * prescribed[i - PAD]
     for k in range(1, 3 if step > 0 else 2):
-        for i in range(wide):
+        for i in range(width):
             n[face - k * step, i] = two * n[face, i] - n[face + step, i] if straight else n[face, i]
     for k in range(1, 3):
-        to, source = inner - k * step, inner - (k - 1) * step
-        for i in range(wide):
-            if how == _MIRRORED:
-                t[to, i] = two * value - t[source, i]
-            elif how == _GIVEN:
-                t[to, i] = value
-            elif how == _FREE_OF_VORTICITY and PAD < i < wide - PAD:
-                t[to, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
+        ghost, source = inner - k * step, inner - (k - 1) * step
+        for i in range(width):
+            if condition == _MIRRORED:
+                t[ghost, i] = two * value - t[source, i]
+            elif condition == _PRESCRIBED:
+                t[ghost, i] = value
+            elif condition == _FREE_OF_VORTICITY and PAD < i < width - PAD:
+                t[ghost, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
             else:
-                t[to, i] = t[source, i]
+                t[ghost, i] = t[source, i]
 
 
 @part
-def _mirror_row(a, to, on, source, by, count, straight):  # type: ignore[no-untyped-def]
-    """Write a row beyond a side from that on it and, where the normal velocity goes on straight, from its image."""
-    two, to, on, source, by = a.dtype.type(2), unsigned(to), unsigned(on), unsigned(source), unsigned(by)
+def _mirror_row(a, ghost, boundary, source, stride, count, straight):  # type: ignore[no-untyped-def]
+    """Write a row of the normal velocity beyond a side: its linear continuation, or the values on the side.
+
+    Args:
+        a: the component, its cells end to end.
+        ghost: index of the row's first cell.
+        boundary: the same of the row on the side.
+        source: the same of the mirror image inside.
+        stride: distance of neighbours in the row.
+        count: cells of the row.
+        straight: whether the velocity continues linearly.
+    """
+    two = a.dtype.type(2)
+    ghost = unsigned(ghost)
+    boundary = unsigned(boundary)
+    source = unsigned(source)
+    stride = unsigned(stride)
     for i in range(unsigned(count)):
-        a[to + i * by] = two * a[on + i * by] - a[source + i * by] if straight else a[on + i * by]
+        a[ghost + i * stride] = (
+            two * a[boundary + i * stride] - a[source + i * stride] if straight else a[boundary + i * stride]
+        )
 
 
 @part
-def _fill_row(a, to, source, by, count, how, value):  # type: ignore[no-untyped-def]
-    """Write a row of a velocity along a side beyond it from that inside it."""
-    times, plus = a.dtype.type(-1 if how == _MIRRORED else how != _GIVEN), value
-    plus = plus + plus if how == _MIRRORED else plus if how == _GIVEN else a.dtype.type(0)
-    to, source, by = unsigned(to), unsigned(source), unsigned(by)
+def _fill_row(a, ghost, source, stride, count, condition, value):  # type: ignore[no-untyped-def]
+    """Write a row of a velocity along a side beyond it from that inside it.
+
+    Args:
+        a: the component, its cells end to end.
+        ghost: index of the row's first cell.
+        source: the same of the row inside.
+        stride: distance of neighbours in the row.
+        count: cells of the row.
+        condition: see ``_fill_side``.
+        value: see ``_fill_side`` [m/s].
+    """
+    times, plus = a.dtype.type(-1 if condition == _MIRRORED else condition != _PRESCRIBED), value
+    plus = plus + plus if condition == _MIRRORED else plus if condition == _PRESCRIBED else a.dtype.type(0)
+    ghost, source, stride = unsigned(ghost), unsigned(source), unsigned(stride)
     for i in range(unsigned(count)):
-        a[to + i * by] = plus + times * a[source + i * by]
+        a[ghost + i * stride] = plus + times * a[source + i * stride]
 
 
 @part
-def _free_of_vorticity(a, to, n, on, before, by, first, last, sign):  # type: ignore[no-untyped-def]
-    """Add to a row beyond a side what the normal velocity, whose row on the side is ``on``, rises along the side."""
-    to, on, before, by = unsigned(to), unsigned(on), unsigned(before), unsigned(by)
-    for i in range(unsigned(first), unsigned(last)):
-        a[to + i * by] -= sign * (n[on + i * by] - n[before + i * by])
+def _free_of_vorticity(a, ghost, n, boundary, previous, stride, start, stop, sign):  # type: ignore[no-untyped-def]
+    """Add to a row beyond a side the difference of the normal velocity along the side, so that there is no vorticity.
+
+    Args:
+        a: component along the side, its cells end to end.
+        ghost: index of the row's first cell.
+        n: normal component, its cells end to end.
+        boundary: index of the first normal velocity on the side.
+        previous: index of its neighbour along the side.
+        stride: distance of neighbours in the row.
+        start: first cell of the row that is written.
+        stop: the cell after the last.
+        sign: 1 at the low end of the normal's axis and -1 at the high end.
+    """
+    ghost, boundary, previous, stride = unsigned(ghost), unsigned(boundary), unsigned(previous), unsigned(stride)
+    for i in range(unsigned(start), unsigned(stop)):
+        a[ghost + i * stride] -= sign * (n[boundary + i * stride] - n[previous + i * stride])
 
 
 @compiled
-def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, how, values):  # type: ignore[no-untyped-def]
-    """Do in space what ``_fill_side`` does in the plane, with both velocities along the side and planes for lines.
+def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straight, condition, values):  # type: ignore[no-untyped-def]
+    """Write the velocity on a side in space and in the two planes beyond it, as ``_fill_side`` does in the plane.
 
-    ``velocity`` has the cells of a component end to end, ``strides`` apart along the normal and along the side's axes,
-    the last one first; ``values`` are those of the velocities along the side in the order of the axes.
+    Args:
+        velocity: components, each with its cells end to end.
+        axis: axis of the normal.
+        strides: distance of neighbours along the normal and along the side's axes, the last axis of the side first.
+        face: plane of the side's faces.
+        inner: plane of the cells inside the side.
+        step: 1 at the low end of the axis and -1 at the high end.
+        prescribed: velocity into the domain on the side's faces [m/s].
+        straight: see ``_fill_side``.
+        condition: see ``_fill_side``.
+        values: see ``_fill_side``; one for each velocity along the side, in the order of the axes [m/s].
     """
-    n, (across, down, by), sign = velocity[axis], strides, velocity.dtype.type(step)
-    high, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
-    for j in range(high):
-        on = face * across + j * down
-        if PAD <= j < high - PAD:
+    n, (normal_stride, row_stride, stride), sign = velocity[axis], strides, velocity.dtype.type(step)
+    height, count = prescribed.shape[0] + 2 * PAD, prescribed.shape[1] + 2 * PAD
+    for j in range(height):
+        boundary = face * normal_stride + j * row_stride
+        if PAD <= j < height - PAD:
             for i in range(count - 2 * PAD):
-                n[on + (i + PAD) * by] = sign * prescribed[j - PAD, i]
+                n[boundary + (i + PAD) * stride] = sign * prescribed[j - PAD, i]
         for k in range(1, 3 if step > 0 else 2):
-            away = k * step * across
-            _mirror_row(n, on - away, on, on + away, by, count, straight)
+            ghost_offset = k * step * normal_stride
+            _mirror_row(n, boundary - ghost_offset, boundary, boundary + ghost_offset, stride, count, straight)
         for k in range(1, 3):
-            to, beyond = (inner - k * step) * across + j * down, how == _FREE_OF_VORTICITY
-            source = to + step * across if beyond else (inner + (k - 1) * step) * across + j * down
+            ghost = (inner - k * step) * normal_stride + j * row_stride
+            is_vorticity_free = condition == _FREE_OF_VORTICITY
+            source = (
+                ghost + step * normal_stride
+                if is_vorticity_free
+                else (inner + (k - 1) * step) * normal_stride + j * row_stride
+            )
             for c in range(2):
-                t, at = velocity[c + (c >= axis)], on - (k - 1) * step * across
-                _fill_row(t, to, source, by, count, how, values[c])
-                if beyond and PAD + c <= j < high - PAD:
-                    _free_of_vorticity(t, to, n, at, at - (down if c else by), by, PAD + 1 - c, count - PAD, sign)
+                t, face_row = velocity[c + (c >= axis)], boundary - (k - 1) * step * normal_stride
+                _fill_row(t, ghost, source, stride, count, condition, values[c])
+                if is_vorticity_free and PAD + c <= j < height - PAD:
+                    _free_of_vorticity(
+                        t, ghost, n, face_row, face_row - (row_stride if c else stride), stride, PAD + 1 - c,
+                        count - PAD, sign,
+                    )  # fmt: skip
 
 
 @dataclass(slots=True)
 class Edge:
-    """One side of the domain at work."""
+    """One side of the domain during a run."""
 
     name: str
-    """Which side it is."""
+    """Name of the side; see ``sides.NAMES``."""
     side: Side
-    """What the side is."""
+    """Kind of the side."""
     axis: int
     """Axis of the normal: 0 is x, 1 is y, 2 is z."""
     low: bool
@@ -123,11 +186,11 @@ class Edge:
     unbounded: bool
     """Whether the side is one of an unbounded domain."""
     leaves: float = 0.0
-    """Share of this step in which water is carried out here instead of held to the far water [-]."""
+    """Weight of the convective outflow condition in this step; the rest of the velocity follows the far water [-]."""
     slides: tuple[float, ...] | None = None
-    """Velocity of what the water sticks to there, along the other axes; None without friction [m/s]."""
+    """Velocity of the wall along the other axes, for a side with friction; else None [m/s]."""
     induced: np.ndarray = field(init=False)
-    """Velocity into the domain that the flow in it induces, at the end of the last step [m/s]."""
+    """Velocity into the domain that the flow inside induces on the side, at the end of the last step [m/s]."""
     seen: np.ndarray = field(init=False)
     """The same one step earlier [m/s]."""
     order: tuple[int, ...] = field(init=False)
@@ -135,8 +198,8 @@ class Edge:
 
     def __post_init__(self) -> None:
         self.induced, self.seen = np.zeros(self.prescribed.shape), np.zeros(self.prescribed.shape)
-        at = self.prescribed.ndim - self.axis
-        self.order = (at, *(k for k in range(1 + self.prescribed.ndim) if k != at))
+        normal_axis = self.prescribed.ndim - self.axis
+        self.order = (normal_axis, *(k for k in range(1 + self.prescribed.ndim) if k != normal_axis))
 
     @property
     def sign(self) -> int:
@@ -162,87 +225,99 @@ class Edge:
         return a.transpose(self.order)  # np.moveaxis takes ten times as long
 
     def asked(self, time: float) -> tuple[tuple[float, ...] | None, np.ndarray | None]:
-        """Return what the side says at a time [s]: the velocity of what the water sticks to, and that into the domain.
+        """Return the velocity of the wall along the side and the velocity of the water through it, at a time [s].
 
-        None without friction, and None where the side gives no velocity through it [m/s].
+        The first is None without friction, the second is None where the side prescribes none [m/s].
 
         Raises:
-            InvalidDesign: it says something that is no velocity.
+            InvalidDesign: the side gives something that is no velocity.
         """
-        slides, given = self.side.along(time, 1 + self.prescribed.ndim), None
-        who = f"the {self.name} side, a {type(self.side).__name__},"
+        slides, inflow = self.side.along(time, 1 + self.prescribed.ndim), None
+        side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
-                f"at t = {time:.4g} s {who} moves along itself at {show(slides)} m/s; along() gives one finite number "
-                f"for each other axis, or None."
+                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
+                f"number for each other axis, or None."
             )
         if self.side.passes and not self.side.opens:
-            given = np.asarray(self.side.into(time, *self.places))
-            if given.shape not in ((), self.prescribed.shape) or not np.isfinite(given).all():
+            inflow = np.asarray(self.side.into(time, *self.places))
+            if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
                 raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through {who} are {show(given)}; into() gives one "
-                    f"finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
+                    f"gives one finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
                 )
-        return slides, given
+        return slides, inflow
 
     def impose(self, time: float, outward: float) -> None:
-        """Take what the side says of the water at a time.
+        """Set the velocities that the side prescribes at a time.
 
         Args:
             time: when [s].
-            outward: what share of the far stream's speed is across the side, positive outward [-].
+            outward: component of the far stream along the outward normal, over its speed [-].
         """
         self.leaves = self.side.carries(outward)
-        self.slides, given = self.asked(time)
-        if given is not None:
-            self.prescribed[:] = given
+        self.slides, inflow = self.asked(time)
+        if inflow is not None:
+            self.prescribed[:] = inflow
 
     def fastest(self, time: float) -> float:
         """Return the fastest speed that the side itself imposes at a time [m/s]."""
-        slides, given = self.asked(time)
-        return max(0.0 if slides is None else length(slides), 0.0 if given is None else float(np.abs(given).max()))
+        slides, inflow = self.asked(time)
+        return max(0.0 if slides is None else length(slides), 0.0 if inflow is None else float(np.abs(inflow).max()))
 
     def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
-        """Write this side's values to the cells and faces around the domain."""
+        """Write this side's values to the cells and faces around the domain.
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            stream: velocity of the far water [m/s].
+        """
         n, f, step = self.normal(velocity), self.face, self.sign
         inner = PAD if self.low else PAD + self.cells - 1
-        others = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
+        tangential_axes = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
         if isinstance(self.side, Periodic):
-            lines = [n, *(self.across(velocity[d]) for d in others)]
+            lines = [n, *(self.across(velocity[d]) for d in tangential_axes)]
             for k in range(1, PAD + 1):
-                to, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
+                ghost, source = (f - k, f - k + self.cells) if self.low else (f + k - 1, f + k - 1 - self.cells)
                 for a in lines:
-                    a[to] = a[source]
+                    a[ghost] = a[source]
             return
         straight = not self.side.passes or (self.unbounded and not self.leaves)
-        how, value = self._along(0, others[0], step, stream)
-        if len(others) == 1:
-            along = self.across(velocity[others[0]])
-            _fill_side(n, along, f, inner, step, self.prescribed, straight, how, n.dtype.type(value))
+        condition, value = self._tangential_condition(0, tangential_axes[0], step, stream)
+        if len(tangential_axes) == 1:
+            tangential = self.across(velocity[tangential_axes[0]])
+            _fill_side(n, tangential, f, inner, step, self.prescribed, straight, condition, n.dtype.type(value))
         else:
-            values = tuple(n.dtype.type(each) for each in (value, self._along(1, others[1], step, stream)[1]))
+            values = tuple(
+                n.dtype.type(tangential_value)
+                for tangential_value in (value, self._tangential_condition(1, tangential_axes[1], step, stream)[1])
+            )
             line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
             strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
             flat = velocity.reshape(3, -1)
-            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, how, values)
+            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, condition, values)
 
-    def _along(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
-        """Return what the velocity along an axis in the side, the one of number ``k``, is beyond it.
+    def _tangential_condition(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
+        """Return the condition for the velocity along the side, and its value [m/s]; the condition holds for all axes.
 
-        What kind of value that is does not depend on the axis.
+        Args:
+            k: which of the side's own axes, counted from 0.
+            axis: the same axis, counted among all: 0 is x, 1 is y, 2 is z.
+            step: 1 at the low end of the normal's axis and -1 at the high end.
+            stream: velocity of the far water [m/s].
         """
         if self.slides is not None:
             return _MIRRORED, self.slides[k]
         if self.unbounded and not self.leaves:
             return _FREE_OF_VORTICITY, 0.0
         if isinstance(self.side, Stream) and step * stream[self.axis] > 0:
-            return _GIVEN, stream[axis]
-        return _AS_INSIDE, 0.0
+            return _PRESCRIBED, stream[axis]
+        return _ZERO_GRADIENT, 0.0
 
 
 @dataclass(slots=True)
 class Border:
-    """The sides at work; ``prepare`` once a step, ``fill`` whenever the velocity changed."""
+    """The sides during a run; call ``prepare`` once a step and ``fill`` whenever the velocity changed."""
 
     edges: list[Edge]
     """Left, right, bottom, top, and in space low and high; without those at which the domain does not end."""
@@ -298,56 +373,71 @@ class Border:
     def prepare(
         self, velocity: np.ndarray, window: Window, dt: float, stream: tuple[float, ...], time: float = 0.0
     ) -> None:
-        """Fix the velocity on all sides at the end of the step, at ``time`` [s], from the fields at its start.
+        """Fix the velocity on all sides at the end of the step from the fields at its start.
 
         On return as much water leaves as enters.
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            window: padded cell indices around the bodies.
+            dt: length of the step [cells per (m/s)].
+            stream: velocity of the far water at the end of the step [m/s].
+            time: end of the step [s].
 
         Raises:
             InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
         """
-        before, self.stream = self.stream, stream
+        previous_stream, self.stream = self.stream, stream
         size = max(length(stream), 1e-30)
         for edge in self.edges:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
             for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
                 edge.induced[:] = edge.seen[:] = induced
-        grown = dt / self.span if self.span else 0.0
+        growth = dt / self.span if self.span else 0.0
         for edge in self.edges:
-            ahead = grown * (edge.induced - edge.seen)
+            extrapolation = growth * (edge.induced - edge.seen)
             if edge.side.opens:
-                held = edge.sign * stream[edge.axis] + edge.induced + ahead
+                inflow = edge.sign * stream[edge.axis] + edge.induced + extrapolation
                 if edge.leaves:
-                    rise = edge.sign * (stream[edge.axis] - before[edge.axis]) if isinstance(edge.side, Stream) else 0.0
-                    carried = self._carried(edge, velocity, dt) + (rise + ahead)
-                    held = edge.leaves * carried + (1 - edge.leaves) * held
-                edge.prescribed[:] = held
+                    rise = (
+                        edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
+                        if isinstance(edge.side, Stream)
+                        else 0.0
+                    )
+                    outflow = self._convective_outflow(edge, velocity, dt) + (rise + extrapolation)
+                    inflow = edge.leaves * outflow + (1 - edge.leaves) * inflow
+                edge.prescribed[:] = inflow
             edge.seen[:] = edge.induced
-            edge.induced += ahead
+            edge.induced += extrapolation
         self.steps, self.span = self.steps + 1, dt
         self._balance()
         self._refuse_gain(time)
 
     def _refuse_gain(self, time: float) -> None:
-        """Refuse water that enters through sides and cannot leave, or the reverse."""
+        """Refuse a net flow through the sides where no side can balance it."""
         if any(e.leaves or e.unbounded for e in self.edges):
             return
-        through = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
-        net = sum(float(p.sum(dtype=np.float64)) for p in through)
-        most = sum(float(np.abs(p).sum(dtype=np.float64)) for p in through)
-        if abs(net) > LOST * most:
-            driven = ", ".join(e.name for e in self.edges if e.side.passes)
-            way = "enters and cannot leave" if net > 0 else "leaves and none enters"
+        side_inflows = [e.prescribed for e in self.edges if not isinstance(e.side, Periodic)]
+        net = sum(float(p.sum(dtype=np.float64)) for p in side_inflows)
+        gross_flow = sum(float(np.abs(p).sum(dtype=np.float64)) for p in side_inflows)
+        if abs(net) > LOST * gross_flow:
+            side_names = ", ".join(e.name for e in self.edges if e.side.passes)
+            imbalance_text = "enters and cannot leave" if net > 0 else "leaves and none enters"
             raise InvalidDesign(
-                f"at t = {time:.4g} s {100 * abs(net) / most:.3g} % of the water that passes the domain's sides "
-                f"({driven}) {way}; make another side an Outflow()."
+                f"at t = {time:.4g} s {100 * abs(net) / gross_flow:.3g} % of the water that passes the domain's sides "
+                f"({side_names}) {imbalance_text}; make another side an Outflow()."
             )
 
     def update_induced(self, velocity: np.ndarray, window: Window) -> float:
-        """Take what the fields, which are those of the step's end, induce; return the largest change [m/s].
+        """Set the induced velocities from the fields at the end of the step; return the largest change [m/s].
 
-        ``prepare`` could only carry on from the last steps. Without this a cylinder in a domain of 4 diameters that
-        shakes once in 20 steps has 5 % less drag, and 23 % less with the last step's value alone.
+        ``prepare`` could only extrapolate from the last steps. Without this update a cylinder in a domain of 4
+        diameters that shakes once in 20 steps has 5 % less drag, and 23 % less with the last step's value alone.
+
+        Args:
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            window: padded cell indices around the bodies.
         """
         change = 0.0
         if self.water is None:
@@ -368,27 +458,37 @@ class Border:
         return self.water.inward(velocity, window, [Fading(e.axis, e.low, e.leaves) for e in self.edges if e.leaves])
 
     @staticmethod
-    def _carried(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
-        """Return the velocity on a side to which the water comes that moves out of the domain."""
+    def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
+        """Return the velocity into the domain on a side at the end of the step, convected from the cells inside [m/s].
+
+        Args:
+            edge: the side.
+            velocity: on the faces before the cells, padded, shape (axis, ...) [m/s].
+            dt: length of the step [cells per (m/s)].
+        """
         n = edge.normal(velocity)
-        at = edge.sign * n[edge.face][edge.inside]
+        side_velocity = edge.sign * n[edge.face][edge.inside]
         inner = edge.sign * n[edge.face + edge.sign][edge.inside]
-        speed = max(-float(at.mean(dtype=np.float64)), 0.0)
-        carried: np.ndarray = at - min(speed * dt, 1.0) * (at - inner)
-        return carried
+        speed = max(-float(side_velocity.mean(dtype=np.float64)), 0.0)
+        outflow: np.ndarray = side_velocity - min(speed * dt, 1.0) * (side_velocity - inner)
+        return outflow
 
     def _balance(self) -> None:
-        net, room = 0.0, 0.0
+        """Change the velocities on the open sides so that as much water leaves as enters.
+
+        Sides that carry water out take the difference; without them the unbounded sides take it.
+        """
+        net, open_area = 0.0, 0.0
         free = any(e.leaves for e in self.edges)
         for edge in self.edges:
             if not isinstance(edge.side, Periodic):
                 net += float(edge.prescribed.sum(dtype=np.float64))
-                room += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
-        if room:
+                open_area += edge.prescribed.size * (edge.leaves if free else float(edge.unbounded))
+        if open_area:
             for edge in self.edges:
-                share = edge.leaves if free else float(edge.unbounded)
-                if share:
-                    edge.prescribed -= share * net / room
+                fraction = edge.leaves if free else float(edge.unbounded)
+                if fraction:
+                    edge.prescribed -= fraction * net / open_area
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""

@@ -24,18 +24,18 @@ MARK = b"suchus flow checkpoint %d\n" % VERSION
 
 _BROKEN = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError,
            EOFError, SyntaxError, BadZipFile, zlib.error, struct.error)  # fmt: skip
-"""What zipfile, zlib and NumPy were seen to raise for damaged files, and those near them."""
+"""Errors that zipfile, zlib and NumPy raise for damaged files, and related ones."""
 
 State = dict[str, np.ndarray]
 """What a simulation needs to go on, by name."""
 
 
 class Resumable(Protocol):
-    """What can be saved and go on from what was saved."""
+    """A simulation that can be saved and resumed."""
 
     @property
     def setup(self) -> object:
-        """What is simulated; who has the same can go on from the other's state."""
+        """What is simulated; a simulation with the same setup can resume from this one's state."""
 
     def state(self) -> State:
         """Return all that changes."""
@@ -46,6 +46,10 @@ class Resumable(Protocol):
 
 def save(sim: Resumable, path: Path) -> None:
     """Write the state to a file; a kill in between leaves the old file whole.
+
+    Args:
+        sim: the simulation.
+        path: file to write.
 
     Raises:
         Unwritable: naming the place.
@@ -58,6 +62,10 @@ def save(sim: Resumable, path: Path) -> None:
 
 def load(sim: Resumable, path: Path) -> None:
     """Set the simulation to the state in a file.
+
+    Args:
+        sim: the simulation to resume.
+        path: file to read.
 
     Raises:
         UnreadableFile: not a checkpoint, of another version, damaged, or of another setup.
@@ -98,13 +106,13 @@ def arrays(content: bytes, path: Path) -> State:
 
 
 class Saver:
-    """Saves a simulation now and then."""
+    """Saves a simulation at intervals of wall-clock time."""
 
-    def __init__(self, path: Path | None, every: float) -> None:
-        self._path, self._every, self._saved = path, every, monotonic()
+    def __init__(self, path: Path | None, interval: float) -> None:
+        self._path, self._interval, self._saved = path, interval, monotonic()
 
     def save(self, sim: Resumable, *, now: bool = False) -> None:
-        """Save if a path was given and it is time, or ``now``."""
-        if self._path is not None and (now or monotonic() - self._saved >= self._every):
+        """Save if a path was given and the interval has passed, or if ``now`` is true."""
+        if self._path is not None and (now or monotonic() - self._saved >= self._interval):
             save(sim, self._path)
             self._saved = monotonic()

@@ -36,14 +36,14 @@ PAD = 2
 """Rows and columns around the domain, for the boundary values [-]."""
 
 unsigned = np.uint64
-"""What rows and columns are counted in by the kernels."""
+"""Type of row and column indices in the kernels."""
 
 signed = np.int64
-"""What kernels make of the number of a ``prange`` loop: numba counts on threads and without them in different types,
-and the parts would be compiled for both."""
+"""Type of the index of a ``prange`` loop in the kernels. numba counts in different types with and without threads, and
+the parts would be compiled for both."""
 
 UNIT = unsigned(1)
-"""One, as they count: with a signed one, numbers of rows would become floats [-]."""
+"""One, in the type of the indices: with a signed one, row numbers would become floats [-]."""
 
 Window = tuple[int, ...]
 """Padded cell indices around the bodies, first and end along each axis, the last axis first."""
@@ -57,7 +57,7 @@ _HERE = Path(__file__).parent
 _MAKERS = re.compile(
     r"^from suchus\.flow\.compiled import .*\b(?:compiled|threaded|part|ordered_part|threaded_part)\b", re.M
 )
-_OWN = ("compiled.py", "linking.py")
+_BASE_FILES = ("compiled.py", "linking.py")
 
 
 def folder() -> Path | None:
@@ -68,7 +68,7 @@ def folder() -> Path | None:
 def kernel_files() -> list[Path]:
     """Return the files of this room that hold kernels or parts of them, and those that say how they are compiled."""
     files = sorted(_HERE.glob("*.py"))
-    return [file for file in files if file.name in _OWN or _MAKERS.search(file.read_text(encoding="utf-8"))]
+    return [file for file in files if file.name in _BASE_FILES or _MAKERS.search(file.read_text(encoding="utf-8"))]
 
 
 FOLDER = folder()
@@ -76,20 +76,20 @@ FOLDER = folder()
 
 
 class _Notice(event.Listener):  # type: ignore[misc]
-    """Says on the error stream that kernels are being compiled, once that has taken ``AFTER``."""
+    """Prints on the error stream that kernels are being compiled, once compilation has taken ``DELAY``."""
 
-    AFTER = 2.0  # [s]
+    DELAY = 2.0  # [s]
 
     def __init__(self) -> None:
-        self._open, self._since, self._spent, self._said = 0, 0.0, 0.0, False
+        self._open, self._since, self._compile_time, self._is_printed = 0, 0.0, 0.0, False
 
     def on_start(self, compilation: event.Event) -> None:
-        """Note when a kernel begins to be compiled."""
+        """Store the time at which a compilation starts."""
         if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             if self._open == 0:
                 self._since = monotonic()
-            if not self._said and self._spent > self.AFTER:
-                self._said = True
+            if not self._is_printed and self._compile_time > self.DELAY:
+                self._is_printed = True
                 print(
                     "Compiling the flow solver for this machine: once, about a minute for each precision ...",
                     file=sys.stderr, flush=True,
@@ -97,21 +97,21 @@ class _Notice(event.Listener):  # type: ignore[misc]
             self._open += 1
 
     def on_end(self, compilation: event.Event) -> None:
-        """Add up what it took."""
+        """Add the time of a compilation to the total."""
         if compilation.data["dispatcher"].py_func.__module__.startswith(__package__ or ""):
             self._open -= 1
             if self._open == 0:
-                self._spent += monotonic() - self._since
+                self._compile_time += monotonic() - self._since
 
 
 event.register("numba:compile", _Notice())
 
 
-def _compile(function: Callable[P, R], parallel: bool, kept: bool = True) -> Callable[P, R]:
-    made: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
-    if kept and FOLDER is not None:  # else it is compiled anew every time
-        kernel_cache.keep(made, FOLDER)
-    return made
+def _compile(function: Callable[P, R], parallel: bool, use_cache: bool = True) -> Callable[P, R]:
+    kernel: Callable[P, R] = numba.njit(parallel=parallel, **_OPTIONS)(function)
+    if use_cache and FOLDER is not None:  # else it is compiled anew every time
+        kernel_cache.keep(kernel, FOLDER)
+    return kernel
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
@@ -125,29 +125,29 @@ def threaded(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def threaded_with(kernel: Any, **parts: Any) -> Any:
-    """Compile a threaded kernel as it would be had its module other parts; its code is not kept.
+    """Compile a threaded kernel with other parts in place of those of its module; its code is not kept.
 
     Args:
         kernel: that ``threaded`` made.
         parts: by the names that they have in the kernel's module.
     """
-    return _compile(_rewritten(kernel.py_func, parts), parallel=True, kept=False)
+    return _compile(_rewritten(kernel.py_func, parts), parallel=True, use_cache=False)
 
 
-def part_with(one: "Part[P, R]", **parts: Any) -> "Part[P, R]":
-    """Return a part as it would be had its module other parts; see ``threaded_with``."""
-    return Part(_rewritten(one.py_func, parts))
+def part_with(kernel_part: "Part[P, R]", **parts: Any) -> "Part[P, R]":
+    """Return a part with other parts in place of those of its module; see ``threaded_with``."""
+    return Part(_rewritten(kernel_part.py_func, parts))
 
 
 def _rewritten(function: Any, names: dict[str, Any]) -> Any:
-    """Return a function that finds other things under some of the names of its module."""
-    made = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__)
-    made.__module__, made.__qualname__ = function.__module__, function.__qualname__
-    return made
+    """Return a copy of a function for which some names of its module have other values."""
+    function_copy = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__)
+    function_copy.__module__, function_copy.__qualname__ = function.__module__, function.__qualname__
+    return function_copy
 
 
 class PartType(numba.types.Dispatcher):  # type: ignore[misc]
-    """What a part is to the kernels that call it.
+    """Type of a part in the kernels that call it.
 
     numba compiles a function once more for each constant that it is called with. Kernels take their parts in, and the
     constants with them, so for a part this changes nothing but the time that compiling takes: a third of it.
@@ -174,9 +174,9 @@ class Part(Generic[P, R]):
         self._compiled = numba.njit(no_cpython_wrapper=True, parallel=parallel, **options)(function)
         self._numba_type_ = PartType(self._compiled)
 
-    def __call__(self, *given: P.args, **named: P.kwargs) -> R:
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Return what the function returns."""
-        return self.py_func(*given, **named)
+        return self.py_func(*args, **kwargs)
 
 
 def part(function: Callable[P, R]) -> Part[P, R]:

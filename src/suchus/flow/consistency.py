@@ -1,6 +1,7 @@
-"""Whether the rates that a motion or a bending body gives are those of its positions.
+"""Check that the rates that a motion or a bending body declares are the time derivatives of its positions.
 
-The wall moves with the ones and stands at the others: where they differ, forces and power are wrong without a trace.
+The solver takes the velocity of the wall from the rates and its place from the positions. Where they differ, forces and
+power are wrong and nothing else shows it.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,27 +17,27 @@ from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
 
 SHARE = 0.1
-"""Difference of the two, over the larger one, from which they disagree [-]."""
+"""Largest difference of declared and measured rate, over the larger of the two [-]."""
 
 QUIET = 0.05
-"""Speed, over the fastest so far, below which differences count relative to that [-]."""
+"""Speed, over the fastest so far, below which differences are compared with this speed instead of the rates [-]."""
 
 MINOR = 0.05
-"""Speed, over the fastest now, by which one kind of rate may be off beside the others [-]: half-widths follow what an
-undulation does to arc lengths by some 2 %, and a heading's rate moves an eel's sides by 7 % and more."""
+"""Speed, over the fastest now, up to which one kind of rate may be wrong [-]. An undulation changes arc lengths, and so
+half-widths, by some 2 %; the rate of a heading moves an eel's sides by 7 % and more."""
 
 NOTHING = 1e-5
-"""Distance by which the two may part in a step without further question [cells]."""
+"""Distance between the two in one step that is always allowed [cells]."""
 
 PATIENCE = 3
-"""Times in a row that they must disagree: at a kink of the motion they do so once [-]."""
+"""Consecutive disagreements that raise an error: a kink of the motion causes one [-]."""
 
 LEAP = 1.0
-"""Distance by which a body may be off the place that its rates lead to [cells]. To it comes what a kink within a step,
-where they change at once, may make: half of the distance at the greatest rate so far."""
+"""Largest distance of a body from the position that its rates lead to [cells]. A kink within a step, where the rates
+change at once, may add half of the distance that the greatest rate so far covers in a step."""
 
-_HALVINGS = 40  # of a first step, until nothing goes farther than a cell
-_LOOK = 0.01  # share of a step over which positions are compared
+_HALVINGS = 40  # of the first step, until no point moves farther than a cell
+_COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compared
 
 
 class Watched(NamedTuple):
@@ -45,30 +46,30 @@ class Watched(NamedTuple):
     places: np.ndarray
     """Coordinates less those at the first time [m, rad]."""
     rates: np.ndarray
-    """Their rates as they are given [m/s, rad/s]."""
+    """Their declared rates [m/s, rad/s]."""
     arms: np.ndarray
-    """How far one unit of each moves the surface, shape (coordinate,) [m/m, m/rad]."""
+    """Displacement of the surface per unit of each coordinate, shape (coordinate,) [m/m, m/rad]."""
     kinds: np.ndarray
-    """What kind of coordinate each is, counted from 0, shape (coordinate,) [-]."""
+    """Kind of each coordinate, counted from 0, shape (coordinate,) [-]."""
 
 
 class Told(Protocol):
-    """What gives coordinates and their rates."""
+    """A source of coordinates and their rates."""
 
     def at(self, times: Sequence[float]) -> Watched:
-        """Return what is told of some times [s]."""
+        """Return the coordinates and rates at some times [s]."""
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
-        """Return what is wrong with a coordinate's rate, given and seen, and the remedy."""
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
+        """Return a sentence with the declared and the measured rate of a coordinate, and the remedy."""
 
-    def place(self, worst: int) -> str:
-        """Return what a coordinate is called."""
+    def place(self, index: int) -> str:
+        """Return the name of a coordinate for messages."""
 
 
-def _short(angle: np.ndarray) -> np.ndarray:
-    """Return angles without whole turns, which move nothing [rad]."""
-    turned: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
-    return turned
+def _wrap_angle(angle: np.ndarray) -> np.ndarray:
+    """Return angles from -pi to pi: whole turns move nothing [rad]."""
+    wrapped_angle: np.ndarray = (angle + np.pi) % (2 * np.pi) - np.pi
+    return wrapped_angle
 
 
 class GivenMotion(NamedTuple):
@@ -90,23 +91,25 @@ class GivenMotion(NamedTuple):
         turns = (np.arange(places.shape[1]) >= axes).astype(int)
         return Watched(places - places[0], rates, np.where(turns, self.reach, 1.0), turns)
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates and the remedy."""
-        axes = 2 if given.size == 3 else 3
-        turning = worst >= axes
-        what, of = ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+        axes = 2 if declared_rate.size == 3 else 3
+        turning = index >= axes
+        rate_name, position_name = (
+            ("spin", "angle" if axes == 2 else "attitude") if turning else ("velocity", "position")
+        )
 
         def numbers(rate: np.ndarray) -> str:
             parts, unit = (rate[axes:], "rad/s") if turning else (rate[:axes], "m/s")
-            text = ", ".join(f"{part:.4g}" for part in parts)
+            text = ", ".join(f"{component:.4g}" for component in parts)
             return f"({text}) {unit}" if parts.size > 1 else f"{text} {unit}"
 
         return (
-            f"the motion of {self.name} gives the {what} {numbers(given)}, and its {of} changes by {numbers(seen)}; "
-            f"give a Pose whose {what} is the rate of its {of}."
+            f"the motion of {self.name} gives the {rate_name} {numbers(declared_rate)}, and its {position_name} "
+            f"changes by {numbers(measured_rate)}; give a Pose whose {rate_name} is the rate of its {position_name}."
         )
 
-    def place(self, worst: int) -> str:  # noqa: ARG002 - a midline says which station it is
+    def place(self, index: int) -> str:  # noqa: ARG002 - a midline says which station it is
         """Return which body it is."""
         return self.name
 
@@ -125,34 +128,34 @@ class GivenMidline(NamedTuple):
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        first, *others = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
-        for time, other in zip(times[1:], others, strict=True):
-            if other.shape != first.shape:
+        reference, *later_states = (np.concatenate([state.rows, [state.swell]]) for state in map(self.spine, times))
+        for time, later_state in zip(times[1:], later_states, strict=True):
+            if later_state.shape != reference.shape:
                 raise InvalidDesign(
-                    f"the midline of {self.name} has {first.shape[1]} stations at t = {times[0]:.4g} s and "
-                    f"{other.shape[1]} at t = {time:.4g} s; give as many at every time."
+                    f"the midline of {self.name} has {reference.shape[1]} stations at t = {times[0]:.4g} s and "
+                    f"{later_state.shape[1]} at t = {time:.4g} s; give as many at every time."
                 )
-        every = np.array([first, *others])  # x, y, heading, half-width, and their rates
-        places, rates = every[:, :4] - first[:4], every[:, 4:]
-        places[:, 2] = _short(places[:, 2])
+        samples = np.array([reference, *later_states])  # x, y, heading, half-width, and their rates
+        places, rates = samples[:, :4] - reference[:4], samples[:, 4:]
+        places[:, 2] = _wrap_angle(places[:, 2])
         arms = np.ones(places.shape[1:])
-        arms[2] = first[3]
+        arms[2] = reference[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return Watched(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""
-        row, station = divmod(worst, given.size // 4)
-        what, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
+        row, station = divmod(index, declared_rate.size // 4)
+        quantity, unit = ("x", "y", "heading", "half_width")[row], "rad/s" if row == 2 else "m/s"
         return (
-            f"the midline of {self.name} gives the {what}_rate {given[worst]:.4g} {unit} at station {station}, and its "
-            f"{what} changes by {seen[worst]:.4g} {unit}; give a MidlineState whose {what}_rate is the rate of its "
-            f"{what}."
+            f"the midline of {self.name} gives the {quantity}_rate {declared_rate[index]:.4g} {unit} at station "
+            f"{station}, and its {quantity} changes by {measured_rate[index]:.4g} {unit}; give a MidlineState whose "
+            f"{quantity}_rate is the rate of its {quantity}."
         )
 
-    def place(self, worst: int) -> str:
+    def place(self, index: int) -> str:
         """Return which station it is."""
-        return f"station {worst % self.spine(0.0).x.size} of the midline of {self.name}"
+        return f"station {index % self.spine(0.0).x.size} of the midline of {self.name}"
 
 
 class GivenLinks(NamedTuple):
@@ -168,43 +171,43 @@ class GivenLinks(NamedTuple):
     def at(self, times: Sequence[float]) -> Watched:
         """Return positions of the links and their rotation vectors from the first time, and their rates."""
         states = [self.motion(time) for time in times]
-        first, count = states[0], len(self.reach)
-        turns = [rotation.vectors(one.matrix @ np.swapaxes(first.matrix, 1, 2)) for one in states]
+        reference, count = states[0], len(self.reach)
+        turns = [rotation.vectors(state.matrix @ np.swapaxes(reference.matrix, 1, 2)) for state in states]
         places = np.array(
-            [[*(s.position - first.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
+            [[*(s.position - reference.position).ravel(), *t.ravel()] for s, t in zip(states, turns, strict=True)]
         )
         rates = np.array([[*s.velocity.ravel(), *s.spin.ravel()] for s in states])
         arms = np.concatenate([np.ones(3 * count), np.repeat(self.reach, 3)])
         return Watched(places, rates, arms, np.repeat([0, 1], 3 * count))
 
-    def sentence(self, worst: int, given: np.ndarray, seen: np.ndarray) -> str:
+    def sentence(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst link and the remedy."""
-        turning = worst >= 3 * len(self.reach)
-        what, of, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
+        turning = index >= 3 * len(self.reach)
+        rate_name, position_name, unit = ("spin", "matrix", "rad/s") if turning else ("velocity", "position", "m/s")
         return (
-            f"the motion of {self.name} gives link {self._link(worst)} the {what} {given[worst]:.4g} {unit} along "
-            f"{'xyz'[worst % 3]}, and its {of} changes by {seen[worst]:.4g} {unit}; give LinkStates whose {what} is "
-            f"the rate of the {of}."
+            f"the motion of {self.name} gives link {self._link(index)} the {rate_name} {declared_rate[index]:.4g} "
+            f"{unit} along {'xyz'[index % 3]}, and its {position_name} changes by {measured_rate[index]:.4g} {unit}; "
+            f"give LinkStates whose {rate_name} is the rate of the {position_name}."
         )
 
-    def place(self, worst: int) -> str:
+    def place(self, index: int) -> str:
         """Return which link it is."""
-        return f"link {self._link(worst)} of {self.name}"
+        return f"link {self._link(index)} of {self.name}"
 
-    def _link(self, worst: int) -> int:
-        return worst % (3 * len(self.reach)) // 3
+    def _link(self, index: int) -> int:
+        return index % (3 * len(self.reach)) // 3
 
 
 @dataclass(slots=True)
 class Consistency:
-    """A motion or a bending body under watch."""
+    """Checks the rates of one motion or bending body, step by step."""
 
     told: Told
-    """What is watched."""
+    """The motion or body."""
     cell: float
     """Side of a cell [m]."""
     every: int = 1
-    """Steps from one close look at the rates to the next [-]; for leaps every step is looked at."""
+    """Steps between two comparisons of the rates [-]; leaps are looked for in every step."""
     top: float = 0.0
     """Fastest speed so far, of either kind [m/s]."""
     strikes: int = 0
@@ -212,84 +215,112 @@ class Consistency:
     steps: int = 0
     """Steps looked at [-]."""
     slack: float = 0.0
-    """Farthest that half of a step led so far [m]."""
+    """Largest distance that the rates covered in half a step so far [m]."""
     drift: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    """Way of each coordinate less what its rates add up to [m]."""
+    """Displacement of each coordinate minus the integral of its rate [m]."""
     path: np.ndarray = field(default_factory=lambda: np.zeros(1))
-    """Way of each coordinate, to and fro [m]."""
+    """Length of the path of each coordinate [m]."""
 
     def longest(self, time: float, dt: float) -> float:
-        """Return how much of a step [s] it takes until a place has gone a cell; all of it for a body that leaps.
+        """Return the longest first step in which no point moves farther than a cell [s]; ``dt`` for a body that leaps.
 
-        A body that begins at rest in water at rest says nothing yet of how fast it will be.
+        The speed at the start does not bound the step of a body that starts from rest.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step that is wanted [s].
         """
         step = dt
         for _ in range(_HALVINGS):
-            seen = self.told.at((time, *(time + part * step for part in (1 / 3, 1 / 2, 1))))
-            if np.abs(seen.places * seen.arms).max() <= LEAP * self.cell:
+            series = self.told.at((time, *(time + fraction * step for fraction in (1 / 3, 1 / 2, 1))))
+            if np.abs(series.places * series.arms).max() <= LEAP * self.cell:
                 return step
             step /= 2
         return dt
 
     def start(self, time: float, dt: float) -> None:
-        """Look at the first step, of about ``dt`` [s].
+        """Compare rates and positions in the first step.
+
+        Args:
+            time: start of the step [s].
+            dt: approximate length of the step [s].
 
         Raises:
             InvalidDesign: rates and positions disagree, with both numbers.
         """
-        for k in reversed(range(PATIENCE)):  # the message then tells of the start
+        for k in reversed(range(PATIENCE)):  # last at the start of the step, so that the message is about the start
             self._compare(time + k * dt / PATIENCE, dt)
         self.strikes = 0
 
     def look(self, time: float, dt: float) -> None:
-        """Compare rates and positions at the start of a step, a time [s] and ``dt`` [s], and over all of it.
+        """Compare rates and positions at the start of a step and over all of it.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
 
         Raises:
-            InvalidDesign: they disagree for the third time in a row, with both numbers, or the body is not where its
-                rates have led it.
+            InvalidDesign: they disagree for the third time in a row, or the body is not where its rates lead.
         """
         if self.steps % self.every == 0:
             self._compare(time, dt)
         self.steps += 1
-        seen = self.told.at((time, time + dt))
-        way, ahead = seen.places[1] * seen.arms, 0.5 * dt * seen.rates * seen.arms
-        self.slack = max(self.slack, float(np.abs(ahead).max()))
-        off = way - ahead.sum(axis=0)
-        self.drift, self.path = self.drift + off, self.path + np.abs(way)
-        room = LEAP * self.cell + self.slack
-        wrong = (np.abs(off) > room) | (np.abs(self.drift) > np.maximum(room, SHARE * self.path))
-        if not wrong.any():
+        series = self.told.at((time, time + dt))
+        displacement, rate_displacement = series.places[1] * series.arms, 0.5 * dt * series.rates * series.arms
+        self.slack = max(self.slack, float(np.abs(rate_displacement).max()))
+        deviation = displacement - rate_displacement.sum(axis=0)
+        self.drift, self.path = self.drift + deviation, self.path + np.abs(displacement)
+        tolerance = LEAP * self.cell + self.slack
+        is_inconsistent = (np.abs(deviation) > tolerance) | (
+            np.abs(self.drift) > np.maximum(tolerance, SHARE * self.path)
+        )
+        if not is_inconsistent.any():
             return
-        worst = int(np.where(wrong, np.abs(self.drift), 0.0).argmax())
+        worst_index = int(np.where(is_inconsistent, np.abs(self.drift), 0.0).argmax())
         raise InvalidDesign(
-            f"at t = {time + dt:.4g} s {self.told.place(worst)} is {abs(self.drift[worst]):.3g} m away from where its "
-            f"rates have led it ({abs(off[worst]):.3g} m in the last step of {dt:.3g} s; a cell is {self.cell:.3g} m): "
-            f"a body cannot leap. Give places without jumps and rates that are theirs, or, if they are right and only "
-            f"fast, a smaller step."
+            f"at t = {time + dt:.4g} s {self.told.place(worst_index)} is {abs(self.drift[worst_index]):.3g} m away "
+            f"from where its rates have led it ({abs(deviation[worst_index]):.3g} m in the last step of {dt:.3g} s; a "
+            f"cell is {self.cell:.3g} m): a body cannot leap. Give places without jumps and rates that are theirs, or, "
+            f"if they are right and only fast, a smaller step."
         )
 
     def _compare(self, time: float, dt: float) -> None:
-        span = _LOOK * dt
-        found = self.told.at([time + k * span for k in range(3)])
-        given, seen = found.rates[0], (4 * found.places[1] - found.places[2]) / (2 * span)
-        size, moved, apart = (np.abs(rate * found.arms) for rate in (given, seen, given - seen))
-        sizes = np.array([np.maximum(size, moved)[found.kinds == k].max() for k in range(found.kinds.max() + 1)])
+        """Compare the declared rates with difference quotients of the positions, at the start of a step.
+
+        Args:
+            time: start of the step [s].
+            dt: length of the step [s].
+
+        Raises:
+            InvalidDesign: they disagree for the third time in a row.
+        """
+        span = _COMPARISON_FRACTION * dt
+        series = self.told.at([time + k * span for k in range(3)])
+        declared_rate, measured_rate = series.rates[0], (4 * series.places[1] - series.places[2]) / (2 * span)
+        declared_speed, measured_speed, rate_error = (
+            np.abs(rate * series.arms) for rate in (declared_rate, measured_rate, declared_rate - measured_rate)
+        )
+        sizes = np.array(
+            [np.maximum(declared_speed, measured_speed)[series.kinds == k].max() for k in range(series.kinds.max() + 1)]
+        )
         self.top = max(self.top, float(sizes.max()))
-        least = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
-        excess = apart / np.maximum(SHARE * sizes, least)[found.kinds]
+        min_speed = max(MINOR * float(sizes.max()), SHARE * QUIET * self.top, NOTHING * self.cell / dt)
+        excess = rate_error / np.maximum(SHARE * sizes, min_speed)[series.kinds]
         if not (excess > 1).any():
             self.strikes = 0
             return
         self.strikes += 1
         if self.strikes >= PATIENCE:
-            raise InvalidDesign(f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), given, seen)}")
+            raise InvalidDesign(
+                f"at t = {time:.4g} s {self.told.sentence(int(excess.argmax()), declared_rate, measured_rate)}"
+            )
 
 
-def _turn(now: Pose, then: Pose) -> np.ndarray:
-    """Return by how much a pose is turned, in space the rotation vector from another one to it [rad]."""
-    if len(now.position) == 2:
-        return _short(np.array([then.angle - now.angle]))
-    if now.pitch == then.pitch == 0 and now.roll == then.roll == 0:
-        return _short(np.array([0.0, 0.0, then.angle - now.angle]))
-    one, other = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (now, then))
-    return rotation.to_vector(rotation.multiply(other, one * [1, -1, -1, -1]), np.zeros(3))
+def _turn(start: Pose, end: Pose) -> np.ndarray:
+    """Return the angle from one pose to another, in space their rotation vector [rad]."""
+    if len(start.position) == 2:
+        return _wrap_angle(np.array([end.angle - start.angle]))
+    if start.pitch == end.pitch == 0 and start.roll == end.roll == 0:
+        return _wrap_angle(np.array([0.0, 0.0, end.angle - start.angle]))
+    start_quaternion, end_quaternion = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (start, end))
+    return rotation.to_vector(rotation.multiply(end_quaternion, start_quaternion * [1, -1, -1, -1]), np.zeros(3))

@@ -1,9 +1,9 @@
-"""A short-range force between bodies that nearly touch, so that they do not run through each other.
+"""A short-range force between bodies that nearly touch, so that they do not overlap.
 
-It stands for no physics of the water: the film between two bodies, which would keep them apart, is thinner than the
-grid carries once the gap is below some two cells. It is the usual remedy of fluid solvers for that, a force that grows
-with the square of how deep one body is in the other's reach, spread over the outlines instead of between two centres so
-that it serves any shape.
+The force is numerical. Water between two bodies would keep them apart, but the grid does not resolve it once the gap
+is below some two cells. Fluid solvers usually add a force for this that grows with the square of the depth of one body
+in the other's range. Here it is spread over the outlines instead of acting between two centres, so that it serves any
+shape.
 """
 
 from dataclasses import dataclass
@@ -20,16 +20,17 @@ from suchus.flow.markers import Markers
 class BodyContact:
     """A pressure ``pressure (1 - d / gap)^2`` between outlines whose distance d is below ``gap``.
 
-    It pushes both bodies alike, hardly takes energy, and knows no friction. A body whose motion is given is not moved
-    by it.
+    It pushes both bodies with the same force, takes almost no energy, and has no friction. It does not move a body
+    whose motion is given.
     """
 
     gap: float
-    """Distance from which on it acts; two to three cells serve [m]."""
+    """Distance below which it acts; two to three cells are right [m]."""
     pressure: float
-    """Pressure where the outlines touch; ten times ``density speed^2`` of the bodies' approach serves [Pa]."""
+    """Pressure where the outlines touch; ten times ``density speed^2`` of the bodies' approach is right [Pa]."""
 
     def __post_init__(self) -> None:
+        """Refuse a gap or a pressure that is not positive."""
         check_kinds(self)
         for name, unit in (("gap", "m"), ("pressure", "Pa")):
             value = getattr(self, name)
@@ -46,38 +47,45 @@ def forces(contact: BodyContact, outlines: list[Markers], centres: list[np.ndarr
         centres: point that each body's torque is about, each of shape (2,) [m].
     """
     total = np.zeros((len(outlines), 3))
-    for a, one in enumerate(outlines):
-        for b, other in enumerate(outlines):
-            if a == b or not _near(one, other, contact.gap):
+    for a, outline in enumerate(outlines):
+        for b, other_outline in enumerate(outlines):
+            if a == b or not _is_within_gap(outline, other_outline, contact.gap):
                 continue
-            x, y, fx, fy = _pushes(contact, one, other)
-            for body, sense in ((a, 0.5), (b, -0.5)):  # half of it from either outline's markers
+            x, y, fx, fy = _pushes(contact, outline, other_outline)
+            for body, sense in ((a, 0.5), (b, -0.5)):  # half of the force from the markers of each outline
                 rx, ry = x - centres[body][0], y - centres[body][1]
                 total[body] += sense * np.array([fx.sum(), fy.sum(), (rx * fy - ry * fx).sum()])
     return total
 
 
-def _near(one: Markers, other: Markers, gap: float) -> bool:
-    return all(
-        p.min() - gap < q.max() and q.min() - gap < p.max() for p, q in ((one.x, other.x), (one.y, other.y))
-    )  # fmt: skip
+def _is_within_gap(outline: Markers, other_outline: Markers, gap: float) -> bool:
+    pairs = (outline.x, other_outline.x), (outline.y, other_outline.y)
+    return all(p.min() - gap < q.max() and q.min() - gap < p.max() for p, q in pairs)
 
 
-def _pushes(contact: BodyContact, one: Markers, other: Markers) -> np.ndarray:
-    """Return where the markers of one outline are pushed off the other and how hard: x, y and force, shape (4, marker).
+def _pushes(contact: BodyContact, outline: Markers, other_outline: Markers) -> np.ndarray:
+    """Return positions and contact forces of the markers of one outline, shape (4, marker).
 
-    An edge of the other outline is the stretch of its length about its marker.
+    Rows: x and y of the marker [m], and the force along x and y [N/m].
+
+    Only markers in reach of the other outline count. An edge of the other outline is the interval of its length around
+    its marker.
+
+    Args:
+        contact: the law.
+        outline: the outline that is pushed.
+        other_outline: the outline that pushes it.
     """
-    k = (one.x > other.x.min() - contact.gap) & (one.x < other.x.max() + contact.gap)
-    k &= (one.y > other.y.min() - contact.gap) & (one.y < other.y.max() + contact.gap)
-    dx, dy = one.x[k, None] - other.x, one.y[k, None] - other.y
-    half = other.share / 2
-    out_x, out_y = other.normals
-    along = np.clip(dy * out_x - dx * out_y, -half, half)
-    rx, ry = dx + along * out_y, dy - along * out_x
-    nearest = np.argmin(rx**2 + ry**2, axis=1)
-    here = (np.arange(nearest.size), nearest)
-    nx, ny = out_x[nearest], out_y[nearest]
-    distance = np.copysign(np.hypot(rx[here], ry[here]), rx[here] * nx + ry[here] * ny)
-    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * one.share[k]
-    return np.stack([one.x[k], one.y[k], push * nx, push * ny])
+    k = (outline.x > other_outline.x.min() - contact.gap) & (outline.x < other_outline.x.max() + contact.gap)
+    k &= (outline.y > other_outline.y.min() - contact.gap) & (outline.y < other_outline.y.max() + contact.gap)
+    dx, dy = outline.x[k, None] - other_outline.x, outline.y[k, None] - other_outline.y
+    half = other_outline.share / 2
+    normal_x, normal_y = other_outline.normals
+    edge_offset = np.clip(dy * normal_x - dx * normal_y, -half, half)
+    rx, ry = dx + edge_offset * normal_y, dy - edge_offset * normal_x
+    nearest_edge = np.argmin(rx**2 + ry**2, axis=1)
+    nearest_pair = (np.arange(nearest_edge.size), nearest_edge)
+    nx, ny = normal_x[nearest_edge], normal_y[nearest_edge]
+    distance = np.copysign(np.hypot(rx[nearest_pair], ry[nearest_pair]), rx[nearest_pair] * nx + ry[nearest_pair] * ny)
+    push = contact.pressure * np.maximum(1 - distance / contact.gap, 0.0) ** 2 * outline.share[k]
+    return np.stack([outline.x[k], outline.y[k], push * nx, push * ny])

@@ -46,6 +46,7 @@ def eel(length: float, *, period: float = 1.0, stations: int = 257) -> Midline:
     wave = 2 * np.pi
 
     def spine(time: float) -> MidlineState:
+        """Return the midline of the eel at a time [s]."""
         phase = wave * (x - time / period)
         sin, cos = np.sin(phase), np.cos(phase)
         tangent = slope * sin + amplitude * wave * cos
@@ -73,20 +74,21 @@ def eel_in_space(length: float, *, period: float = 1.0, stations: int = 257) -> 
     Source: Kern and Koumoutsakos 2006, J. Exp. Biol. 209, 4841-4857, as in the IBAMR examples, ConstraintIB eel3d.
     """
     s = 0.5 * (1 - np.cos(np.linspace(0, pi, stations)))
-    largest = np.polynomial.Polynomial(CURVATURE)(s)
+    curvature = np.polynomial.Polynomial(CURVATURE)(s)
     half = length * half_widths(s)
-    high = length * HEIGHT * np.sqrt(np.maximum(1 - ((s - MIDDLE) / MIDDLE) ** 2, 0))
-    along = partial(cumulative_simpson, x=s, initial=0.0)
+    half_height = length * HEIGHT * np.sqrt(np.maximum(1 - ((s - MIDDLE) / MIDDLE) ** 2, 0))
+    integrate = partial(cumulative_simpson, x=s, initial=0.0)
 
     def spine(time: float) -> MidlineState:
+        """Return the midline of the eel in space at a time [s]."""
         t = time / period
-        phase, grown = 2 * pi * (t - WAVES * s), np.tanh(pi * t)
-        bend_rate = largest * (2 * pi * np.cos(phase) * grown + np.sin(phase) * pi * (1 - grown**2)) / period
-        heading, turn = along(largest * np.sin(phase) * grown), along(bend_rate)
+        phase, ramp = 2 * pi * (t - WAVES * s), np.tanh(pi * t)
+        bend_rate = curvature * (2 * pi * np.cos(phase) * ramp + np.sin(phase) * pi * (1 - ramp**2)) / period
+        heading, turn = integrate(curvature * np.sin(phase) * ramp), integrate(bend_rate)
         cos, sin = np.cos(heading), np.sin(heading)
         return MidlineState(
-            x=length * along(cos), y=length * along(sin), heading=heading, half_width=half,
-            x_rate=-length * along(turn * sin), y_rate=length * along(turn * cos), heading_rate=turn,
+            x=length * integrate(cos), y=length * integrate(sin), heading=heading, half_width=half,
+            x_rate=-length * integrate(turn * sin), y_rate=length * integrate(turn * cos), heading_rate=turn,
         )  # fmt: skip
 
-    return Trunk(spine=spine, half_height=high)
+    return Trunk(spine=spine, half_height=half_height)

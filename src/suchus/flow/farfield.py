@@ -43,7 +43,7 @@ SIDE = 8
 """Cells along a block, and faces between two points of a side where the induced velocity is summed up [-]."""
 
 FAINT = 1e-6
-"""Strength over the largest one below which a block is left out: single precision has no more [-]."""
+"""Strength, over the largest one, below which a block is left out: the limit of single precision [-]."""
 
 FADE = 0.25
 """Share of the domain's length over which a wake is faded before it leaves: about a wavelength of a street [-]."""
@@ -53,17 +53,27 @@ PANELS = 16
 sides as a panel is long [-]."""
 
 LEAST = 2
-"""Cells along a panel, at least [-]."""
+"""Smallest number of cells along a panel [-]."""
 
 KNOT = 1.5
 """Panels between two knots of a side, where the velocity is summed up; between them it is cubic [-]."""
 
 IMAGES = 3
-"""Images to each side that count where two mirrors face each other, whose images have no end [-]."""
+"""Images that count to each side where two mirrors face each other and have infinitely many [-]."""
 
 
 @part
 def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
+    """Add the circulation of one row of corners, and its moment along y, to the sums of each column.
+
+    Args:
+        total: circulation of each column so far [m/s cells].
+        moment: its moment so far.
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        row: padded row of the corners.
+        arm: distance of the row from the middle of its blocks [cells].
+    """
     j, pad = unsigned(row), unsigned(PAD)
     for k in range(UNIT, unsigned(total.size)):
         w = (v[j, k + pad] - v[j, k + pad - UNIT]) - (u[j, k + pad] - u[j - UNIT, k + pad])
@@ -73,13 +83,23 @@ def _spin_row(total, moment, u, v, row, arm):  # type: ignore[no-untyped-def]
 
 @part
 def _spread_row(block, u, v, j, arm, b, window):  # type: ignore[no-untyped-def]
-    """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``."""
+    """Add the divergence of row ``j`` of cells in the window to the blocks of row ``b``.
+
+    Args:
+        block: strengths of the blocks, shape (4, row, column).
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        j: padded row of cells.
+        arm: distance of the row from the middle of its blocks [cells].
+        b: row of blocks.
+        window: padded cell indices around the bodies.
+    """
     for i in range(window[2], window[3]):
         spread = np.float64((u[j, i + 1] - u[j, i]) + (v[j + 1, i] - v[j, i]))
         k = (i - PAD) // SIDE
-        across = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
+        arm_x = (i - PAD) + 0.5 - (SIDE * k + 0.5 * (SIDE - 1))
         block[0, b, k] += spread
-        block[2, b, k] += spread * across
+        block[2, b, k] += spread * arm_x
         block[3, b, k] += spread * arm
 
 
@@ -89,6 +109,12 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
 
     Corners belong to a block by their number, so its middle lies at ``SIDE b + (SIDE - 1) / 2`` cells. Strengths are
     in m/s per cell times cells squared. Divergence is counted in the bodies' window only.
+
+    Args:
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        window: padded cell indices around the bodies.
+        block: strengths to write, shape (4, row, column).
     """
     ny, nx = u.shape[0] - 2 * PAD, u.shape[1] - 2 * PAD
     for n in prange(block.shape[1]):
@@ -101,27 +127,27 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
             j, arm = c + PAD, u.dtype.type(c - middle)
             _spin_row(total, moment, u, v, j, arm)
         for k in range(block.shape[2]):
-            vortex, up, along = 0.0, 0.0, 0.0
+            vortex, moment_y, moment_x = 0.0, 0.0, 0.0
             for i in range(SIDE * k, min(SIDE * k + SIDE, nx)):
                 vortex += total[i]
-                up += moment[i]
-                along += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
-            block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, up, -along
+                moment_y += moment[i]
+                moment_x += (i - (SIDE * k + 0.5 * (SIDE - 1))) * total[i]
+            block[0, b, k], block[1, b, k], block[2, b, k], block[3, b, k] = 0.0, vortex, moment_y, -moment_x
         for j in range(max(SIDE * b + PAD, window[0]), min(SIDE * b + SIDE + PAD, window[1])):
             _spread_row(block, u, v, j, j - PAD + 0.5 - middle, b, window)
 
 
 @part
-def _induced_at(x, y, place, strength, least):  # type: ignore[no-untyped-def]
+def _induced_at(x, y, block_centres, strength, min_square):  # type: ignore[no-untyped-def]
     """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
     u, v = 0.0, 0.0
-    cx, cy = place[0], place[1]
+    cx, cy = block_centres[0], block_centres[1]
     source, vortex, m_real, m_imag = strength[0], strength[1], strength[2], strength[3]
     for k in range(cx.size):
         dx, dy = x - cx[k], y - cy[k]
         square = dx * dx + dy * dy
-        near = 1.0 / (square if square > least else least)
-        a, b = dx * near, -dy * near
+        inverse_square = 1.0 / (square if square > min_square else min_square)
+        a, b = dx * inverse_square, -dy * inverse_square
         c, d = a * a - b * b, 2.0 * a * b
         u += source[k] * a + vortex[k] * b + m_real[k] * c - m_imag[k] * d
         v -= source[k] * b - vortex[k] * a + m_real[k] * d + m_imag[k] * c
@@ -129,21 +155,21 @@ def _induced_at(x, y, place, strength, least):  # type: ignore[no-untyped-def]
 
 
 @threaded
-def induce(points, place, strength, out):  # type: ignore[no-untyped-def]
-    """Write the velocity at ``points`` (2, point) to ``out``; all lengths in cells."""
-    least = 0.25 * SIDE**2
+def induce(points, block_centres, strength, velocity):  # type: ignore[no-untyped-def]
+    """Write the velocity at ``points`` (2, point) to ``velocity``; all lengths in cells."""
+    min_square = 0.25 * SIDE**2
     for t in prange(points.shape[1]):
-        out[0, t], out[1, t] = _induced_at(points[0, t], points[1, t], place, strength, least)
+        velocity[0, t], velocity[1, t] = _induced_at(points[0, t], points[1, t], block_centres, strength, min_square)
 
 
 def cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which four knots a cubic through them takes at each ``x``, and their weights, both of shape (4, x)."""
+    """Return the indices and weights of the four knots for cubic interpolation at each ``x``, both of shape (4, x)."""
     step = knots[1] - knots[0]
-    first = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
-    t = (x - knots[first]) / step
+    first_knot = np.clip(((x - knots[0]) / step).astype(int) - 1, 0, knots.size - 4)
+    t = (x - knots[first_knot]) / step
     nodes = np.arange(4)
     weights = [np.prod([(t - m) / (k - m) for m in nodes if m != k], axis=0) for k in nodes]
-    return first + nodes[:, None], np.array(weights)
+    return first_knot + nodes[:, None], np.array(weights)
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +191,7 @@ class OpenWater:
     cells: tuple[int, ...]
     """Cells along x and y."""
     points: np.ndarray = field(init=False)
-    """Where the sides are summed up, side after side, shape (2, point) [cells]."""
+    """Points of the sides where the velocity is summed up, side after side, shape (2, point) [cells]."""
     between: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
     """Which points of a side each face takes, and their weights, per side, each of shape (4, face) [-]."""
     middles: tuple[np.ndarray, np.ndarray] = field(init=False)
@@ -174,17 +200,18 @@ class OpenWater:
     """Strengths of the blocks, shape (4, row, column)."""
 
     def __post_init__(self) -> None:
+        """Lay out the blocks and the points of the sides where the velocity is summed up."""
         nx, ny = self.cells
         rows, columns = -(-ny // SIDE), -(-nx // SIDE)
         self.blocks = np.zeros((4, rows, columns))
         x, y = np.meshgrid(*(SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows)))
         self.middles = x, y
         points, self.between = [], []
-        for axis, at in ((0, 0), (0, nx), (1, 0), (1, ny)):
-            along = self.cells[1 - axis]
-            knots = np.linspace(0.5, along - 0.5, max(-(-along // SIDE), 3) + 1)
-            self.between.append(cubic(knots, np.arange(along) + 0.5))
-            pair = np.full(knots.size, float(at)), knots
+        for axis, coordinate in ((0, 0), (0, nx), (1, 0), (1, ny)):
+            cell_count = self.cells[1 - axis]
+            knots = np.linspace(0.5, cell_count - 0.5, max(-(-cell_count // SIDE), 3) + 1)
+            self.between.append(cubic(knots, np.arange(cell_count) + 0.5))
+            pair = np.full(knots.size, float(coordinate)), knots
             points.append(np.array(pair if axis == 0 else pair[::-1]))
         self.points = np.concatenate(points, axis=1)
 
@@ -210,47 +237,67 @@ class OpenWater:
             strength, sources = self._fade(strength, fading, window)
             extra.append(sources)
         size = np.abs(strength).max(axis=0)
-        kept = size > FAINT * size.max()
-        place = np.concatenate([np.array([x[kept], y[kept]]), *(e[:2] for e in extra)], axis=1)
-        values = np.concatenate([strength[:, kept], *(e[2:] for e in extra)], axis=1)
-        out = np.zeros(self.points.shape)
-        induce(self.points, place, values, out)
-        return self._on_faces(out)
+        is_strong = size > FAINT * size.max()
+        positions = np.concatenate([np.array([x[is_strong], y[is_strong]]), *(e[:2] for e in extra)], axis=1)
+        values = np.concatenate([strength[:, is_strong], *(e[2:] for e in extra)], axis=1)
+        induced_velocity = np.zeros(self.points.shape)
+        induce(self.points, positions, values, induced_velocity)
+        return self._on_faces(induced_velocity)
 
-    def _on_faces(self, out: np.ndarray) -> list[np.ndarray]:
+    def _on_faces(self, induced_velocity: np.ndarray) -> list[np.ndarray]:
+        """Return the velocity into the domain on the faces of each side, between the points of the sides [m/s].
+
+        Args:
+            induced_velocity: at the points of the sides, shape (2, point) [m/s].
+        """
         sides, start = [], 0
         for (index, weight), axis, sign in zip(self.between, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
             end = start + int(index[-1, -1]) + 1
-            sides.append(sign * (weight * out[axis, start:end][index]).sum(axis=0))
+            sides.append(sign * (weight * induced_velocity[axis, start:end][index]).sum(axis=0))
             start = end
         return sides
 
     def _fade(self, strength: np.ndarray, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
-        """Return faded strengths, and the sources in place of what they lack: x, y and strength, shape (6, source)."""
+        """Return the faded strengths of the blocks, and the sources that stand for the wake that has left.
+
+        A source has position x and y, then the four strengths of a block: shape (6, source).
+
+        Args:
+            strength: of the blocks, shape (4, row, column).
+            fading: the side towards which the wake is faded.
+            window: padded cell indices around the bodies.
+        """
         axis, cells = fading.axis, self.cells[fading.axis]
-        along, across = self.middles[axis], self.middles[1 - axis]
-        middle = along[0] if axis == 0 else along[:, 0]
-        first, last = (window[2], window[3]) if axis == 0 else (window[0], window[1])
-        room = (first if fading.low else cells + 2 * PAD - last) - PAD if last > first else cells
-        length = max(min(FADE * cells, room), SIDE)
+        axial, lateral = self.middles[axis], self.middles[1 - axis]
+        middle = axial[0] if axis == 0 else axial[:, 0]
+        body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
+        clearance = (
+            (body_start if fading.low else cells + 2 * PAD - body_stop) - PAD if body_stop > body_start else cells
+        )
+        length = max(min(FADE * cells, clearance), SIDE)
 
-        def weight(place: np.ndarray) -> np.ndarray:
-            share = np.minimum(np.maximum((place if fading.low else cells - place) / length, 0.0), 1.0)  # clip is slow
-            out: np.ndarray = 1 - fading.share * (1 - share**2 * (3 - 2 * share))
-            return out
+        def weight(position: np.ndarray) -> np.ndarray:
+            """Return the fraction of the strength that stays, at positions along the axis [cells]."""
+            fraction = np.minimum(
+                np.maximum((position if fading.low else cells - position) / length, 0.0), 1.0
+            )  # clip is slow
+            weights: np.ndarray = 1 - fading.share * (1 - fraction**2 * (3 - 2 * fraction))
+            return weights
 
-        lost = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
+        fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
         vortex, moment = strength[1], strength[2] if axis == 0 else -strength[3]
-        size = np.abs(vortex) * (lost if axis == 0 else lost[:, None])
-        centre = float((size * across).sum() / size.sum()) if size.sum() > 0 else 0.0
-        defect = -(vortex * (across - centre) + moment).sum(axis=axis) / SIDE
+        size = np.abs(vortex) * (fading_fraction if axis == 0 else fading_fraction[:, None])
+        centre = float((size * lateral).sum() / size.sum()) if size.sum() > 0 else 0.0
+        defect = -(vortex * (lateral - centre) + moment).sum(axis=axis) / SIDE
         turn = 1 if (axis == 0) != fading.low else -1
-        source = turn * lost * defect
-        here = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
-        none = np.zeros(middle.size)
+        source = turn * fading_fraction * defect
+        positions = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
+        zeros = np.zeros(middle.size)
         sheds = source != 0
         keep = weight(middle)
-        return strength * (keep if axis == 0 else keep[:, None]), np.array([*here, source, none, none, none])[:, sheds]
+        return strength * (keep if axis == 0 else keep[:, None]), np.array([*positions, source, zeros, zeros, zeros])[
+            :, sheds
+        ]
 
 
 @dataclass(slots=True)
@@ -260,13 +307,13 @@ class Face:
     axis: int
     """Axis of its normal: 0 is x, 1 is y, 2 is z."""
     low: bool
-    """Whether it is that at the smaller coordinate."""
+    """Whether the face is at the smaller coordinate."""
     along: tuple[int, int]
     """The two axes in it, the later one first, as the arrays have them."""
     spans: tuple[tuple[int, int], ...]
     """First and last cell face of the surface along each axis [-]."""
     centre: tuple[float, ...]
-    """Where the moments of vorticity are taken about, along each axis [cells]."""
+    """Point that the moments of vorticity are about [cells]."""
     starts: tuple[np.ndarray, ...]
     """First cells of the panels along each axis, counted from the span's [-]."""
     sizes: tuple[np.ndarray, ...]
@@ -281,7 +328,7 @@ class Face:
     def middles(self) -> np.ndarray:
         """Middles of the panels, shape (3, panel) [cells]."""
         panels = zip(self.spans, self.starts, self.sizes, strict=True)
-        lines = [first + starts + 0.5 * sizes for (first, _), starts, sizes in panels]
+        lines = [start + starts + 0.5 * sizes for (start, _), starts, sizes in panels]
         lines[self.axis] = np.array([float(self.spans[self.axis][0 if self.low else 1])])
         return points_of(lines)
 
@@ -292,28 +339,31 @@ class Face:
             velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
             leaving: share of the wake's flux that is left out [-].
         """
-        at = PAD + self.spans[self.axis][0 if self.low else 1]
-        parts, rises = [np.empty(0)] * 3, {}
+        face_index = PAD + self.spans[self.axis][0 if self.low else 1]
+        components, rises = [np.empty(0)] * 3, {}
         for d in range(3):
-            planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[at - 1 : at + 1]
-            both = planes[:, *(self._stretch(e, d) for e in self.along)].astype(np.float64)
+            planes = np.moveaxis(velocity[d], 2 - self.axis, 0)[face_index - 1 : face_index + 1]
+            face_planes = planes[:, *(self._padded_span(e, d) for e in self.along)].astype(np.float64)
             if d == self.axis:
-                parts[d] = both[1]
+                components[d] = face_planes[1]
                 continue
             n = 1 + self.along.index(d)  # of cells from their two faces
-            both = 0.5 * (np.delete(both, 0, axis=n) + np.delete(both, -1, axis=n))
-            parts[d], rises[d] = 0.5 * (both[0] + both[1]), both[1] - both[0]
+            face_planes = 0.5 * (np.delete(face_planes, 0, axis=n) + np.delete(face_planes, -1, axis=n))
+            components[d], rises[d] = 0.5 * (face_planes[0] + face_planes[1]), face_planes[1] - face_planes[0]
         if leaving:
-            parts[self.axis] = parts[self.axis] - leaving * self._flux(parts[self.axis], rises)
-        first, second = (self.starts[d] for d in self.along)
-        sums = [np.add.reduceat(np.add.reduceat(part, first, axis=0), second, axis=1) for part in parts]
+            components[self.axis] = components[self.axis] - leaving * self._flux(components[self.axis], rises)
+        first_starts, second_starts = (self.starts[d] for d in self.along)
+        sums = [
+            np.add.reduceat(np.add.reduceat(component, first_starts, axis=0), second_starts, axis=1)
+            for component in components
+        ]
         means: np.ndarray = np.reshape(sums / self.cells, (3, -1))
         return means
 
-    def _stretch(self, axis: int, component: int) -> slice:
+    def _padded_span(self, axis: int, component: int) -> slice:
         """Return the padded cells of the surface along an axis; of the velocity along it their faces."""
-        first, last = self.spans[axis]
-        return slice(PAD + first, PAD + last + (axis == component))
+        start, stop = self.spans[axis]
+        return slice(PAD + start, PAD + stop + (axis == component))
 
     def _flux(self, normal: np.ndarray, rises: dict[int, np.ndarray]) -> np.ndarray:
         """Return the velocity along the axis whose integral is the flux of the wake.
@@ -332,7 +382,7 @@ class Face:
 
 def points_of(lines: Sequence[np.ndarray]) -> np.ndarray:
     """Return the points of a lattice from its coordinates along x, y and z, the first changing fastest."""
-    return np.stack([part.ravel() for part in np.meshgrid(*reversed(lines), indexing="ij")[::-1]])
+    return np.stack([coordinate.ravel() for coordinate in np.meshgrid(*reversed(lines), indexing="ij")[::-1]])
 
 
 @dataclass(slots=True)
@@ -351,28 +401,41 @@ class FarField:
     """Which knots the middles of the cells along each axis take, and their weights, each of shape (4, cell) [-]."""
 
     def __post_init__(self) -> None:
+        """Lay out the faces of the surface with their panels, and fill the matrices of all sides."""
         cells, ends = self.grid.cells, list(zip(self.mirrors[::2], self.mirrors[1::2], strict=True))
-        whole = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
-        panel = max(LEAST, round(whole ** (1 / 3) / PANELS))
+        cell_count = np.prod([n * (1 + any(pair)) for n, pair in zip(cells, ends, strict=True)], dtype=float)
+        panel = max(LEAST, round(cell_count ** (1 / 3) / PANELS))
         knots = [np.linspace(0.5, n - 0.5, max(ceil(n / (KNOT * panel)), 3) + 1) for n in cells]
-        self.between = [cubic(at, np.arange(n) + 0.5) for at, n in zip(knots, cells, strict=True)]
+        self.between = [cubic(axis_knots, np.arange(n) + 0.5) for axis_knots, n in zip(knots, cells, strict=True)]
         spans = []
-        for n, (low, high) in zip(cells, ends, strict=True):
-            inside = min(panel, n // (2 if low or high else 4))  # a flat domain is thinner than that
-            spans.append((inside * (not low), n - inside * (not high)))
-        centre = [0.0 if low else float(n) if high else n / 2 for n, (low, high) in zip(cells, ends, strict=True)]
-        cuts = [np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans]
-        starts, sizes = tuple(cut[:-1] for cut in cuts), tuple(np.diff(cut) for cut in cuts)
-        along = ((2, 1), (2, 0), (1, 0))
+        for n, (has_low_mirror, has_high_mirror) in zip(cells, ends, strict=True):
+            margin = min(
+                panel, n // (2 if has_low_mirror or has_high_mirror else 4)
+            )  # a flat domain is thinner than that
+            spans.append((margin * (not has_low_mirror), n - margin * (not has_high_mirror)))
+        centre = [
+            0.0 if has_low_mirror else float(n) if has_high_mirror else n / 2
+            for n, (has_low_mirror, has_high_mirror) in zip(cells, ends, strict=True)
+        ]
+        edges_by_axis = [
+            np.linspace(0, b - a, max(round((b - a) / panel), 1) + 1).round().astype(int) for a, b in spans
+        ]
+        starts, sizes = tuple(edges[:-1] for edges in edges_by_axis), tuple(np.diff(edges) for edges in edges_by_axis)
+        tangential_axes = ((2, 1), (2, 0), (1, 0))
         self.faces = [
-            Face(k // 2, k % 2 == 0, along[k // 2], tuple(spans), tuple(centre), starts, sizes)
+            Face(k // 2, k % 2 == 0, tangential_axes[k // 2], tuple(spans), tuple(centre), starts, sizes)
             for k, mirror in enumerate(self.mirrors)
             if not mirror
         ]
         self.matrices = [self._matrix(face, knots) for face in self.faces]
 
     def _matrix(self, side: Face, knots: list[np.ndarray]) -> np.ndarray:
-        """Return the velocity into the domain in the knots of the side beyond a face per velocity on the panels."""
+        """Return the velocity into the domain in the knots of the side beyond a face per velocity on the panels.
+
+        Args:
+            side: face of the surface; the side of the domain lies beyond it.
+            knots: positions along each axis where the velocity is summed up [cells].
+        """
         axis, lines = side.axis, list(knots)
         lines[axis] = np.array([0.0 if side.low else float(self.grid.cells[axis])])
         points, parts = points_of(lines), []
@@ -380,46 +443,56 @@ class FarField:
             normal = np.zeros(3)
             normal[face.axis] = -1.0 if face.low else 1.0
             induced = np.zeros((points.shape[1], 3, face.cells.size))
-            for signs, shifts in self._images():  # an image is seen as its original from the image of the point
+            for (
+                signs,
+                shifts,
+            ) in self._images():  # the velocity of an image is that of its original at the image of the point
                 r = (signs[:, None] * (points - shifts[:, None]))[:, :, None] - face.middles[:, None, :]
-                share = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
+                weight = signs[axis] * face.cells.ravel() / (4 * np.pi * (r * r).sum(axis=0) ** 1.5)
                 past = np.tensordot(normal, r, 1)
                 for j in range(3):
-                    induced[:, j] += share * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
+                    induced[:, j] += weight * (normal[j] * r[axis] - normal[axis] * r[j] + (j == axis) * past)
             parts.append(induced)
-        both = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
-        return (both if side.low else -both).astype(np.float32)
+        matrix = np.concatenate(parts, axis=2).reshape(points.shape[1], -1)
+        return (matrix if side.low else -matrix).astype(np.float32)
 
     def _images(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Return signs and shifts of the images of the domain, itself among them: a point is seen from its image."""
-        every = []
-        for n, low, high in zip(self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True):
+        """Return signs and shifts that map a point to its images, the point itself among them."""
+        axis_images = []
+        for n, has_low_mirror, has_high_mirror in zip(
+            self.grid.cells, self.mirrors[::2], self.mirrors[1::2], strict=True
+        ):
             facing = [(sign, 2.0 * k * n) for k in range(-IMAGES, IMAGES + 1) for sign in (1.0, -1.0)]
-            every.append(facing if low and high else [(1.0, 0.0), (-1.0, 2.0 * n * high)][: 1 + (low or high)])
-        return [(np.array([s for s, _ in image]), np.array([b for _, b in image])) for image in product(*every)]
+            axis_images.append(
+                facing
+                if has_low_mirror and has_high_mirror
+                else [(1.0, 0.0), (-1.0, 2.0 * n * has_high_mirror)][: 1 + (has_low_mirror or has_high_mirror)]
+            )
+        return [(np.array([s for s, _ in image]), np.array([b for _, b in image])) for image in product(*axis_images)]
 
     def inward(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> list[np.ndarray]:  # noqa: ARG002
         """Return the velocity into the domain that the flow induces on the faces of each side, 0 on mirrors [m/s].
 
         Args:
             velocity: on the faces before the cells, padded, shape (3, ...) [m/s].
-            window: padded cell indices around the bodies, which are inside the surface.
+            window: not used; the bodies are inside the surface.
             fadings: the sides that carry a wake out.
 
         The order is that of ``sides.NAMES``, in each array the last axis first.
         """
         leaving = {(fading.axis, fading.low): fading.share for fading in fadings}
-        seen = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
-        strength, cells = np.concatenate(seen, axis=1), np.concatenate([face.cells.ravel() for face in self.faces])
-        for d in range(3):  # the far stream, or any other that is the same everywhere: it adds nothing
+        panel_velocities = [face.velocities(velocity, leaving.get((face.axis, face.low), 0.0)) for face in self.faces]
+        strength = np.concatenate(panel_velocities, axis=1)
+        cells = np.concatenate([face.cells.ravel() for face in self.faces])
+        for d in range(3):  # a uniform stream adds nothing to the integral
             if not any(self.mirrors[2 * d : 2 * d + 2]):
                 strength[d] -= np.average(strength[d], weights=cells)
         flat = strength.astype(np.float32).ravel()
         cells_along = self.grid.cells[::-1]
         sides = [np.zeros([n for d, n in enumerate(cells_along) if d != 2 - k // 2]) for k in range(6)]
         for face, matrix in zip(self.faces, self.matrices, strict=True):
-            (a, share_a), (b, share_b) = (self.between[d] for d in face.along)
+            (a, weight_a), (b, weight_b) = (self.between[d] for d in face.along)
             knots = np.einsum("ps,s->p", matrix, flat).astype(np.float64).reshape(int(a[-1, -1]) + 1, -1)
-            lines = (share_a[:, :, None] * knots[a]).sum(axis=0)
-            sides[2 * face.axis + (not face.low)] = (share_b * lines[:, b]).sum(axis=1)
+            lines = (weight_a[:, :, None] * knots[a]).sum(axis=0)
+            sides[2 * face.axis + (not face.low)] = (weight_b * lines[:, b]).sum(axis=1)
         return sides

@@ -1,4 +1,4 @@
-"""What there is to see of a flow: velocity, pressure and vorticity on plain grids."""
+"""Fields of a flow for the user: velocity, pressure and vorticity without the padding."""
 
 from collections.abc import Iterator
 
@@ -31,7 +31,7 @@ class Fields:
 
     @property
     def domain(self) -> "Fields":
-        """The fields of the whole domain: around a patch, and in it, on the coarser cells; else these themselves."""
+        """The fields of the whole domain on the coarser cells, if there is a patch; else these fields."""
         return self if len(self.water.layers) == 1 else _Domain(self)
 
     def probe(self, points: np.ndarray | tuple[float, ...]) -> Sample:
@@ -45,15 +45,19 @@ class Fields:
     @property
     def velocity(self) -> tuple[np.ndarray, ...]:
         """Velocity relative to the grid at the cell centres, along each axis, shape (ny, nx) or (nz, ny, nx) [m/s]."""
-        return tuple(0.5 * (low + high) for low, high in self._faces(self.water.velocity))
+        return tuple(0.5 * (lower_faces + upper_faces) for lower_faces, upper_faces in self._faces(self.water.velocity))
 
     @staticmethod
     def _faces(a: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces."""
+        """Yield, axis by axis, the values on the faces before and behind the cells of a field on faces.
+
+        Args:
+            a: field on the faces before the cells, padded, shape (axis, ...).
+        """
         axes, cells = len(a), slice(PAD, -PAD)
-        for d, part in enumerate(a):
-            behind = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
-            yield part[(cells,) * axes], part[behind]
+        for d, component in enumerate(a):
+            upper_slices = tuple(slice(PAD + 1, 1 - PAD) if axes - 1 - n == d else cells for n in range(axes))
+            yield component[(cells,) * axes], component[upper_slices]
 
     @property
     def pressure(self) -> np.ndarray:
@@ -84,7 +88,7 @@ class Fields:
         return np.stack([self._vorticity_about(d, e) for d, e in ((1, 2), (2, 0), (0, 1))])
 
     def _vorticity_about(self, d: int, e: int) -> np.ndarray:
-        """Return the vorticity about the axis that a turn from axis d to axis e goes around."""
+        """Return the vorticity at the cell centres about the axis of the turn from axis ``d`` to axis ``e`` [1/s]."""
         velocity = self.water.velocity
         axes = len(velocity)
         cells = [slice(PAD, 1 - PAD) if axes - 1 - n in (d, e) else slice(PAD, -PAD) for n in range(axes)]
@@ -100,22 +104,22 @@ class Fields:
         values: np.ndarray = np.moveaxis(sums, (0, 1), (axes - 1 - e, axes - 1 - d)) / (4 * self.water.grid.cell)
         return values
 
-    def _plane_only(self, what: str, instead: str) -> None:
+    def _plane_only(self, quantity: str, instead: str) -> None:
         if self.water.axes == 3:
-            raise InvalidDesign(f"{what} is for plane grids, and this one has three axes; take {instead}.")
+            raise InvalidDesign(f"{quantity} is for plane grids, and this one has three axes; take {instead}.")
 
     @property
     def fluid_share(self) -> np.ndarray:
-        """Share of the fluid at the cell centres, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
+        """Volume fraction of the fluid in the cells, 0 inside the bodies and 1 outside, shape as the pressure's [-]."""
         faces = list(self._faces(self.water.mu0))
         total: np.ndarray = faces[0][0] + faces[0][1]
-        for low, high in faces[1:]:
-            total = total + low + high
+        for lower_faces, upper_faces in faces[1:]:
+            total = total + lower_faces + upper_faces
         return 0.5 / self.water.axes * total
 
 
 class _Domain(Fields):
-    """What there is to see on the coarser cells around a patch."""
+    """Fields on the coarser cells around and in a patch."""
 
     def __init__(self, patch: Fields) -> None:
         self.setup, self.water, self.time, self.frame = patch.setup, patch.water.layers[-1], patch.time, patch.frame

@@ -18,14 +18,14 @@ GAP = 1.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """What the water does to a body; in the plane per metre of depth."""
+    """Load of the water on a body; in the plane per metre of depth."""
 
     pressure: tuple[float, ...]
     """Force by pressure, along each axis [N/m, N]."""
     shear: tuple[float, ...]
     """Force by friction, along each axis [N/m, N]."""
     moment: tuple[float, ...]
-    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
+    """Torque about the axes through a reference point, (z,) in the plane, counter-clockwise, or (x, y, z) [N, N m]."""
     power: float
     """Power that the body's surface gives to the water [W/m, W]."""
 
@@ -42,9 +42,9 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surface:
-    """Pressure and friction along a body's outline or over its skin: where the load sits.
+    """Distribution of pressure and friction along a body's outline or over its skin.
 
-    ``resolution.ALONG_THE_SKIN`` says how far off they are. For the sum take ``Record.force``.
+    For their errors see ``resolution.ALONG_THE_SKIN``. For the total force take ``Record.force``.
     """
 
     markers: Markers
@@ -59,15 +59,15 @@ class Surface:
         """Force per area, shape (axis, marker) [Pa]."""
         return self.shear - self.pressure * self.markers.normals
 
-    def load(self, about: tuple[float, ...]) -> Load:
+    def load(self, reference_point: tuple[float, ...]) -> Load:
         """Return the integral over the outline or the skin, torque about a point [m]."""
         m = self.markers
         push, rub = -self.pressure * m.normals * m.share, self.shear * m.share
-        force, away = push + rub, m.points - np.array(about)[:, None]
+        force, arms = push + rub, m.points - np.array(reference_point)[:, None]
         return Load(
             pressure=tuple(push.sum(axis=1).tolist()),
             shear=tuple(rub.sum(axis=1).tolist()),
-            moment=tuple(float((away[a] * force[b] - away[b] * force[a]).sum()) for a, b in TURNS[len(force)]),
+            moment=tuple(float((arms[a] * force[b] - arms[b] * force[a]).sum()) for a, b in TURNS[len(force)]),
             power=float(-(force * m.velocities).sum()),
         )
 
@@ -78,12 +78,18 @@ def padded(points: np.ndarray, grid: Grid) -> np.ndarray:
 
 
 def steps_of(a: np.ndarray) -> np.ndarray:
-    """Return how far apart in memory the neighbours along x, y (and z) of a field lie [-]."""
+    """Return the distance in memory between neighbours of a field along x, y (and z) [-]."""
     return np.array([stride // a.itemsize for stride in reversed(a.strides)])
 
 
 def sample(water: Fluid, markers: Markers, density: float) -> Surface:
-    """Return pressure and friction at the markers; densities in [kg/m^3]."""
+    """Return pressure and friction at the markers; densities in [kg/m^3].
+
+    Args:
+        water: with its pressure and velocity.
+        markers: points on the body's surface.
+        density: of the water [kg/m^3].
+    """
     places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
     pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
     steps = steps_of(water.p)
@@ -116,7 +122,7 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
 
 
 def through(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
-    """Return what enters a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
+    """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
 
     Args:
         velocity: on the faces before the cells, shape (axis, ...) [m/s].
@@ -127,29 +133,29 @@ def through(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]
     axes = len(velocity)
     total = np.zeros(axes)
     for d in range(axes):
-        for end, out in ((box[2 * (axes - 1 - d)], -1.0), (box[2 * (axes - 1 - d) + 1], 1.0)):
+        for end, outward_sign in ((box[2 * (axes - 1 - d)], -1.0), (box[2 * (axes - 1 - d) + 1], 1.0)):
 
             def at_side(
                 a: np.ndarray, shift: tuple[tuple[int, int], ...] = (), d: int = d, end: int = end
             ) -> np.ndarray:
                 """Return the values at the cells behind this side, some cells further along some axes."""
-                moved, places = dict(shift), []
+                offsets, places = dict(shift), []
                 for n in range(axes):
-                    more = moved.get(axes - 1 - n, 0)
-                    whole = slice(box[2 * n] + more, box[2 * n + 1] + more)
-                    places.append(end + more if n == axes - 1 - d else whole)
+                    offset = offsets.get(axes - 1 - n, 0)
+                    extent = slice(box[2 * n] + offset, box[2 * n + 1] + offset)
+                    places.append(end + offset if n == axes - 1 - d else extent)
                 return np.asarray(a[tuple(places)], np.float64)
 
-            across, normal = at_side(velocity[d]), velocity[d]
+            normal_velocity, normal = at_side(velocity[d]), velocity[d]
             stretch = at_side(normal, ((d, 1),)) - at_side(normal, ((d, -1),))
             push = 0.5 * (at_side(p, ((d, -1),)) + at_side(p))
-            total[d] += out * (nu * stretch - across**2 - push).sum()
+            total[d] += outward_sign * (nu * stretch - normal_velocity**2 - push).sum()
             for c in set(range(axes)) - {d}:
-                along = velocity[c]
-                before = at_side(along, ((d, -1),)) + at_side(along, ((d, -1), (c, 1)))
-                behind = at_side(along) + at_side(along, ((c, 1),))
-                shear = 0.5 * (behind - before + at_side(normal, ((c, 1),)) - at_side(normal, ((c, -1),)))
-                total[c] += out * (nu * shear - across * 0.25 * (before + behind)).sum()
+                tangential = velocity[c]
+                before_side = at_side(tangential, ((d, -1),)) + at_side(tangential, ((d, -1), (c, 1)))
+                behind_side = at_side(tangential) + at_side(tangential, ((c, 1),))
+                shear = 0.5 * (behind_side - before_side + at_side(normal, ((c, 1),)) - at_side(normal, ((c, -1),)))
+                total[c] += outward_sign * (nu * shear - normal_velocity * 0.25 * (before_side + behind_side)).sum()
     return total
 
 
@@ -166,94 +172,130 @@ class ControlVolume:
         """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
         Not a number in the first step.
+
+        Args:
+            water: after the step.
+            dt: length of the step [s].
+            push: uniform acceleration of the water [m/s^2].
+            density: of the water [kg/m^3].
         """
         h = water.grid.cell
-        now = np.array(
+        balance = np.array(
             [
                 momentum(water.velocity, self.box), momentum(water.carried, self.box),
                 through(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
-        old, self.before = self.before, now
-        if old is None:
+        previous_balance, self.before = self.before, balance
+        if previous_balance is None:
             return (float("nan"),) * water.axes
         cells = np.prod(np.subtract(self.box[1::2], self.box[::2]))
-        inside = (1 - water.mu0[0]).sum(dtype=np.float64)
-        rate = (now[0] - now[1] - old[0] + old[1]) / dt
-        body = (cells - inside) * np.array(push)
-        total = density * h ** (water.axes - 1) * (0.5 * (now[2] + old[2]) + h * (body - rate))
+        body_cells = (1 - water.mu0[0]).sum(dtype=np.float64)
+        rate = (balance[0] - balance[1] - previous_balance[0] + previous_balance[1]) / dt
+        body = (cells - body_cells) * np.array(push)
+        total = density * h ** (water.axes - 1) * (0.5 * (balance[2] + previous_balance[2]) + h * (body - rate))
         return tuple(total.tolist())
 
 
 @part
 def at(a, steps, spot):
-    """Return the interpolation of a flat field at a place in padded indices, linear along each axis."""
+    """Return the interpolation of a flat field at a place in padded indices, linear along each axis.
+
+    Args:
+        a: the field, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        spot: the place, in padded indices, shape (axis,).
+    """
     total = 0.0
     for corner in range(1 << spot.size):
         weight, k = 1.0, 0
         for d in range(spot.size):
             i = int(spot[d])
             past = spot[d] - i
-            high = (corner >> d) & 1
-            weight *= past if high else 1.0 - past
-            k += (i + high) * steps[d]
+            is_upper = (corner >> d) & 1
+            weight *= past if is_upper else 1.0 - past
+            k += (i + is_upper) * steps[d]
         total += weight * a[k]
     return total
 
 
 @compiled
-def interpolate(a, steps, places, out):
-    """Write the interpolation of a flat field at places, shape (axis, point), in padded indices."""
+def interpolate(a, steps, places, samples):
+    """Write the interpolation of a flat field at places, shape (axis, point), in padded indices.
+
+    Args:
+        a: the field, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        places: in padded indices, shape (axis, point).
+        samples: array to write to, shape (point,).
+    """
     spot = np.empty(places.shape[0])
     for m in range(places.shape[1]):
         for d in range(spot.size):
             spot[d] = places[d, m]
-        out[m] = at(a, steps, spot)
+        samples[m] = at(a, steps, spot)
 
 
 @compiled
-def wall_pressure(p, steps, places, normals, gap, out):
+def wall_pressure(p, steps, places, normals, gap, pressure):
     """Write the pressure at the markers from a parabola through three points off the wall.
 
     The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
     Read on the wall itself, the pressures of both sides of a thin tail mix and the force is ten times as noisy.
+
+    Args:
+        p: pressure over density, its cells end to end.
+        steps: distance in memory of neighbours along each axis [-].
+        places: positions of the markers in padded indices, shape (axis, marker).
+        normals: outward normals, shape (axis, marker).
+        gap: distance of the points [cells].
+        pressure: array to write to, shape (marker,).
     """
     spot = np.empty(places.shape[0])
     for m in range(places.shape[1]):
-        out[m] = 0.0
+        pressure[m] = 0.0
         for k in range(1, 4):
             for d in range(spot.size):
                 spot[d] = places[d, m] + k * gap * normals[d, m]
-            out[m] += (3.0, -3.0, 1.0)[k - 1] * at(p, steps, spot)
+            pressure[m] += (3.0, -3.0, 1.0)[k - 1] * at(p, steps, spot)
 
 
 @compiled
-def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, out):
-    """Write the rate of shear at the markers, shape (axis, marker), from a cubic through the wall and three points.
+def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear):
+    """Write the rate of shear at the markers from a cubic through the wall and three points off the wall.
 
-    ``walls`` are the wall's velocities [m/s], ``spins`` its turning rates in m/s per cell, about the axes that
-    ``turns`` names by the two across them; the points lie 1, 2 and 3 times ``gap`` cells off the wall. The result is in
-    m/s per cell.
+    The points lie 1, 2 and 3 times ``gap`` cells off the wall.
+
+    Args:
+        velocity: components, each with its cells end to end [m/s].
+        steps: distance in memory of neighbours along each axis [-].
+        places: positions of the markers in padded indices, shape (axis, marker).
+        normals: outward normals, shape (axis, marker).
+        walls: velocities of the wall, shape (axis, marker) [m/s].
+        spins: angular velocities of the wall about the axes of ``turns`` [m/s per cell].
+        turns: the two axes across each axis of rotation, shape (turn, 2).
+        gap: distance of the points [cells].
+        shear: array to write to, shape (axis, marker) [m/s per cell].
     """
     axes = places.shape[0]
-    spot, carried = np.empty(axes), np.empty(axes)
+    spot, wall_velocity = np.empty(axes), np.empty(axes)
     for m in range(places.shape[1]):
         for c in range(axes):
-            out[c, m] = 0.0
+            shear[c, m] = 0.0
         for k in range(1, 4):
             weight = (3.0, -1.5, 1.0 / 3.0)[k - 1] / gap
             for d in range(axes):
-                carried[d] = walls[d, m]
+                wall_velocity[d] = walls[d, m]
             for n in range(turns.shape[0]):
-                first, second = turns[n, 0], turns[n, 1]
-                carried[first] -= spins[n, m] * k * gap * normals[second, m]
-                carried[second] += spins[n, m] * k * gap * normals[first, m]
+                first_axis, second_axis = turns[n, 0], turns[n, 1]
+                wall_velocity[first_axis] -= spins[n, m] * k * gap * normals[second_axis, m]
+                wall_velocity[second_axis] += spins[n, m] * k * gap * normals[first_axis, m]
             for c in range(axes):
                 for d in range(axes):
                     spot[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
-                out[c, m] += weight * (at(velocity[c], steps, spot) - carried[c])
-        across = 0.0
+                shear[c, m] += weight * (at(velocity[c], steps, spot) - wall_velocity[c])
+        normal_shear = 0.0
         for d in range(axes):
-            across += out[d, m] * normals[d, m]
+            normal_shear += shear[d, m] * normals[d, m]
         for d in range(axes):
-            out[d, m] -= across * normals[d, m]
+            shear[d, m] -= normal_shear * normals[d, m]

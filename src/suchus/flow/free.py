@@ -64,21 +64,23 @@ class FreeBody:
     roll: float = 0.0
     """Roll at time 0, in space [rad]."""
     spin_x: float = 0.0
-    """Component along x, in space, of what times the tensor of inertia is the angular momentum at time 0 [rad/s]."""
+    """Component along x, in space, of the tensor of inertia's inverse times the angular momentum at time 0 [rad/s]."""
     spin_y: float = 0.0
     """Its component along y; ``spin`` is that along z. Of a rigid body it is the angular velocity [rad/s]."""
 
     def __post_init__(self) -> None:
+        """Refuse numbers that are not finite, a density that is not positive, and negative springs or dampers."""
         check_kinds(self)
         if self.density is not None and not (isfinite(self.density) and self.density > 0):
             raise InvalidDesign(f"density of {self.name} is {self.density} kg/m3; a positive density is needed.")
-        for what in ("start", "velocity", "gravity", "springs", "dampers", "anchor"):
-            given = getattr(self, what) or ()
-            if not all(isfinite(part) for part in given):
-                raise InvalidDesign(f"{what} of {self.name} is {given}; finite numbers are needed.")
-            if what in ("springs", "dampers") and min(given) < 0:
+        for field_name in ("start", "velocity", "gravity", "springs", "dampers", "anchor"):
+            components = getattr(self, field_name) or ()
+            if not all(isfinite(component) for component in components):
+                raise InvalidDesign(f"{field_name} of {self.name} is {components}; finite numbers are needed.")
+            if field_name in ("springs", "dampers") and min(components) < 0:
                 raise InvalidDesign(
-                    f"{what} of {self.name} is {given}; none may be negative. Give what pushes away as a force."
+                    f"{field_name} of {self.name} is {components}; none may be negative. Give what pushes away "
+                    f"as a force."
                 )
         if not (isfinite(self.angle) and isfinite(self.spin)):
             raise InvalidDesign(
@@ -92,25 +94,34 @@ class FreeBody:
 
     @property
     def still(self) -> bool:
-        """A free body is never taken for still."""
+        """False: a free body can always move."""
         return False
 
     def check_plane(self) -> None:
-        """Refuse what only space has, for a body in the plane.
+        """Refuse fields that need three axes, for a body in the plane.
 
         Raises:
-            InvalidDesign: naming it.
+            InvalidDesign: such a field is set.
         """
         if len(self.start) > 2:
             raise InvalidDesign(f"{self.name} starts at {self.start} m, and the grid has two axes; give (x, y).")
-        for what, most in (("velocity", 2), ("gravity", 2), ("free", 3), ("springs", 3), ("dampers", 3), ("anchor", 3)):
-            given = getattr(self, what) or ()
-            if len(given) > most:
-                count = "two" if most == 2 else "three"
-                raise InvalidDesign(f"{what} of {self.name} is {given}, and the grid has two axes; give {count}.")
-        for what in ("pitch", "roll", "spin_x", "spin_y"):
-            if getattr(self, what):
+        for field_name, max_count in (
+            ("velocity", 2),
+            ("gravity", 2),
+            ("free", 3),
+            ("springs", 3),
+            ("dampers", 3),
+            ("anchor", 3),
+        ):
+            components = getattr(self, field_name) or ()
+            if len(components) > max_count:
+                count = "two" if max_count == 2 else "three"
                 raise InvalidDesign(
-                    f"{what} of {self.name} is {getattr(self, what)}, and the grid has two axes; there a body turns "
-                    f"about z alone. Give an angle and a spin."
+                    f"{field_name} of {self.name} is {components}, and the grid has two axes; give {count}."
+                )
+        for field_name in ("pitch", "roll", "spin_x", "spin_y"):
+            if getattr(self, field_name):
+                raise InvalidDesign(
+                    f"{field_name} of {self.name} is {getattr(self, field_name)}, and the grid has two axes; there a "
+                    f"body turns about z alone. Give an angle and a spin."
                 )

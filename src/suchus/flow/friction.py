@@ -1,8 +1,8 @@
 """Friction of a boundary layer on a body whose layer no grid carries: a law along stations, and its band.
 
-The layer at a station rubs as that of a flat plate with the same momentum thickness. Laminar from the nose to
-the end is the least friction, turbulent from the nose on the most: the two are the band. The law holds where the layer
-stays attached; behind a separation it says nothing, and it leaves out what the layer does to the pressure.
+The friction at a station is that of a flat plate whose layer has the same momentum thickness. A layer that is laminar
+to the end has the least friction, a layer that is turbulent from the nose on the most: the two are the band. The law
+holds where the layer stays attached, not behind a separation. It leaves out the effect of the layer on the pressure.
 
 Sources: Blasius 1908, Z. Math. Phys. 56, 1-37, and Thwaites 1949, Aeronaut. Q. 1, 245-280, with the girth after Mangler
 1948, Z. angew. Math. Mech. 28, 97-103 (laminar); ITTC 1957, 8th International Towing Tank Conference, Madrid, the
@@ -84,26 +84,35 @@ def along_stations(
         raise InvalidDesign(
             f"viscosity is {viscosity:.4g} m^2/s and density {density:.4g} kg/m^3; both must be above 0."
         )
-    wide, fast, tilt = (0.5 * (a[1:] + a[:-1]) for a in (girth, speed, slope))
+    mean_girth, mean_speed, mean_slope = (0.5 * (a[1:] + a[:-1]) for a in (girth, speed, slope))
     forces = []
     for total, (of_girth, of_speed) in ((_laminar_total, _LAMINAR), (_turbulent_total, _TURBULENT)):
-        end, start = _plate(arc, wide, fast, of_girth, of_speed)
-        rubbed = total(fast * end / viscosity) - total(fast * start / viscosity)
-        forces.append(float((0.5 * density * fast * viscosity * wide * tilt * rubbed).sum()))
+        end, start = _plate(arc, mean_girth, mean_speed, of_girth, of_speed)
+        rubbed = total(mean_speed * end / viscosity) - total(mean_speed * start / viscosity)
+        forces.append(float((0.5 * density * mean_speed * viscosity * mean_girth * mean_slope * rubbed).sum()))
     return FrictionBand(*forces)
 
 
 _LAMINAR, _TURBULENT = (2.0, 5.0), (7.0 / 6.0, 10.0 / 3.0)
-"""Powers of girth and speed with which a layer remembers where it has been [-]."""
+"""Powers of girth and speed that weight the history of a layer, laminar and turbulent [-]."""
 
 
 def _plate(
-    arc: np.ndarray, wide: np.ndarray, fast: np.ndarray, of_girth: float, of_speed: float
+    arc: np.ndarray, mean_girth: np.ndarray, mean_speed: np.ndarray, of_girth: float, of_speed: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m]."""
-    own, ds = (wide / max(wide.max(), 1e-300)) ** of_girth * (fast / fast.max()) ** of_speed, np.diff(arc)
-    before = own[0] * arc[0] + np.concatenate([[0.0], np.cumsum(own * ds)[:-1]])
-    start = np.divide(before, own, out=np.zeros_like(own), where=own > 0)
+    """Return the lengths of the plates whose layers are those at the end and at the start of each interval [m].
+
+    Args:
+        arc: distance of the stations from the nose [m].
+        mean_girth: of each interval [m].
+        mean_speed: of each interval [m/s].
+        of_girth: power of the girth with which the layer grows [-].
+        of_speed: power of the speed with which the layer grows [-].
+    """
+    growth = (mean_girth / max(mean_girth.max(), 1e-300)) ** of_girth * (mean_speed / mean_speed.max()) ** of_speed
+    ds = np.diff(arc)
+    accumulated_growth = growth[0] * arc[0] + np.concatenate([[0.0], np.cumsum(growth * ds)[:-1]])
+    start = np.divide(accumulated_growth, growth, out=np.zeros_like(growth), where=growth > 0)
     return start + ds, start
 
 
@@ -113,16 +122,17 @@ def _laminar_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n
 
 
 def _turbulent_total(reynolds: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
-    """Return the integral of ``ittc`` over the Reynolds number, but for a constant."""
+    """Return the integral of ``ittc`` over the Reynolds number, up to a constant."""
 
     def line(number: Float[np.ndarray, " *n"]) -> Float[np.ndarray, " *n"]:
         return np.asarray(0.075 * number / (np.log10(number) - 2.0) ** 2)
 
-    above = np.maximum(reynolds, SLOWEST)
-    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(above)
+    turbulent_reynolds = np.maximum(reynolds, SLOWEST)
+    return _laminar_total(np.minimum(reynolds, SLOWEST)) + line(turbulent_reynolds)
 
 
 def _check(arc: np.ndarray, girth: np.ndarray, speed: np.ndarray, slope: np.ndarray) -> None:
+    """Refuse stations for which the law does not hold; see ``along_stations``."""
     if not (arc.ndim == 1 and arc.shape == girth.shape == speed.shape and arc.size >= 2):
         raise InvalidDesign(
             f"stations have shape {arc.shape}, girths {girth.shape} and speeds {speed.shape}; give three rows of as "

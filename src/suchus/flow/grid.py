@@ -21,7 +21,7 @@ MOST = 2**16
 
 
 HELD = 1e-6
-"""Share of a cell by which a side of the domain may lie off the place that is asked for [-]."""
+"""Largest distance of a side of the domain from the requested position, over a cell [-]."""
 
 RATIOS = 2, 4, 8
 """Fine cells of a patch along a cell of the grid around it [-]."""
@@ -39,17 +39,17 @@ def _coarsest(cells: tuple[int, ...]) -> tuple[int, ...]:
 def _fitting(cells: tuple[int, ...]) -> tuple[int, ...]:
     """Return the next sizes that can be halved until at most ``COARSEST`` cells are left along each side.
 
-    Of a long channel up to ``LONGEST`` are left, rather than that it becomes wider.
+    A long channel may keep up to ``LONGEST`` cells along its length, so that it does not become wider.
     """
-    halvings, short = 0, min(cells)
-    while ceil(max(cells) / 2**halvings) > (COARSEST if short > 4 * 2**halvings else LONGEST):
+    halvings, min_side = 0, min(cells)
+    while ceil(max(cells) / 2**halvings) > (COARSEST if min_side > 4 * 2**halvings else LONGEST):
         halvings += 1
     step = 2**halvings
     return tuple(step * max(4, ceil(n / step)) for n in cells)
 
 
 def _times(values: tuple[object, ...]) -> str:
-    """Return numbers or pairs as the size of a rectangle or box is written."""
+    """Return numbers or pairs as text, such as ``2 x 3 x 4``."""
     return " x ".join(str(value) for value in values)
 
 
@@ -63,14 +63,14 @@ def _are_pairs(ends: tuple[object, ...]) -> bool:
 
 
 def check_kinds(value: object) -> None:
-    """Refuse a setting whose fields hold other kinds of things than they declare.
+    """Refuse a setting whose fields have values of other types than they declare.
 
     Raises:
-        InvalidDesign: naming all of them.
+        InvalidDesign: the message names all such fields.
     """
-    wrong = [f"{field} {text}" for field, text in misfits(value)]
-    if wrong:
-        raise InvalidDesign(f"{'; '.join(wrong)}.")
+    problems = [f"{field} {text}" for field, text in misfits(value)]
+    if problems:
+        raise InvalidDesign(f"{'; '.join(problems)}.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +89,7 @@ class Grid:
     """Corner of the domain with the smallest coordinates, one for each axis; all 0 if it is not given [m]."""
 
     def __post_init__(self) -> None:
+        """Refuse sizes that cannot be or that multigrid cannot halve far enough; an empty origin becomes 0."""
         check_kinds(self)
         if not self.origin:
             object.__setattr__(self, "origin", (0.0,) * len(self.cells))
@@ -102,8 +103,8 @@ class Grid:
             raise InvalidDesign(f"the grid has {show(self.cells)} cells; up to {MOST} along each side are allowed.")
         if min(self.cells) < 8:
             raise InvalidDesign(f"the grid has {size} cells; at least {_times((8,) * self.axes)} are needed.")
-        last = _coarsest(self.cells)
-        if max(last) > (LONGEST if min(last) <= NARROW else COARSEST):
+        coarsest = _coarsest(self.cells)
+        if max(coarsest) > (LONGEST if min(coarsest) <= NARROW else COARSEST):
             raise InvalidDesign(
                 f"a grid of {size} cells cannot be halved down to {COARSEST} cells a side, as multigrid needs; "
                 f"take {_times(_fitting(self.cells))}, or let Grid.covering choose."
@@ -116,44 +117,45 @@ class Grid:
     ) -> "Grid":  # fmt: skip
         """Return the smallest fitting grid that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m].
 
-        What it is larger goes evenly to both ends of each axis, or where one end is held all to the other.
+        The excess length is split evenly between both ends of each axis, or added to one end where the other is held.
 
         Args:
             x: first and last place along x [m].
             y: the same along y.
             z: the same along z, in space.
             cell: side of a cell [m].
-            sides: those of the setup; each that is no ``Stream`` and no ``Outflow`` stays where it is asked for.
-                Without them a mirror or a wall may move by some cells.
+            sides: those of the setup; each that is no ``Stream`` and no ``Outflow`` stays at the requested
+                position. Without them a mirror or a wall may move by some cells.
 
         Raises:
             InvalidDesign: an empty rectangle or box, a cell that is not positive, or one that does not fit between two
                 sides that are held.
         """
         pairs = (x, y) if z is None else (x, y, z)
-        what, count = ("rectangle", "two") if z is None else ("box", "three")
+        shape_name, count = ("rectangle", "two") if z is None else ("box", "three")
         if not _are_pairs((*pairs, (0.0, cell))):
             raise InvalidDesign(
-                f"the {what} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; {count} "
-                "pairs of finite numbers and one more are needed."
+                f"the {shape_name} is {_times(tuple(show(pair) for pair in pairs))} m and the cell {show(cell)} m; "
+                f"{count} pairs of finite numbers and one more are needed."
             )
         lengths = [end - start for start, end in pairs]
         if cell > 0 and max(lengths) / MOST > cell:
             raise InvalidDesign(f"cells of {cell} m make a side of {max(lengths) / cell:.3g}; {MOST} are allowed.")
         if not (cell > 0 and min(lengths) > 0):
             raise InvalidDesign(
-                f"the {what} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a positive cell."
+                f"the {shape_name} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a "
+                f"positive cell."
             )
         cells = _fitting(tuple(max(8, ceil(side / cell - HELD)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):
-            low, high = (False, False) if sides is None else sides.held(len(pairs))[d]
-            if low and high and abs(n * cell - side) > HELD * cell:
+            is_low_held, is_high_held = (False, False) if sides is None else sides.held(len(pairs))[d]
+            if is_low_held and is_high_held and abs(n * cell - side) > HELD * cell:
                 raise InvalidDesign(
                     f"along {'xyz'[d]} both sides are held, {side:.6g} m apart, and {n} cells of {cell:.6g} m, as "
                     f"multigrid needs, are {n * cell:.6g} m; take cells of {side / n:.12g} m."
                 )
-            origin.append(start - (n * cell - side) * (0.0 if low else 1.0 if high else 0.5))
+            origin.append(start - (n * cell - side) * (0.0 if is_low_held else 1.0 if is_high_held else 0.5))
         return cls(cells=cells, cell=cell, origin=tuple(origin))  # type: ignore[arg-type]
 
     def patch(
@@ -161,8 +163,8 @@ class Grid:
     ) -> "Grid":  # fmt: skip
         """Return a grid of finer cells that covers [x0, x1] x [y0, y1] (x [z0, z1]) [m], nested in this one.
 
-        It fills whole cells of this one, as many as multigrid needs; what it is larger goes evenly to both ends of each
-        axis, as far as this grid reaches.
+        It fills whole cells of this one, as many as multigrid needs. The excess is split evenly between both ends of
+        each axis, as far as this grid reaches.
 
         Args:
             x: first and last place along x [m].
@@ -183,29 +185,29 @@ class Grid:
             )
         if ratio not in RATIOS or not isinstance(ratio, int):
             raise InvalidDesign(f"the ratio is {show(ratio)}; give {RATIOS[0]}, {RATIOS[1]} or {RATIOS[2]}.")
-        first, counts = [], []
-        for pair, low, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
-            a, b = ((place - low) / self.cell for place in pair)
+        first_cells, counts = [], []
+        for pair, start, n, name in zip(pairs, self.origin, self.cells, "xyz", strict=False):
+            a, b = ((place - start) / self.cell for place in pair)
             if not -HELD <= a < b <= n + HELD:
                 raise InvalidDesign(
-                    f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from {low:.6g} "
-                    f"to {low + n * self.cell:.6g} m; give rising places in it."
+                    f"along {name} the patch reaches from {pair[0]:.6g} to {pair[1]:.6g} m and the grid from "
+                    f"{start:.6g} to {start + n * self.cell:.6g} m; give rising places in it."
                 )
-            first.append(floor(a + HELD))
-            counts.append(ceil(b - HELD) - first[-1])
+            first_cells.append(floor(a + HELD))
+            counts.append(ceil(b - HELD) - first_cells[-1])
         fine = _fitting(tuple(ratio * max(n, ceil(8 / ratio)) for n in counts))
-        wide = [ceil(n / ratio) for n in fine]
-        if any(a > b for a, b in zip(wide, self.cells, strict=True)):
+        coarse_cells = [ceil(n / ratio) for n in fine]
+        if any(a > b for a, b in zip(coarse_cells, self.cells, strict=True)):
             raise InvalidDesign(
-                f"a patch of {_times(tuple(ratio * n for n in wide))} cells, as multigrid needs, is larger than the "
-                f"grid around it; take a smaller patch or a larger grid."
+                f"a patch of {_times(tuple(ratio * n for n in coarse_cells))} cells, as multigrid needs, is larger "
+                f"than the grid around it; take a smaller patch or a larger grid."
             )
         corner = [
-            min(max(a - (n - asked) // 2, 0), most - n)
-            for a, asked, n, most in zip(first, counts, wide, self.cells, strict=True)
+            min(max(a - (n - requested_cells) // 2, 0), max_cells - n)
+            for a, requested_cells, n, max_cells in zip(first_cells, counts, coarse_cells, self.cells, strict=True)
         ]
-        origin = tuple(low + self.cell * k for low, k in zip(self.origin, corner, strict=True))
-        return Grid(cells=tuple(ratio * n for n in wide), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
+        origin = tuple(start + self.cell * k for start, k in zip(self.origin, corner, strict=True))
+        return Grid(cells=tuple(ratio * n for n in coarse_cells), cell=self.cell / ratio, origin=origin)  # type: ignore[arg-type]
 
     @property
     def axes(self) -> int:
@@ -232,20 +234,20 @@ class Grid:
         """Cell centres along z of a grid in space, shape (nz,) [m]."""
         return self.origin[2] + self.cell * (np.arange(self.cells[-1]) + 0.5)
 
-    def faces(self, first: int, end: int, axis: int) -> np.ndarray:
+    def faces(self, start: int, end: int, axis: int) -> np.ndarray:
         """Return the coordinates of the padded face indices ``first`` to ``end`` along an axis [m]."""
-        return self.origin[axis] + self.cell * (np.arange(first, end) - PAD)
+        return self.origin[axis] + self.cell * (np.arange(start, end) - PAD)
 
-    def centres(self, first: int, end: int, axis: int) -> np.ndarray:
+    def centres(self, start: int, end: int, axis: int) -> np.ndarray:
         """Return the coordinates of the padded cell indices ``first`` to ``end`` along an axis [m]."""
-        return self.origin[axis] + self.cell * (np.arange(first, end) - PAD + 0.5)
+        return self.origin[axis] + self.cell * (np.arange(start, end) - PAD + 0.5)
 
 
 def arrays_of(axes: int) -> float:
-    """Return how many numbers are kept per cell, those of the coarser levels with them [-].
+    """Return how many numbers are kept per cell of a grid with so many axes; those of the coarser levels count too [-].
 
-    Velocity three times, pressure, the bodies' share; three work arrays; and, on all levels, solution, right side,
-    inverse diagonal and faces. What counts around the bodies only is kept there alone and comes on top.
+    They are: the velocity three times, pressure, and the bodies' fraction of each face; three work arrays; and, on all
+    levels, solution, right side, inverse diagonal and faces. Arrays of the window around the bodies come on top.
     """
     return 3 * axes + 1 + axes + 3 + (3 + axes) / (1 - 0.5**axes)
 
@@ -257,10 +259,10 @@ def needed_memory(grid: Grid, dtype: type) -> int:
 
 
 def check_memory(grid: Grid, dtype: type) -> None:
-    """Refuse a grid whose fields the machine cannot hold, or hardly and nobody said that it may, see ``core.large``.
+    """Refuse a grid whose fields need too much memory; see ``core.large``.
 
     Raises:
-        InvalidDesign: with both numbers, and the cell that would do.
+        InvalidDesign: the fields need too much; the message has both numbers and the cell that fits.
     """
     need, have = needed_memory(grid, dtype), large.memory()
     if have is None:

@@ -32,29 +32,29 @@ POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 
 FLAT = 1e-9
-"""Share of a cell, or of a triangle, by which a line of cells may pass it by and still meet it [-]."""
+"""Largest distance, over a cell or a triangle, at which a line of cells that misses it still counts as a hit [-]."""
 
 LEAST_SHARE = 1e-3
-"""Share of the fluid kept inside the bodies, so that the pressure equation has no pockets cut off from the rest [-]."""
+"""Fluid fraction kept inside the bodies, so that the pressure equation has no isolated regions [-]."""
 
 THINNEST = 2.0 + 2.0**0.5
-"""Thickness below which no cell is wholly inside [cells]."""
+"""Thickness below which no cell lies completely inside the body [cells]."""
 
 THINNEST_CLOSED = 1.0
-"""Thickness that a body needs somewhere through whose middle no pressure acts [cells]: from there on the added mass and
-work of a plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they are 7 % off.
-In space the added mass of a disc as thick, across itself, is within 4 % of potential theory."""
+"""Smallest maximum thickness of a body whose middle surface is closed to the pressure [cells]. At this thickness the
+added mass and work of a plate that heaves agree within 1 % with those on three times as fine a grid; at half of it they
+differ by 7 %. In space the added mass of a disc of this thickness, across itself, is within 4 % of potential theory."""
 
 
 def wall_offset(spread: float) -> float:
-    """Return how far outside the surface the immersion must act for the water to stick to the surface [cells].
+    """Return the offset of the immersion outside the surface at which the water sticks to the surface [cells].
 
     Applied step after step, the immersion lets friction pull the resting point of a linear profile into the body,
     the farther the larger the step. The fit is to the exact steady state of the discrete one-dimensional profile,
     averaged over the wall's position between the nodes: 0.03 cells at a spread of 0.001, 0.10 at 0.01, 0.27 at 0.1,
-    0.35 at 0.2. Without it a cylinder has too little drag by 2 % at 32 cells a diameter. It has to follow the step
-    that is taken: with the offset of another one, the force jumps by 27 % of the drag of a cylinder at Re 40 when the
-    step is halved at once, and with its own by 2.3 %.
+    0.35 at 0.2. Without it a cylinder has too little drag by 2 % at 32 cells a diameter. The offset has to follow
+    the step: when the step is halved at once, the force on a cylinder at Re 40 jumps by 27 % of the drag with the old
+    offset, and by 2.3 % with the new one.
 
     Args:
         spread: viscosity times the step over the cell squared [-].
@@ -64,7 +64,7 @@ def wall_offset(spread: float) -> float:
 
 @part
 def moment0(distance):
-    """Return the share of the fluid at a signed distance [cells] from the surface, 0 inside to 1 outside."""
+    """Return the fluid fraction at a signed distance [cells] from the surface, 0 inside to 1 outside."""
     if distance <= -1.0:
         return 0.0
     if distance >= 1.0:
@@ -83,38 +83,45 @@ def moment1(distance):
 
 @threaded
 def fill(distance, normal, thickness, mu0, mu1):
-    """Fill the moments at points from signed distances, thicknesses [cells] and normals (axis, point); mu1 is halved.
+    """Fill the moments of the kernel at points.
 
-    The kernel sees both surfaces of a thin body. So the share that a tail of any thickness takes from the cells
-    around it does not depend on how it lies between the nodes; with the nearer surface alone it does, and the force
-    shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
+    The kernel sees both surfaces of a thin body. So the fraction that a tail of any thickness takes from the cells
+    around it does not depend on how it lies between the nodes. With the nearer surface alone the fraction depends on
+    it, and the force shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
+
+    Args:
+        distance: signed distance of each point from the surface [cells].
+        normal: outward normal, shape (axis, point).
+        thickness: of the body at the nearest point of the surface [cells].
+        mu0: fluid fraction to write, shape (point,).
+        mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """
     for n in prange((distance.size + POINTS - 1) // POINTS):
         block = signed(n)
         for k in range(block * POINTS, min((block + 1) * POINTS, distance.size)):
-            near = distance[k]
-            far = -thickness[k] - near
-            mu0[k] = min(max(moment0(near) + moment0(far), LEAST_SHARE), 1.0)
-            first = 0.5 * (moment1(near) - moment1(far))
+            near_distance = distance[k]
+            far_distance = -thickness[k] - near_distance
+            mu0[k] = min(max(moment0(near_distance) + moment0(far_distance), LEAST_SHARE), 1.0)
+            first_moment = 0.5 * (moment1(near_distance) - moment1(far_distance))
             for d in range(normal.shape[0]):
-                mu1[d, k] = first * normal[d, k]
+                mu1[d, k] = first_moment * normal[d, k]
 
 
 @part
-def _lines_within(p, q, r, first, h, count):
+def _lines_within(p, q, r, origin, h, count):
     """Return the first line of cells that three coordinates span, and the one after the last."""
-    low, high = min(p, q, r), max(p, q, r)
-    start, stop = np.ceil((low - first) / h - FLAT), np.floor((high - first) / h + FLAT) + 1.0
+    lower_bound, upper_bound = min(p, q, r), max(p, q, r)
+    start, stop = np.ceil((lower_bound - origin) / h - FLAT), np.floor((upper_bound - origin) / h + FLAT) + 1.0
     return max(int(start), 0), min(int(stop), count)
 
 
 @compiled
 def close(passage, x, y, x0, y0, h):
-    """Let the pressure not act on the faces of one direction whose two cells lie on either side of a line.
+    """Close the faces of one direction whose two cells lie on either side of a line to the pressure.
 
-    What the kernel of a body thinner than its own width leaves to the fluid is driven through it by the pressure,
-    step after step: half a cell thick, a plate that heaves has a twentieth of its added mass. No path from cell to
-    cell crosses the line when these faces are closed, however it lies.
+    The kernel of a body thinner than the kernel's width leaves some fluid inside, which the pressure drives through the
+    body in every step: a plate that heaves and is half a cell thick has a twentieth of its added mass. When these faces
+    are closed, no path from cell to cell crosses the line.
 
     Args:
         passage: share of the pressure's gradient that acts on the faces of a window, shape (row, face); changed.
@@ -126,17 +133,17 @@ def close(passage, x, y, x0, y0, h):
     """
     rows, faces = passage.shape
     for k in range(x.size - 1):
-        ax, ay, bx, by = x[k], y[k], x[k + 1], y[k + 1]
-        low, high = (ay, by) if ay < by else (by, ay)
-        for j in range(max(int(np.ceil((low - y0) / h)), 0), min(int(np.ceil((high - y0) / h)), rows)):
-            at = ax + (bx - ax) * (y0 + j * h - ay) / (by - ay)
-            i = int(np.floor((at - x0) / h))
+        start_x, start_y, end_x, end_y = x[k], y[k], x[k + 1], y[k + 1]
+        lower_bound, upper_bound = (start_y, end_y) if start_y < end_y else (end_y, start_y)
+        for j in range(max(int(np.ceil((lower_bound - y0) / h)), 0), min(int(np.ceil((upper_bound - y0) / h)), rows)):
+            crossing_x = start_x + (end_x - start_x) * (y0 + j * h - start_y) / (end_y - start_y)
+            i = int(np.floor((crossing_x - x0) / h))
             if 0 <= i < faces:
                 passage[j, i] = min(passage[j, i], LEAST_SHARE)
 
 
 @compiled
-def close_surface(passage, c, triangles, first, h):
+def close_surface(passage, c, triangles, origin, h):
     """Do in space what ``close`` does in the plane, with triangles in place of the pieces of a line.
 
     Args:
@@ -144,100 +151,157 @@ def close_surface(passage, c, triangles, first, h):
             changed.
         c: axis that the faces lie across.
         triangles: corners, shape (corner, axis, triangle).
-        first: middle of the window's first cell, x, y and z; the first face lies before it.
+        origin: middle of the window's first cell, x, y and z; the first face lies before it.
         h: cell.
     """
     a, b = (c + 1) % 3, (c + 2) % 3
     sizes = (passage.shape[2], passage.shape[1], passage.shape[0])
-    at = np.zeros(3, np.int64)
+    cell_index = np.zeros(3, np.int64)
     for n in range(triangles.shape[2]):
         p, q, r = triangles[0, :, n], triangles[1, :, n], triangles[2, :, n]
         area = (q[a] - p[a]) * (r[b] - p[b]) - (r[a] - p[a]) * (q[b] - p[b])
         if abs(area) < FLAT * h * h:
             continue
-        low_a, high_a = _lines_within(p[a], q[a], r[a], first[a], h, sizes[a])
-        low_b, high_b = _lines_within(p[b], q[b], r[b], first[b], h, sizes[b])
-        for i in range(low_a, high_a):
-            for j in range(low_b, high_b):
-                u, v = first[a] + i * h - p[a], first[b] + j * h - p[b]
-                to_q = (u * (r[b] - p[b]) - (r[a] - p[a]) * v) / area
-                to_r = ((q[a] - p[a]) * v - u * (q[b] - p[b])) / area
-                if min(to_q, to_r, 1.0 - to_q - to_r) < -FLAT:
+        start_a, stop_a = _lines_within(p[a], q[a], r[a], origin[a], h, sizes[a])
+        start_b, stop_b = _lines_within(p[b], q[b], r[b], origin[b], h, sizes[b])
+        for i in range(start_a, stop_a):
+            for j in range(start_b, stop_b):
+                u, v = origin[a] + i * h - p[a], origin[b] + j * h - p[b]
+                weight_q = (u * (r[b] - p[b]) - (r[a] - p[a]) * v) / area
+                weight_r = ((q[a] - p[a]) * v - u * (q[b] - p[b])) / area
+                if min(weight_q, weight_r, 1.0 - weight_q - weight_r) < -FLAT:
                     continue
-                place = p[c] + to_q * (q[c] - p[c]) + to_r * (r[c] - p[c])
-                at[c], at[a], at[b] = int(np.floor((place - first[c]) / h)) + 1, i, j
-                if 0 <= at[c] < sizes[c]:
-                    passage[at[2], at[1], at[0]] = min(passage[at[2], at[1], at[0]], LEAST_SHARE)
+                crossing = p[c] + weight_q * (q[c] - p[c]) + weight_r * (r[c] - p[c])
+                cell_index[c], cell_index[a], cell_index[b] = int(np.floor((crossing - origin[c]) / h)) + 1, i, j
+                if 0 <= cell_index[c] < sizes[c]:
+                    passage[cell_index[2], cell_index[1], cell_index[0]] = min(
+                        passage[cell_index[2], cell_index[1], cell_index[0]], LEAST_SHARE
+                    )
 
 
 @ordered_part
-def _source_row(source, b, mu0, slab, o, start, stop, shift, inner, own):
-    j, o, up = unsigned(slab), unsigned(o), unsigned(len(inner))
-    one, share = source.dtype.type(1.0), source.dtype.type(0.5 / (len(inner) + 1))
+def _source_row(source, b, mu0, slab, o, start, stop, shift, inner, strides):
+    """Write one row of ``(1 - mu0) div V``; see ``fill_source``.
+
+    Args:
+        source: array of the window to write to.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the faces.
+        slab: slab of the grid.
+        o: the same slab in the window.
+        start: first cell of the row in the slab.
+        stop: the cell after the last.
+        shift: index of a cell in the slab minus its index in the window's slab.
+        inner: strides within a slab of the grid.
+        strides: strides within a slab of the window.
+    """
+    j, o, slab_axis = unsigned(slab), unsigned(o), unsigned(len(inner))
+    unit, fraction = source.dtype.type(1.0), source.dtype.type(0.5 / (len(inner) + 1))
     for k in range(start, stop):
-        wet, before, behind = source.dtype.type(0), source.dtype.type(0), source.dtype.type(0)
+        mu0_sum, inflow, outflow = source.dtype.type(0), source.dtype.type(0), source.dtype.type(0)
         for d in range(len(inner)):
-            wet = wet + mu0[d, j, k]
-            before = before + b[d, o, k - shift]
-            behind = behind + b[d, o, k - shift + own[d]]
-        wet = wet + mu0[up, j, k] + mu0[up, j + UNIT, k]
+            mu0_sum = mu0_sum + mu0[d, j, k]
+            inflow = inflow + b[d, o, k - shift]
+            outflow = outflow + b[d, o, k - shift + strides[d]]
+        mu0_sum = mu0_sum + mu0[slab_axis, j, k] + mu0[slab_axis, j + UNIT, k]
         for d in range(len(inner)):
-            wet = wet + mu0[d, j, k + inner[d]]
-        spread = (behind + b[up, o + UNIT, k - shift]) - (before + b[up, o, k - shift])
-        source[o, k - shift] = (one - share * wet) * spread
+            mu0_sum = mu0_sum + mu0[d, j, k + inner[d]]
+        spread = (outflow + b[slab_axis, o + UNIT, k - shift]) - (inflow + b[slab_axis, o, k - shift])
+        source[o, k - shift] = (unit - fraction * mu0_sum) * spread
 
 
 @compiled
-def fill_source(source, b, mu0, place, near, inner):
+def fill_source(source, b, mu0, layout, near_layout, inner):
     """Write ``(1 - mu0) div V``: the divergence of the body's own motion, which the pressure leaves alone.
 
     ``source`` and ``b`` are arrays of the window ``near``.
+
+    Args:
+        source: array of the window to write to.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the faces.
+        layout: row of the multigrid's layout for the grid; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab of the grid.
     """
-    wide, (r0, r1), (s, e) = row_length(inner, mu0.shape[2]), window_rows(place, inner), window_columns(place, inner)
-    own, first = near_strides(near, inner), near[len(inner) + 2]
+    row_cells = row_length(inner, mu0.shape[2])
+    r0, r1 = window_rows(layout, inner)
+    s, e = window_columns(layout, inner)
+    strides, first_slab = near_strides(near_layout, inner), near_layout[len(inner) + 2]
     for j in range(mu0.shape[1]):
-        if meets(place, inner, j):
+        if meets(layout, inner, j):
             for row in range(r0, r1):
-                shift = near_shift(near, inner, row, wide)
-                _source_row(source, b, mu0, j, j - first, row * wide + s, row * wide + e, shift, inner, own)
+                shift = near_shift(near_layout, inner, row, row_cells)
+                _source_row(
+                    source, b, mu0, j, j - first_slab, row * row_cells + s, row * row_cells + e, shift, inner, strides
+                )
 
 
 @ordered_part
-def _immerse_slab(out, blend, raw, b, mu0, passage, mu1, p, slab, o, start, stop, shift, own, ej, ei, dt, keep):
-    j, o, up = unsigned(slab), unsigned(o), unsigned(len(own))
-    low, high = o - UNIT, o + UNIT
+def _immerse_slab(
+    velocity, blend, raw, b, mu0, passage, mu1, p, slab, o, start, stop, shift, strides, ej, ei, dt, keep
+):
+    """Write the immersed velocity of one component in one row of a slab; see ``immerse``."""
+    j, o, slab_axis = unsigned(slab), unsigned(o), unsigned(len(strides))
+    lower_slab, upper_slab = o - UNIT, o + UNIT
     for k in range(start, stop):
         n = k - shift
-        moved = mu0[j, k] * (raw[o, n] - b[o, n]) + b[o, n] - passage[j, k] * (dt * (p[j, k] - p[j - ej, k - ei]))
-        for d in range(len(own)):
-            s = own[d]
-            moved = moved + mu1[d, o, n] * (raw[o, n + s] - (b[o, n + s] + raw[o, n - s]) + b[o, n - s])
-        moved = moved + mu1[up, o, n] * (raw[high, n] - (b[high, n] + raw[low, n]) + b[low, n])
-        out[j, k] = keep * (blend[j, k] - moved) + moved
+        immersed_velocity = (
+            mu0[j, k] * (raw[o, n] - b[o, n]) + b[o, n] - passage[j, k] * (dt * (p[j, k] - p[j - ej, k - ei]))
+        )
+        for d in range(len(strides)):
+            s = strides[d]
+            immersed_velocity = immersed_velocity + mu1[d, o, n] * (
+                raw[o, n + s] - (b[o, n + s] + raw[o, n - s]) + b[o, n - s]
+            )
+        immersed_velocity = immersed_velocity + mu1[slab_axis, o, n] * (
+            raw[upper_slab, n] - (b[upper_slab, n] + raw[lower_slab, n]) + b[lower_slab, n]
+        )
+        velocity[j, k] = keep * (blend[j, k] - immersed_velocity) + immersed_velocity
 
 
 @threaded
-def immerse(out, blend, raw, b, mu0, passage, mu1, p, component, near, inner, dt, keep):
+def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layout, inner, dt, keep):
     """Write the immersed velocity of one component to the inner cells of the window.
 
     ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[d]`` the kernel's moment
     along axis d, all arrays of the window ``near``;
-    ``out = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+    ``velocity = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+
+    Args:
+        velocity: component to write.
+        blend: the component at the last stage.
+        raw: the fluid's own update without the pressure, array of the window.
+        b: the bodies' velocity, array of the window.
+        mu0: fluid fraction of the component's faces.
+        passage: fraction of the pressure's gradient that acts on the faces.
+        mu1: first moments of the kernel, shape (axis, slab, cell), halved, array of the window.
+        p: pressure over density.
+        component: 0 is x, 1 is y, 2 is z.
+        near_layout: row of the multigrid's layout with the window of the near arrays; see ``slab``.
+        inner: strides within a slab of the grid.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stays [-].
     """
     ej = UNIT if component == len(inner) else NONE
     ei = NONE
     for d in range(len(inner)):
         ei = inner[d] if d == component else ei
     w = len(inner) + 2
-    block = block_of(inner, near[w + 1] - near[w], LEAST)
-    wide, (r0, r1), (s, e) = row_length(inner, p.shape[1]), window_rows(near, inner), window_columns(near, inner)
-    own = near_strides(near, inner)
+    block = block_of(inner, near_layout[w + 1] - near_layout[w], LEAST)
+    row_cells = row_length(inner, p.shape[1])
+    r0, r1 = window_rows(near_layout, inner)
+    s, e = window_columns(near_layout, inner)
+    strides = near_strides(near_layout, inner)
     r0, r1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
-    for n in prange((near[w + 1] - near[w] + block - 1) // block):
-        first = near[w] + signed(n) * block
-        for j in range(max(first, near[w] + 1), min(first + block, near[w + 1] - 1)):
+    for n in prange((near_layout[w + 1] - near_layout[w] + block - 1) // block):
+        first_slab = near_layout[w] + signed(n) * block
+        for j in range(max(first_slab, near_layout[w] + 1), min(first_slab + block, near_layout[w + 1] - 1)):
             for row in range(r0, r1):
-                start, stop, shift = row * wide + s + UNIT, row * wide + e - UNIT, near_shift(near, inner, row, wide)
+                start = row * row_cells + s + UNIT
+                stop = row * row_cells + e - UNIT
+                shift = near_shift(near_layout, inner, row, row_cells)
                 _immerse_slab(
-                    out, blend, raw, b, mu0, passage, mu1, p, j, j - near[w], start, stop, shift, own, ej, ei, dt, keep
+                    velocity, blend, raw, b, mu0, passage, mu1, p, j, j - near_layout[w], start, stop, shift, strides,
+                    ej, ei, dt, keep,
                 )  # fmt: skip

@@ -20,7 +20,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 
 ROUNDING = 1e-9
-"""How far sums over stages may be off what a method of some order asks [-]."""
+"""Largest error of the sums over stages in the conditions of an order [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +28,9 @@ class Stage:
     """One stage of an integrator."""
 
     keep: float
-    """Share of the last stage's velocity that stays, 0 to 1 [-]; 0 in the first stage, which has none before it."""
+    """Weight of the last stage's velocity, 0 to 1 [-]; 0 in the first stage."""
     span: float
-    """How far the stage goes from the step's start, in steps [-]."""
+    """Length of the stage from the step's start, in steps [-]."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,7 @@ class Integrator:
     """Its stages, in their order."""
 
     def __post_init__(self) -> None:
+        """Refuse stages that cannot be or do not add up to the step."""
         check_kinds(self)
         for stage in self.stages:
             check_kinds(stage)
@@ -61,22 +62,22 @@ class Integrator:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Share of each stage in the velocity at the step's end, shape (stage,) [-]; they add up to 1."""
-        out = np.zeros(len(self.stages))
+        """Weight of each stage in the velocity at the step's end, shape (stage,) [-]; the sum is 1."""
+        stage_weights = np.zeros(len(self.stages))
         for k, stage in enumerate(self.stages):
-            out *= stage.keep
-            out[k] = 1 - stage.keep
-        return out
+            stage_weights *= stage.keep
+            stage_weights[k] = 1 - stage.keep
+        return stage_weights
 
     @cached_property
     def rates(self) -> np.ndarray:
-        """Butcher's table: the part that each stage has of the rates taken in each, shape (stage, stage) [steps]."""
-        out = np.zeros((len(self.stages),) * 2)
+        """Butcher's table: coefficient of the rates of each stage in each stage, shape (stage, stage) [steps]."""
+        table = np.zeros((len(self.stages),) * 2)
         for k, stage in enumerate(self.stages):
             if k:
-                out[k] = stage.keep * out[k - 1]
-            out[k, k] = (1 - stage.keep) * stage.span
-        return out
+                table[k] = stage.keep * table[k - 1]
+            table[k, k] = (1 - stage.keep) * stage.span
+        return table
 
     @property
     def order(self) -> int:
@@ -86,22 +87,28 @@ class Integrator:
         with an error of their own.
         """
         b = self.rates[-1]
-        before = np.vstack([np.zeros(len(b)), self.rates[:-1]])  # rates are taken at what the last stage left
-        c = before.sum(axis=1)
-        asked = (1.0, ((b.sum(), 1.0),)), (2.0, ((b @ c, 1 / 2),)), (3.0, ((b @ c**2, 1 / 3), (b @ before @ c, 1 / 6)))
+        stage_table = np.vstack(
+            [np.zeros(len(b)), self.rates[:-1]]
+        )  # rates are taken at the velocity of the last stage
+        c = stage_table.sum(axis=1)
+        order_conditions = (
+            (1.0, ((b.sum(), 1.0),)),
+            (2.0, ((b @ c, 1 / 2),)),
+            (3.0, ((b @ c**2, 1 / 3), (b @ stage_table @ c, 1 / 6))),
+        )
         order = 0
-        for reached, conditions in asked:
+        for candidate_order, conditions in order_conditions:
             if any(abs(has - needs) > ROUNDING for has, needs in conditions):
                 break
-            order = int(reached)
+            order = int(candidate_order)
         return order
 
 
 EULER = Integrator((Stage(0.0, 1.0),))
-"""Euler's method, of first order: to compare with; its vortices grow by themselves unless steps are small."""
+"""Euler's method, of first order, for comparison; vortices grow unless the steps are small."""
 
 HEUN = Integrator((Stage(0.0, 1.0), Stage(0.5, 1.0)))
 """Heun's method, of second order."""
 
 SHU_OSHER = Integrator((Stage(0.0, 1.0), Stage(0.25, 1 / 3), Stage(2 / 3, 2.0)))
-"""The method of third order of Shu and Osher, for half as much time again as Heun's."""
+"""The method of third order of Shu and Osher; it takes one and a half times as long as Heun's."""

@@ -15,10 +15,10 @@ from suchus.flow.shape import positive
 from suchus.flow.solid import SpaceField
 from suchus.flow.trunk import Trunk, in_world
 
-_ACROSS = 28
+_MIN_POINTS_ACROSS = 28
 """Points across a capsule and along it at least, over which its volume is summed [-]."""
 
-_AROUND = 8
+_MIN_POINTS_AROUND = 8
 """Points around a capsule, at least [-]."""
 
 
@@ -48,15 +48,21 @@ class Capsule:
                 raise InvalidDesign(f"{name} of a capsule is {show(getattr(self, name))} m; give finite numbers.")
 
     def placed(self, spine: MidlineState) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-        """Return both ends, the velocity of the first end and the rate of turning, shapes (2,) and a number."""
+        """Return the capsule's ends, the velocity of the first end and the rate of turning, in the midline's frame.
+
+        Shapes: (2,) [m], (2,) [m], (2,) [m/s] and a number [rad/s].
+
+        Args:
+            spine: midline of the trunk.
+        """
         x, y, heading, u, v, turn = (
-            float(np.interp(self.at, spine.arc, part))
-            for part in (spine.x, spine.y, spine.heading, spine.x_rate, spine.y_rate, spine.heading_rate)
+            float(np.interp(self.at, spine.arc, profile))
+            for profile in (spine.x, spine.y, spine.heading, spine.x_rate, spine.y_rate, spine.heading_rate)
         )
-        along, aside = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
-        first, last = (np.array([x, y]) + p[0] * along + p[1] * aside for p in (self.start, self.end))
-        rate = np.array([u - turn * (first[1] - y), v + turn * (first[0] - x)])
-        return first, last, rate, turn
+        tangent, normal = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])
+        start, end = (np.array([x, y]) + p[0] * tangent + p[1] * normal for p in (self.start, self.end))
+        rate = np.array([u - turn * (start[1] - y), v + turn * (start[0] - x)])
+        return start, end, rate, turn
 
     def distance(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
         """Return the signed distance from points, pz from the plane of the midline [m]."""
@@ -65,18 +71,27 @@ class Capsule:
     def reach(
         self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState
     ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-        """Return the vectors from the capsule's axis to points, and their lengths [m]."""
-        first, last, *_ = self.placed(spine)
-        axis = last - first
+        """Return the vectors from the capsule's axis to points, and their lengths [m].
+
+        Args:
+            px: x of the points [m].
+            py: y of the points [m].
+            pz: distance of the points from the plane of the midline [m].
+            spine: midline of the trunk.
+        """
+        start, end, *_ = self.placed(spine)
+        axis = end - start
         square = float(axis @ axis)
-        share = np.clip(((px - first[0]) * axis[0] + (py - first[1]) * axis[1]) / square, 0.0, 1.0) if square else 0.0
-        dx, dy = px - first[0] - share * axis[0], py - first[1] - share * axis[1]
+        fraction = (
+            np.clip(((px - start[0]) * axis[0] + (py - start[1]) * axis[1]) / square, 0.0, 1.0) if square else 0.0
+        )
+        dx, dy = px - start[0] - fraction * axis[0], py - start[1] - fraction * axis[1]
         return (dx, dy, pz), np.sqrt(dx * dx + dy * dy + pz * pz)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lump:
-    """What a capsule adds to a trunk: its part outside of the straight trunk and of the capsules before it."""
+    """Volume and moments that a capsule adds to a trunk: its part outside the straight trunk and earlier capsules."""
 
     volume: float
     """Volume [m^3]."""
@@ -91,7 +106,7 @@ class Lump:
 class Limbed(Trunk):
     """The union of a trunk and capsules, whose axes lie in the plane of its midline.
 
-    What a capsule shares with the trunk is that of the straight trunk, however it bends.
+    The overlap of capsule and trunk is computed for the straight trunk and kept when the trunk bends.
 
     Raises:
         InvalidDesign: see ``Trunk``; or a capsule that is attached beyond the trunk's ends.
@@ -100,9 +115,10 @@ class Limbed(Trunk):
     limbs: tuple[Capsule, ...] = ()
     """The capsules."""
     lumps: tuple[Lump, ...] = field(init=False, repr=False, default=())
-    """What each of them adds."""
+    """Volume and moments that each capsule adds."""
 
     def __post_init__(self) -> None:
+        """Check where the capsules are attached and compute what each adds to the trunk."""
         Trunk.__post_init__(self)
         spine = self._spine(0.0)
         for limb in self.limbs:
@@ -115,127 +131,164 @@ class Limbed(Trunk):
         lumps = [self._lump(straight, limb, self.limbs[:i]) for i, limb in enumerate(self.limbs)]
         object.__setattr__(self, "lumps", tuple(lumps))
 
-    def _lump(self, straight: MidlineState, limb: Capsule, others: tuple[Capsule, ...]) -> Lump:
-        low, high = np.minimum(limb.start, limb.end) - limb.radius, np.maximum(limb.start, limb.end) + limb.radius
-        step = 2 * limb.radius / _ACROSS
+    def _lump(self, straight: MidlineState, limb: Capsule, earlier_limbs: tuple[Capsule, ...]) -> Lump:
+        """Return what a capsule adds to the straight trunk and to the capsules before it, summed over points inside it.
+
+        Args:
+            straight: the trunk's midline, straight.
+            limb: the capsule.
+            earlier_limbs: the capsules before it.
+        """
+        lower_bound = np.minimum(limb.start, limb.end) - limb.radius
+        upper_bound = np.maximum(limb.start, limb.end) + limb.radius
+        step = 2 * limb.radius / _MIN_POINTS_ACROSS
         x, y, z = (a + (np.arange(n) + 0.5) * (b - a) / n for a, b, n in (
-            (a, b, max(int(np.ceil((b - a) / step)), 1)) for a, b in (*zip(low, high, strict=True), (0.0, limb.radius))
+            (a, b, max(int(np.ceil((b - a) / step)), 1))
+            for a, b in (*zip(lower_bound, upper_bound, strict=True), (0.0, limb.radius))
         ))  # fmt: skip
-        z, y, x = (part.ravel() for part in np.meshgrid(z, y, x, indexing="ij"))
-        each = float(np.prod((*(high - low), 2 * limb.radius))) / x.size  # both halves
-        at = limb.at + x
-        there = limb.distance(at, y, z, straight) < 0
-        there &= ~self._holds(at, y, z, straight)
-        for other in others:
-            there &= other.distance(at, y, z, straight) >= 0
-        if not there.any():
+        z, y, x = (coordinate.ravel() for coordinate in np.meshgrid(z, y, x, indexing="ij"))
+        cell_volume = float(np.prod((*(upper_bound - lower_bound), 2 * limb.radius))) / x.size  # both halves
+        arc = limb.at + x
+        is_outside = limb.distance(arc, y, z, straight) < 0
+        is_outside &= ~self._holds(arc, y, z, straight)
+        for earlier_limb in earlier_limbs:
+            is_outside &= earlier_limb.distance(arc, y, z, straight) >= 0
+        if not is_outside.any():
             return Lump(volume=0.0, centre=(0.0, 0.0), second=np.zeros((3, 3)))
-        x, y, z = x[there], y[there], z[there]
+        x, y, z = x[is_outside], y[is_outside], z[is_outside]
         cx, cy = float(x.mean()), float(y.mean())
         dx, dy = x - cx, y - cy
-        xx, xy, yy, zz = (each * float((a * b).sum()) for a, b in ((dx, dx), (dx, dy), (dy, dy), (z, z)))
+        xx, xy, yy, zz = (cell_volume * float((a * b).sum()) for a, b in ((dx, dx), (dx, dy), (dy, dy), (z, z)))
         second = np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]])
-        return Lump(volume=each * x.size, centre=(cx, cy), second=second)
+        return Lump(volume=cell_volume * x.size, centre=(cx, cy), second=second)
 
     def _holds(self, px: np.ndarray, py: np.ndarray, pz: np.ndarray, spine: MidlineState) -> np.ndarray:
-        """Return which points lie inside the trunk alone, pz from the plane of the midline [m]."""
-        near = ((px[:, None] - spine.x) ** 2 + (py[:, None] - spine.y) ** 2).argmin(axis=1)
-        cos, sin = np.cos(spine.heading[near]), np.sin(spine.heading[near])
-        dx, dy = px - spine.x[near], py - spine.y[near]
-        along, aside = dx * cos + dy * sin, -dx * sin + dy * cos
-        at = spine.arc[near] + along
-        wide, high = (np.interp(at, spine.arc, part) for part in (spine.half_width, self.half_height))
-        inside: np.ndarray = (aside * high) ** 2 + (pz * wide) ** 2 < (wide * high) ** 2
-        return inside & (at >= 0) & (at <= spine.arc[-1])
+        """Return which points lie inside the trunk alone.
+
+        Args:
+            px: x of the points [m].
+            py: y of the points [m].
+            pz: distance of the points from the plane of the midline [m].
+            spine: midline of the trunk.
+        """
+        nearest_station = ((px[:, None] - spine.x) ** 2 + (py[:, None] - spine.y) ** 2).argmin(axis=1)
+        cos, sin = np.cos(spine.heading[nearest_station]), np.sin(spine.heading[nearest_station])
+        dx, dy = px - spine.x[nearest_station], py - spine.y[nearest_station]
+        axial, lateral = dx * cos + dy * sin, -dx * sin + dy * cos
+        arc = spine.arc[nearest_station] + axial
+        half_width, half_height = (
+            np.interp(arc, spine.arc, profile) for profile in (spine.half_width, self.half_height)
+        )
+        is_inside: np.ndarray = (lateral * half_height) ** 2 + (pz * half_width) ** 2 < (half_width * half_height) ** 2
+        return is_inside & (arc >= 0) & (arc <= spine.arc[-1])
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
-        found = Trunk.measure(self, x, y, z, time, pose, reach)
+        window_field = Trunk.measure(self, x, y, z, time, pose, reach)
         spine, frame = self.placed(time, pose)
         for limb in self.limbs:
-            self._add(found, limb, spine, frame, (z, y, x), reach)
-        return found
+            self._add(window_field, limb, spine, frame, (z, y, x), reach)
+        return window_field
 
     def _add(
         self,
-        found: SpaceField,
+        window_field: SpaceField,
         limb: Capsule,
         spine: MidlineState,
         frame: Pose,
         axes: tuple[np.ndarray, ...],
         reach: float,
     ) -> None:
-        """Write a capsule to the points that are nearer to it."""
-        first, last, rate, turn = limb.placed(spine)
-        ends = [np.array(frame.place((*end, 0.0))) for end in (first, last)]
-        low, high = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
-        far = limb.radius + reach
+        """Write a capsule's field to the points of a window that are nearer to it than to what is there.
+
+        Args:
+            window_field: field to change.
+            limb: the capsule.
+            spine: the trunk's midline in its own frame.
+            frame: pose of that frame in the world.
+            axes: coordinates of the window along z, y and x [m].
+            reach: distance up to which the field counts [m].
+        """
+        start, end, rate, turn = limb.placed(spine)
+        ends = [np.array(frame.place((*end_point, 0.0))) for end_point in (start, end)]
+        lower_bound, upper_bound = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
+        max_distance = limb.radius + reach
         box = tuple(
-            slice(*np.searchsorted(axis, (a - far, b + far))) for axis, a, b in zip(axes, low, high, strict=True)
+            slice(*np.searchsorted(axis, (a - max_distance, b + max_distance)))
+            for axis, a, b in zip(axes, lower_bound, upper_bound, strict=True)
         )  # fmt: skip
         wz, wy, wx = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
         px, py, pz = frame.seen((wx, wy, wz))
-        away, size = limb.reach(px, py, pz, spine)
+        offsets, size = limb.reach(px, py, pz, spine)
         distance = size - limb.radius
-        trunk = found.distance[box]
-        nearer = distance < trunk
-        normal = turned(frame.matrix, [part / np.maximum(size, 1e-12 * limb.radius) for part in away])
-        facing = sum(part * one[box] for part, one in zip(normal, found.normal, strict=True))
-        sunk = trunk < facing * (distance + 2 * limb.radius)  # the capsule's far side lies in what is there already
-        own = turned(frame.matrix, (rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), 0 * px))
-        velocity = [a + b for a, b in zip(own, frame.rates((wx, wy, wz)), strict=True)]
+        trunk = window_field.distance[box]
+        is_nearer = distance < trunk
+        normal = turned(frame.matrix, [component / np.maximum(size, 1e-12 * limb.radius) for component in offsets])
+        facing = sum(
+            component * present_component[box]
+            for component, present_component in zip(normal, window_field.normal, strict=True)
+        )
+        sunk = trunk < facing * (
+            distance + 2 * limb.radius
+        )  # the capsule's far side lies in the body that the field has already
+        limb_velocity = turned(
+            frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
+        )
+        velocity = [a + b for a, b in zip(limb_velocity, frame.rates((wx, wy, wz)), strict=True)]
         values = [
-            (found.distance, distance), (found.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
-            *zip(found.normal, normal, strict=True),
-            *zip(found.velocity, velocity, strict=True),
+            (window_field.distance, distance), (window_field.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
+            *zip(window_field.normal, normal, strict=True),
+            *zip(window_field.velocity, velocity, strict=True),
         ]  # fmt: skip
-        for one, value in values:
-            one[box] = np.where(nearer, value, one[box])
-        if found.part is not None:
-            found.part[box] = np.where(nearer, self._part(limb), found.part[box])
+        for target, value in values:
+            target[box] = np.where(is_nearer, value, target[box])
+        if window_field.part is not None:
+            window_field.part[box] = np.where(is_nearer, self._part_index(limb), window_field.part[box])
 
-    def _part(self, limb: Capsule) -> int:
+    def _part_index(self, limb: Capsule) -> int:
         return int(np.searchsorted(self.cuts, limb.at, side="right"))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points over what is outside of trunk and capsules: those inside stand for no area."""
+        """Return points over trunk and capsules; points inside the body have no area."""
         spine, frame = self.placed(time, pose)
         skin = self._skin(spine, spacing)
         points, share, rates = [skin.points], [skin.share.copy()], [skin.velocities]
         normals, spins = [skin.normals], [skin.spins]
-        part = [skin.part] if skin.part is not None else []
+        part_indices = [skin.part] if skin.part is not None else []
         for limb in self.limbs:
-            first, last, rate, turn = limb.placed(spine)
-            long = float(np.hypot(*np.subtract(limb.end, limb.start)))
-            local, facing, area = around_rod(long, limb.radius, spacing)
-            axis = last - first
+            start, end, rate, turn = limb.placed(spine)
+            length = float(np.hypot(*np.subtract(limb.end, limb.start)))
+            local, facing, area = around_rod(length, limb.radius, spacing)
+            axis = end - start
             cos, sin = axis / np.linalg.norm(axis) if axis.any() else (1.0, 0.0)
-            px, py = first[0] + cos * local[0] - sin * local[1], first[1] + sin * local[0] + cos * local[1]
+            px, py = start[0] + cos * local[0] - sin * local[1], start[1] + sin * local[0] + cos * local[1]
             normals.append(np.stack([cos * facing[0] - sin * facing[1], sin * facing[0] + cos * facing[1], facing[2]]))
             spins.append(np.stack([0 * px, 0 * px, np.full(px.shape, turn)]))
             area = np.where(self._holds(px, py, local[2], spine), 0.0, area)
             points.append(np.stack([px, py, local[2]]))
             share.append(area)
-            rates.append(np.stack([rate[0] - turn * (py - first[1]), rate[1] + turn * (px - first[0]), 0 * px]))
-            part += [np.full(px.shape, self._part(limb))] if part else []
+            rates.append(np.stack([rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px]))
+            part_indices += [np.full(px.shape, self._part_index(limb))] if part_indices else []
         for i, limb in enumerate(self.limbs):
-            for k, (one, area) in enumerate(zip(points, share, strict=True)):
+            for k, (limb_points, area) in enumerate(zip(points, share, strict=True)):
                 if k != i + 1:
-                    inside = limb.distance(one[0], one[1], one[2], spine) < -1e-9 * limb.radius
-                    area[inside] = 0.0
-        whole = Markers(
+                    is_inside = (
+                        limb.distance(limb_points[0], limb_points[1], limb_points[2], spine) < -1e-9 * limb.radius
+                    )
+                    area[is_inside] = 0.0
+        local_markers = Markers(
             points=np.concatenate(points, axis=1), share=np.concatenate(share),
             velocities=np.concatenate(rates, axis=1), normals=np.concatenate(normals, axis=1),
-            spins=np.concatenate(spins, axis=1), part=np.concatenate(part) if part else None,
+            spins=np.concatenate(spins, axis=1), part=np.concatenate(part_indices) if part_indices else None,
         )  # fmt: skip
-        return in_world(whole, frame)
+        return in_world(local_markers, frame)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the body."""
         box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.placed(time, pose)
         for limb in self.limbs:
-            both = (frame.place((*end, 0.0)) for end in limb.placed(spine)[:2])
-            for d, ends in enumerate(zip(*both, strict=True)):
+            end_points = (frame.place((*end, 0.0)) for end in limb.placed(spine)[:2])
+            for d, ends in enumerate(zip(*end_points, strict=True)):
                 box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
                 box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)
         return tuple(box)
@@ -256,9 +309,9 @@ class Limbed(Trunk):
             swirl += (lump.second[0, 0] + lump.second[1, 1]) * turn
         v = np.array(volume)
         middle, drift = v @ np.array(centre) / v.sum(), v @ np.array(rate) / v.sum()
-        off, past = np.array(centre) - middle, np.array(rate) - drift
-        moments = moments + tensor((v * off.T) @ off)
-        swirl += float(v @ (off[:, 0] * past[:, 1] - off[:, 1] * past[:, 0]))
+        arms, relative_velocities = np.array(centre) - middle, np.array(rate) - drift
+        moments = moments + tensor((v * arms.T) @ arms)
+        swirl += float(v @ (arms[:, 0] * relative_velocities[:, 1] - arms[:, 1] * relative_velocities[:, 0]))
         (cx, cy, _), (cu, cv, _) = middle.tolist(), drift.tolist()
         return SpaceMass(
             volume=float(v.sum()), centre=(cx, cy, 0.0), centre_rate=(cu, cv, 0.0), moments=moments,
@@ -276,30 +329,31 @@ def _straight(spine: MidlineState) -> MidlineState:
 def around_rod(length: float, radius: float, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return points over a rod with round ends, normals and areas.
 
-    Points and normals are along its axis, from the middle of its first end, and twice across; they are kept.
+    Coordinates are along the axis, from the middle of the first end, and along two axes across it. The arrays are
+    cached.
 
     Args:
         length: between the middles of its ends [m].
         radius: of the rod [m].
-        spacing: about how far the points are apart [m].
+        spacing: approximate distance of the points [m].
     """
     r = radius
-    count = max(_AROUND, int(np.ceil(2 * np.pi * r / spacing)))
+    count = max(_MIN_POINTS_AROUND, int(np.ceil(2 * np.pi * r / spacing)))
     turn = 2 * np.pi * (np.arange(count) + 0.5) / count
     rings = max(1, int(np.ceil(length / spacing))) if length else 0
-    along = [(np.arange(rings) + 0.5) * length / max(rings, 1)]
-    out, area = [np.full(rings, r)], [np.full(rings, 2 * np.pi * r * length / max(rings, 1) / count)]
+    axial = [(np.arange(rings) + 0.5) * length / max(rings, 1)]
+    radii, area = [np.full(rings, r)], [np.full(rings, 2 * np.pi * r * length / max(rings, 1) / count)]
     caps = count // 2
     height = (np.arange(caps) + 0.5) / caps  # rings of equal area on a half ball
-    for way, base in ((-1.0, 0.0), (1.0, length)):
-        along.append(base + way * r * height)
-        out.append(r * np.sqrt(1 - height**2))
+    for direction, base in ((-1.0, 0.0), (1.0, length)):
+        axial.append(base + direction * r * height)
+        radii.append(r * np.sqrt(1 - height**2))
         area.append(np.full(caps, 2 * np.pi * r * r / caps / count))
-    a, o, share = (np.concatenate(part)[:, None] for part in (along, out, area))
+    a, o, areas = (np.concatenate(ring_values)[:, None] for ring_values in (axial, radii, area))
     points = np.stack([np.broadcast_to(a, (a.size, count)), o * np.cos(turn), o * np.sin(turn)]).reshape(3, -1)
-    nearest = np.zeros(points.shape)
-    nearest[0] = np.clip(points[0], 0.0, length)
-    found = points, (points - nearest) / r, np.broadcast_to(share, (a.size, count)).ravel().copy()
-    for array in found:
+    axis_points = np.zeros(points.shape)
+    axis_points[0] = np.clip(points[0], 0.0, length)
+    rod_samples = points, (points - axis_points) / r, np.broadcast_to(areas, (a.size, count)).ravel().copy()
+    for array in rod_samples:
         array.flags.writeable = False
-    return found
+    return rod_samples

@@ -17,7 +17,7 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 from suchus.flow.solid import INSIDE, Ellipsoid, SpaceField, SpaceShape, is_blunt
 
-_ACROSS = 16
+_MIN_POINTS_ACROSS = 16
 """Points across a piece, at least, over which its volume is summed [-]."""
 
 
@@ -43,37 +43,37 @@ class Spherocylinder(SpaceShape):
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Return which points of its own frame lie inside, shape (3, ...) [m]."""
         x, y, z = points
-        beyond = np.maximum(np.abs(x) - 0.5 * self.length, 0.0)
-        return np.asarray(beyond * beyond + y * y + z * z < (1 - INSIDE) * self.radius**2)
+        axial_excess = np.maximum(np.abs(x) - 0.5 * self.length, 0.0)
+        return np.asarray(axial_excess * axial_excess + y * y + z * z < (1 - INSIDE) * self.radius**2)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:  # noqa: ARG002
         """Return the field on the points of a window."""
-        place = pose.along(3)
+        frame = pose.along(3)
         world = x, y[:, None], z[:, None, None]
-        px, py, pz = place.seen(world)
+        px, py, pz = frame.seen(world)
         dx = px - np.clip(px, -0.5 * self.length, 0.5 * self.length)
         size = np.sqrt(dx * dx + py * py + pz * pz)
         safe = np.maximum(size, 1e-12 * self.radius)
-        normal = turned(place.matrix, (dx / safe, py / safe, pz / safe))
-        u, v, w = (np.broadcast_to(part, size.shape) for part in place.rates(world))
+        normal = turned(frame.matrix, (dx / safe, py / safe, pz / safe))
+        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.rates(world))
         return SpaceField(size - self.radius, normal, (u, v, w), np.full(size.shape, 2 * self.radius))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:  # noqa: ARG002
         """Return points on rings along it and over its round ends."""
-        place = pose.along(3)
-        local, facing, share = around_rod(self.length, self.radius, spacing)
-        points = np.stack(place.place(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
-        spins = np.broadcast_to(place.spins[:, None], points.shape)
+        frame = pose.along(3)
+        local, facing, areas = around_rod(self.length, self.radius, spacing)
+        points = np.stack(frame.place(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
+        spins = np.broadcast_to(frame.spins[:, None], points.shape)
         return Markers(
-            points=points, share=share, velocities=np.stack(place.rates(points)),
-            normals=np.stack(turned(place.matrix, facing)), spins=spins,
+            points=points, share=areas, velocities=np.stack(frame.rates(points)),
+            normals=np.stack(turned(frame.matrix, facing)), spins=spins,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:  # noqa: ARG002
         """Return the box around it."""
-        place = pose.along(3)
-        reach = (0.5 * self.length * np.abs(place.matrix[:, 0]) + self.radius).tolist()
-        return tuple(p + way * r for p, r in zip(place.position, reach, strict=True) for way in (-1.0, 1.0))
+        frame = pose.along(3)
+        reach = (0.5 * self.length * np.abs(frame.matrix[:, 0]) + self.radius).tolist()
+        return tuple(p + direction * r for p, r in zip(frame.position, reach, strict=True) for direction in (-1.0, 1.0))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:  # noqa: ARG002
         """Return the diameter."""
@@ -90,13 +90,13 @@ class Spherocylinder(SpaceShape):
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume and moments; the centre is the origin."""
-        r, long, none = self.radius, self.length, (0.0, 0.0, 0.0)
-        rod, ball = np.pi * r * r * long, 4 / 3 * np.pi * r**3
-        along = rod * long**2 / 12 + ball * (r * r / 5 + long**2 / 4 + 3 * long * r / 8)
-        across = rod * r * r / 4 + ball * r * r / 5
+        r, length, zero = self.radius, self.length, (0.0, 0.0, 0.0)
+        rod, ball = np.pi * r * r * length, 4 / 3 * np.pi * r**3
+        axial_moment = rod * length**2 / 12 + ball * (r * r / 5 + length**2 / 4 + 3 * length * r / 8)
+        transverse_moment = rod * r * r / 4 + ball * r * r / 5
         return SpaceMass(
-            volume=self.volume(time), centre=none, centre_rate=none,
-            moments=tensor(np.diag([along, across, across])), swirl=none,
+            volume=self.volume(time), centre=zero, centre_rate=zero,
+            moments=tensor(np.diag([axial_moment, transverse_moment, transverse_moment])), swirl=zero,
         )  # fmt: skip
 
 
@@ -147,6 +147,7 @@ class Linked(SpaceShape):
     """The links at every time, in the frame of the body [s]."""
 
     def __post_init__(self) -> None:
+        """Refuse pieces whose links are not those of the motion."""
         links = sorted({piece.link for piece in self.pieces})
         count = len(self.motion(0.0).position)
         if links != list(range(count)) or not count:
@@ -168,109 +169,143 @@ class Linked(SpaceShape):
     def poses(self, time: float, pose: Pose) -> list[Pose]:
         """Return the pose of each piece in the world."""
         frame, links = pose.along(3), self.motion(time)
-        return [_placed(piece, links, frame) for piece in self.pieces]
+        return [_piece_pose(piece, links, frame) for piece in self.pieces]
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, that of the nearest piece at each."""
         size = (z.size, y.size, x.size)
-        found = SpaceField(
+        window_field = SpaceField(
             np.full(size, reach), tuple(np.zeros((3, *size))), tuple(np.zeros((3, *size))), np.full(size, np.inf),
             np.zeros(size, np.int8),
         )  # fmt: skip
-        assert found.part is not None
-        for piece, place in zip(self.pieces, self.poses(time, pose), strict=True):
-            low, high = (np.array(ends)[::-1] for ends in _corners(piece.shape.bounds(time, place)))
+        assert window_field.part is not None
+        for piece, piece_pose in zip(self.pieces, self.poses(time, pose), strict=True):
+            lower_bound, upper_bound = (np.array(ends)[::-1] for ends in _corners(piece.shape.bounds(time, piece_pose)))
             box = tuple(
                 slice(*np.searchsorted(axis, (a - reach, b + reach)))
-                for axis, a, b in zip((z, y, x), low, high, strict=True)
+                for axis, a, b in zip((z, y, x), lower_bound, upper_bound, strict=True)
             )  # fmt: skip
-            if any(part.start == part.stop for part in box):
+            if any(extent.start == extent.stop for extent in box):
                 continue
-            own = piece.shape.measure(x[box[2]], y[box[1]], z[box[0]], time, place, reach)
-            there = found.distance[box]
-            nearer = own.distance < there
-            facing = sum(part * one[box] for part, one in zip(own.normal, found.normal, strict=True))
-            through = np.where(np.isfinite(own.thickness), own.thickness, 0.0)
-            sunk = there < facing * (own.distance + through)  # its far side lies in what is there already
+            piece_field = piece.shape.measure(x[box[2]], y[box[1]], z[box[0]], time, piece_pose, reach)
+            present_distance = window_field.distance[box]
+            is_nearer = piece_field.distance < present_distance
+            facing = sum(
+                component * present_component[box]
+                for component, present_component in zip(piece_field.normal, window_field.normal, strict=True)
+            )
+            thickness = np.where(np.isfinite(piece_field.thickness), piece_field.thickness, 0.0)
+            sunk = present_distance < facing * (
+                piece_field.distance + thickness
+            )  # the piece's far side lies in the body that the field has already
             values = [
-                (found.distance, own.distance), (found.thickness, np.where(sunk, np.inf, own.thickness)),
-                *zip(found.normal, own.normal, strict=True), *zip(found.velocity, own.velocity, strict=True),
+                (window_field.distance, piece_field.distance),
+                (window_field.thickness, np.where(sunk, np.inf, piece_field.thickness)),
+                *zip(window_field.normal, piece_field.normal, strict=True),
+                *zip(window_field.velocity, piece_field.velocity, strict=True),
             ]  # fmt: skip
-            for one, value in values:
-                one[box] = np.where(nearer, value, one[box])
-            found.part[box] = np.where(nearer, piece.link, found.part[box])
-        return found
+            for target, value in values:
+                target[box] = np.where(is_nearer, value, target[box])
+            window_field.part[box] = np.where(is_nearer, piece.link, window_field.part[box])
+        return window_field
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points over what is outside of all pieces: those inside another one stand for no area."""
-        places, skins = self.poses(time, pose), []
-        for k, (piece, place) in enumerate(zip(self.pieces, places, strict=True)):
-            skin = piece.shape.markers(time, place, spacing)
-            share = np.where(self._covered(skin.points, places, k, time), 0.0, skin.share)
-            skins.append(replace(skin, share=share, part=np.full(share.shape, piece.link)))
-        both = ("points", "velocities", "normals", "spins")
+        """Return points over all pieces; points inside another piece have no area."""
+        piece_poses, skins = self.poses(time, pose), []
+        for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
+            skin = piece.shape.markers(time, piece_pose, spacing)
+            areas = np.where(self._is_covered(skin.points, piece_poses, k, time), 0.0, skin.share)
+            skins.append(replace(skin, share=areas, part=np.full(areas.shape, piece.link)))
+        array_names = ("points", "velocities", "normals", "spins")
         return Markers(
-            **{name: np.concatenate([getattr(skin, name) for skin in skins], axis=1) for name in both},
+            **{name: np.concatenate([getattr(skin, name) for skin in skins], axis=1) for name in array_names},
             share=np.concatenate([skin.share for skin in skins]),
             part=np.concatenate([skin.part for skin in skins if skin.part is not None]),
         )
 
-    def _covered(
-        self, points: np.ndarray, places: Sequence[Pose], own: int, time: float, *, before: bool = False
+    def _is_covered(
+        self,
+        points: np.ndarray,
+        piece_poses: Sequence[Pose],
+        piece_index: int,
+        time: float,
+        *,
+        earlier_only: bool = False,
     ) -> np.ndarray:
-        """Return which points lie inside another piece than their own, or inside one before it."""
-        inside = np.zeros(points.shape[1], bool)
-        low, high = points.min(axis=1), points.max(axis=1)
-        for k, (piece, place) in enumerate(zip(self.pieces, places, strict=True)):
-            a, b = _corners(piece.shape.bounds(time, place))
-            if k == own or (before and k > own) or (low > b).any() or (high < a).any():
+        """Return which points on one piece lie inside another piece.
+
+        Args:
+            points: in the world, shape (3, point) [m].
+            piece_poses: pose of each piece.
+            piece_index: the piece that the points are on.
+            time: when [s].
+            earlier_only: whether only the pieces before it count.
+        """
+        is_inside = np.zeros(points.shape[1], bool)
+        lower_bound, upper_bound = points.min(axis=1), points.max(axis=1)
+        for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
+            a, b = _corners(piece.shape.bounds(time, piece_pose))
+            if (
+                k == piece_index
+                or (earlier_only and k > piece_index)
+                or (lower_bound > b).any()
+                or (upper_bound < a).any()
+            ):
                 continue
-            inside |= piece.shape.holds(np.array(place.seen(points)))
-        return inside
+            is_inside |= piece.shape.holds(np.array(piece_pose.seen(points)))
+        return is_inside
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around all pieces."""
         boxes = np.array([
-            piece.shape.bounds(time, place) for piece, place in zip(self.pieces, self.poses(time, pose), strict=True)
+            piece.shape.bounds(time, piece_pose)
+            for piece, piece_pose in zip(self.pieces, self.poses(time, pose), strict=True)
         ])  # fmt: skip
         ends = zip(boxes[:, ::2].min(axis=0).tolist(), boxes[:, 1::2].max(axis=0).tolist(), strict=True)
         return tuple(end for pair in ends for end in pair)
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the pieces' lengths one after the other, and the thickness of each."""
-        long = np.array([2 * float(piece.shape.half.max()) for piece in self.pieces])
-        thick = np.array([float(piece.shape.thickness(time)[1][0]) for piece in self.pieces])
-        ends = np.concatenate([[0.0], long.cumsum()])
-        return np.column_stack([ends[:-1], ends[1:]]).ravel(), np.repeat(thick, 2)
+        lengths = np.array([2 * float(piece.shape.half.max()) for piece in self.pieces])
+        thicknesses = np.array([float(piece.shape.thickness(time)[1][0]) for piece in self.pieces])
+        ends = np.concatenate([[0.0], lengths.cumsum()])
+        return np.column_stack([ends[:-1], ends[1:]]).ravel(), np.repeat(thicknesses, 2)
 
     def volume(self, time: float) -> float:
         """Return the volume of the union."""
         return self.mass(time).volume
 
     def mass(self, time: float) -> SpaceMass:
-        """Return volume, centre and moments of the union, and what its deformation carries, by points inside it."""
-        places, points, rates, each = self.poses(time, Pose()), [], [], []
-        for k, (piece, place) in enumerate(zip(self.pieces, places, strict=True)):
-            inner, share = _filled(piece.shape)
-            world = np.array(place.place(inner))
-            kept = ~self._covered(world, places, k, time, before=True)
-            points.append(world[:, kept])
-            rates.append(np.array(place.rates(world))[:, kept])
-            each.append(np.full(int(kept.sum()), share))
-        at, moving, v = np.concatenate(points, axis=1), np.concatenate(rates, axis=1), np.concatenate(each)
-        centre, drift = at @ v / v.sum(), moving @ v / v.sum()
-        off, past = at - centre[:, None], moving - drift[:, None]
-        swirl = np.cross(off.T, past.T).T @ v
-        x, y, z = (tuple(part.tolist()) for part in (centre, drift, swirl))
-        return SpaceMass(volume=float(v.sum()), centre=x, centre_rate=y, moments=tensor((v * off) @ off.T), swirl=z)
+        """Return volume, centre and moments of the union and the momentum of its deformation.
+
+        They are sums over points inside the pieces.
+        """
+        piece_poses, points, rates, volumes = self.poses(time, Pose()), [], [], []
+        for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
+            inner, point_volume = _volume_samples(piece.shape)
+            world = np.array(piece_pose.place(inner))
+            is_outside = ~self._is_covered(world, piece_poses, k, time, earlier_only=True)
+            points.append(world[:, is_outside])
+            rates.append(np.array(piece_pose.rates(world))[:, is_outside])
+            volumes.append(np.full(int(is_outside.sum()), point_volume))
+        positions = np.concatenate(points, axis=1)
+        velocities = np.concatenate(rates, axis=1)
+        v = np.concatenate(volumes)
+        centre, drift = positions @ v / v.sum(), velocities @ v / v.sum()
+        arms, relative_velocities = positions - centre[:, None], velocities - drift[:, None]
+        swirl = np.cross(arms.T, relative_velocities.T).T @ v
+        x, y, z = (tuple(vector.tolist()) for vector in (centre, drift, swirl))
+        return SpaceMass(volume=float(v.sum()), centre=x, centre_rate=y, moments=tensor((v * arms) @ arms.T), swirl=z)
 
     @cached_property
     def reach(self) -> Float[np.ndarray, " link"]:
         """Distance of each link's surface from its origin [m]."""
-        far = np.zeros(self.parts)
+        distances = np.zeros(self.parts)
         for piece in self.pieces:
-            far[piece.link] = max(far[piece.link], float(np.linalg.norm(piece.at) + np.linalg.norm(piece.shape.half)))
-        return far
+            distances[piece.link] = max(
+                distances[piece.link], float(np.linalg.norm(piece.at) + np.linalg.norm(piece.shape.half))
+            )
+        return distances
 
 
 def _corners(bounds: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -279,77 +314,93 @@ def _corners(bounds: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=128)
-def _filled(shape: Spherocylinder | Ellipsoid) -> tuple[np.ndarray, float]:
-    """Return points spread evenly inside a shape, in its own frame, and the volume that each stands for [m], [m3]."""
+def _volume_samples(shape: Spherocylinder | Ellipsoid) -> tuple[np.ndarray, float]:
+    """Return points of a regular lattice inside a shape, in its own frame [m], and the volume per point [m^3]."""
     half = shape.half
-    step = 2 * float(half.min()) / _ACROSS
+    step = 2 * float(half.min()) / _MIN_POINTS_ACROSS
     lines = [(np.arange(n) + 0.5) * 2 * a / n - a for a, n in ((a, int(np.ceil(2 * a / step))) for a in half)]
     points = np.stack(np.meshgrid(*lines, indexing="ij")).reshape(3, -1)
     points = points[:, shape.holds(points)]
     return points, shape.volume(0.0) / points.shape[1]
 
 
-def _placed(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
-    """Return the pose of a piece in the world, its link being in a frame."""
+def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
+    """Return the pose of a piece in the world.
+
+    Args:
+        piece: the piece.
+        links: states of the links in the body's frame.
+        frame: pose of that frame in the world.
+    """
     k, outer = piece.link, frame.matrix
-    own = links.matrix[k]
-    off = own @ np.array(piece.at)
-    spin, rate = links.spin[k], links.velocity[k] + np.cross(links.spin[k], off)
-    position = np.array(frame.place(links.position[k] + off))
+    link_matrix = links.matrix[k]
+    arm = link_matrix @ np.array(piece.at)
+    spin, rate = links.spin[k], links.velocity[k] + np.cross(links.spin[k], arm)
+    position = np.array(frame.place(links.position[k] + arm))
     velocity = outer @ rate + np.array(frame.rates(position))
-    yaw, pitch, roll = rotation.attitude(outer @ own @ rotation.matrix(np.array(piece.turn)))
+    yaw, pitch, roll = rotation.attitude(outer @ link_matrix @ rotation.matrix(np.array(piece.turn)))
     p, q, r = (outer @ spin + frame.spins).tolist()
     (x, y, z), (u, v, w) = position.tolist(), velocity.tolist()
     return Pose(position=(x, y, z), angle=yaw, pitch=pitch, roll=roll, velocity=(u, v, w), spin_x=p, spin_y=q, spin=r)
 
 
 def onward(states: LinkStates, time: float) -> LinkStates:
-    """Return links that have gone on at their rates for a time [s]."""
+    """Return the links after they have moved at constant rates for a time [s]."""
     matrix = rotation.turns(time * states.spin) @ states.matrix if time else states.matrix
     return states._replace(position=states.position + time * states.velocity, matrix=matrix)
 
 
-def between(start: LinkStates, end: LinkStates, span: float, share: float) -> LinkStates:
-    """Return links on their way from one state to another: cubics with the places and rates of both ends.
+def between(start: LinkStates, end: LinkStates, span: float, fraction: float) -> LinkStates:
+    """Return links between two states: cubics with the positions and rates of both ends.
 
-    Turns are rotation vectors from the start. Before and after, the links go on at the rates of the nearer end.
+    Rotations are interpolated as rotation vectors from the start. Before the start and after the end the rates are
+    constant, those of the nearer end.
 
     Args:
-        start: where the way begins.
-        end: where it ends.
-        span: time from the one to the other [s].
-        share: of the way; 0 at the start, 1 at the end [-].
+        start: state at fraction 0.
+        end: state at fraction 1.
+        span: time from the start to the end [s].
+        fraction: of the time; 0 at the start, 1 at the end [-].
     """
-    if not 0.0 < share < 1.0:
-        return onward(start, share * span) if share <= 0.0 else onward(end, (share - 1.0) * span)
-    t, h = share, span
+    if not 0.0 < fraction < 1.0:
+        return onward(start, fraction * span) if fraction <= 0.0 else onward(end, (fraction - 1.0) * span)
+    t, h = fraction, span
     basis = (1 + 2 * t) * (1 - t) ** 2, h * t * (1 - t) ** 2, t * t * (3 - 2 * t), h * t * t * (t - 1)
     slope = 6 * t * (t - 1) / h, (1 - t) * (1 - 3 * t), 6 * t * (1 - t) / h, t * (3 * t - 2)
     ends = start.position, start.velocity, end.position, end.velocity
     position, velocity = (
-        np.sum([a * b for a, b in zip(one, ends, strict=True)], axis=0) for one in (basis, slope)
+        np.sum([a * b for a, b in zip(weights, ends, strict=True)], axis=0) for weights in (basis, slope)
     )  # fmt: skip
     turn = rotation.vectors(end.matrix @ np.swapaxes(start.matrix, 1, 2))
-    last = _unrolled(turn, end.spin)
-    vector, rate = (one[1] * start.spin + one[2] * turn + one[3] * last for one in (basis, slope))
+    end_rate = _unrolled(turn, end.spin)
+    vector, rate = (weights[1] * start.spin + weights[2] * turn + weights[3] * end_rate for weights in (basis, slope))
     return LinkStates(position, rotation.turns(vector) @ start.matrix, velocity, _rolled(vector, rate))
 
 
 def _rolled(vector: Float[np.ndarray, "link 3"], rate: Float[np.ndarray, "link 3"]) -> Float[np.ndarray, "link 3"]:
     """Return the angular velocities of rotations whose vectors change at a rate [rad/s].
 
+    Args:
+        vector: rotation vectors [rad].
+        rate: their rates [rad/s].
+
     Source: the left Jacobian of rotations, Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (145).
     """
     angle = np.linalg.norm(vector, axis=1, keepdims=True)
     safe = np.maximum(angle, 1e-4)
-    one = np.where(angle < 1e-4, 0.5, (1 - np.cos(safe)) / safe**2)
-    two = np.where(angle < 1e-4, 1 / 6, (safe - np.sin(safe)) / safe**3)
+    first_factor = np.where(angle < 1e-4, 0.5, (1 - np.cos(safe)) / safe**2)
+    second_factor = np.where(angle < 1e-4, 1 / 6, (safe - np.sin(safe)) / safe**3)
     twist = np.cross(vector, rate)
-    return np.asarray(rate + one * twist + two * np.cross(vector, twist))
+    return np.asarray(rate + first_factor * twist + second_factor * np.cross(vector, twist))
 
 
 def _unrolled(vector: Float[np.ndarray, "link 3"], spin: Float[np.ndarray, "link 3"]) -> Float[np.ndarray, "link 3"]:
-    """Return the rates of rotation vectors at angular velocities: the inverse of ``_rolled`` [rad/s]."""
+    """Return the rates of rotation vectors at angular velocities: the inverse of ``_rolled`` [rad/s].
+
+    Args:
+        vector: rotation vectors [rad].
+        spin: angular velocities [rad/s].
+    """
     angle = np.linalg.norm(vector, axis=1, keepdims=True)
     safe = np.maximum(angle, 1e-3)
     two = np.where(angle < 1e-3, 1 / 12, (1 - 0.5 * safe / np.tan(0.5 * safe)) / safe**2)

@@ -1,4 +1,4 @@
-"""How the machine code of kernels is put together: each kernel whole, and from its own parts.
+"""Linking of the machine code of kernels: each kernel is optimised as a whole and has its own copies of parts.
 
 numba compiles a function that a kernel calls by itself, links a copy into the kernel, optimises the whole once more and
 leaves the copy a *weak* symbol. A process that has just compiled both runs the first one, a process that loads the
@@ -23,10 +23,10 @@ from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 
 OURS = "_ZN6suchus4flow"
-"""How the names of this room's functions begin in machine code."""
+"""Prefix of the symbols of the functions of ``suchus.flow`` in machine code."""
 
 LOOP = "__numba_parfor_gufunc"
-"""What the names of the loops that run on threads contain."""
+"""Part of the symbols of loops that run on threads."""
 
 _NEEDED = (
     "_optimize_final_module", "_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols",
@@ -38,7 +38,7 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
     """The code of one function, and of all that it calls."""
 
     def _is_part(self) -> bool:
-        """Return whether the code is this room's, and is only ever called by other compiled code."""
+        """Return whether the code belongs to ``suchus.flow`` and is called only by other compiled code."""
         roots = [f.name for f in self._defined() if f.linkage == binding.Linkage.external]
         return self._is_ours() and all(name.startswith(OURS) or LOOP in name for name in roots)
 
@@ -53,6 +53,7 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
             super()._optimize_final_module()
 
     def _finalize_final_module(self) -> None:
+        """Finish the code: a part is not emitted; in a kernel the copies of what it calls become its own."""
         if self._is_part():
             self._finalize_dynamic_globals()
             self._verify_declare_only_symbols()
@@ -71,36 +72,36 @@ class Library(JITCodeLibrary):  # type: ignore[misc]
 
 
 class Codegen(JITCPUCodegen):  # type: ignore[misc]
-    """Makes the libraries of this room's functions."""
+    """Makes the libraries of the functions of ``suchus.flow``."""
 
     _library_class = Library
 
     def set_env(self, env_name: str, env: Any) -> None:
-        """Set the environment of a function; that of a part, which is nowhere by itself, is none of its own."""
+        """Set the environment of a function; a part is not emitted by itself and has none."""
         if self._engine.is_symbol_defined(env_name):
             super().set_env(env_name, env)
 
 
 class KernelCompiler(Compiler):  # type: ignore[misc]
-    """Numba's compiler, which puts the code of a function together as ``Library`` does."""
+    """Numba's compiler, with ``Library`` for the code of a function."""
 
-    def __init__(self, typingctx: Any, targetctx: BaseContext, *rest: Any) -> None:
-        super().__init__(typingctx, _linked_here(targetctx), *rest)
+    def __init__(self, typingctx: Any, targetctx: BaseContext, *args: Any) -> None:
+        super().__init__(typingctx, _linked_here(targetctx), *args)
 
 
 @cache
 def _linked_here(context: BaseContext) -> BaseContext:
-    """Return a target that is as another one, but for the ``Codegen``."""
+    """Return a copy of a target with the ``Codegen`` of this module."""
     return context.subtarget(_internal_codegen=Codegen("suchus.flow"))
 
 
 def missing() -> list[str]:
-    """Return the names that ``Library`` and ``KernelCompiler`` need of numba and that are not there."""
+    """Return the names that ``Library`` and ``KernelCompiler`` need and that numba lacks."""
     lacking = [name for name in _NEEDED if not hasattr(JITCodeLibrary, name)]
     lacking += [] if hasattr(JITCPUCodegen, "_library_class") else ["_library_class"]
     return lacking + ([] if hasattr(cpu_target.target_context, "_internal_codegen") else ["_internal_codegen"])
 
 
 def options() -> dict[str, Any]:
-    """Return what ``numba.njit`` takes to compile a function so; nothing where numba lacks what that needs."""
+    """Return the options of ``numba.njit`` for this linking; none if numba lacks names that it needs."""
     return {} if missing() else {"pipeline_class": KernelCompiler}

@@ -1,4 +1,4 @@
-"""The book that a simulation keeps: what acts on each body in every step, and the rows of the record."""
+"""Log of a simulation: the loads on each body in every step, and the rows of the record."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ FASTEST = 100.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlowLoads:
-    """What the water did to one body in one step."""
+    """Loads of the water on one body in one step."""
 
     about: np.ndarray
     """Point of the torques, in the frame of the grid, shape (axis,) [m]."""
@@ -35,8 +35,8 @@ class FlowLoads:
     """What the pressure does inside the parts, where there is no water: its integral over each and its first moments
     about ``about``, shape (part, 1 + axis), 0 in a body that is not divided [N, N m; N m, N m2].
 
-    Parts press on each other so, which is not the water's doing: taken as rigid pieces, they work against it where
-    the body bends."""
+    By this pressure the parts push each other; it is no load of the water. Rigid parts do work against it where the
+    body bends."""
 
 
 @dataclass(slots=True)
@@ -48,7 +48,7 @@ class Log:
     rows: list[np.ndarray] = field(default_factory=list)
     """One row per step."""
     held: np.ndarray = field(init=False)
-    """What the region of each part of each body held at the end of the last step; see ``momentum.contents``."""
+    """Contents of the region of each part of each body at the end of the last step; see ``momentum.contents``."""
     controls: list[ControlVolume] = field(default_factory=list)
     """Boxes whose momentum is followed."""
     control_rows: list[tuple[float, ...]] = field(default_factory=list)
@@ -58,45 +58,55 @@ class Log:
         self.held = np.zeros((0, contents_of(self.setup.grid.axes)))
 
     def hold(self, water: Fluid, outlines: Sequence[Markers]) -> None:
-        """Note what the placed bodies' regions hold now; of a body that mirrors cut, the part inside the domain."""
+        """Store the contents of the placed bodies' regions; of a body that mirrors cut, the part inside the domain."""
         grid = self.setup.grid
-        held = [
-            0.5 ** sum(cut) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
-            for outline, cut, rows in zip(outlines, water.cut, water.rows, strict=True)
+        skin_contents = [
+            0.5 ** sum(mirror_cuts) * skins(outline, water.offset, grid.origin, grid.cell, len(rows))
+            for outline, mirror_cuts, rows in zip(outlines, water.cut, water.rows, strict=True)
         ]
-        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *held])
+        self.held = water.contents() - np.concatenate([np.zeros((0, contents_of(grid.axes))), *skin_contents])
 
     def reactions(
-        self, water: Fluid, outlines: Sequence[Markers], about: list[tuple[float, ...]], dt: float,
-        push: tuple[float, ...], before: np.ndarray,
+        self, water: Fluid, outlines: Sequence[Markers], reference_points: list[tuple[float, ...]], dt: float,
+        push: tuple[float, ...], previous_contents: np.ndarray,
     ) -> list[FlowLoads]:  # fmt: skip
-        """Return what the water did to each body in the step that just ended, and to its parts.
+        """Return the loads on each body and its parts in the step that just ended.
 
-        ``before`` is what ``held`` was when the step began.
+        Args:
+            water: after the step.
+            outlines: markers of each body.
+            reference_points: point of the torques of each body, in the frame of the grid [m].
+            dt: length of the step [s].
+            push: uniform acceleration of the water [m/s^2].
+            previous_contents: ``held`` at the start of the step.
         """
-        grid, found = self.setup.grid, []
+        grid, loads = self.setup.grid, []
         self.hold(water, outlines)
-        for rows, point, cut in zip(water.rows, about, water.cut, strict=True):
-            place = np.array(point)
-            own = [sums[rows.start : rows.stop] for sums in (water.given, before, self.held)]
-            sums = own if len(rows) == 1 else [np.concatenate([each[:1] + each[1:].sum(axis=0), each]) for each in own]
-            both = reaction(
-                *sums, dt=dt, push=push, about=place, origin=grid.origin, h=grid.cell, density=self.setup.density
-            ).whole(cut)
-            whole, parts = both[0], both if len(rows) == 1 else both[1:]
-            scale = 2 ** sum(cut) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
+        for rows, point, mirror_cuts in zip(water.rows, reference_points, water.cut, strict=True):
+            position = np.array(point)
+            body_sums = [sums[rows.start : rows.stop] for sums in (water.given, previous_contents, self.held)]
+            sums = (
+                body_sums
+                if len(rows) == 1
+                else [np.concatenate([part_sums[:1] + part_sums[1:].sum(axis=0), part_sums]) for part_sums in body_sums]
+            )
+            actions = reaction(
+                *sums, dt=dt, push=push, about=position, origin=grid.origin, h=grid.cell, density=self.setup.density
+            ).whole(mirror_cuts)
+            body_action, parts = actions[0], actions if len(rows) == 1 else actions[1:]
+            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.axes + 1) / dt
             pressed = scale * water.pressed[rows.start : rows.stop]
-            pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (place - np.array(grid.origin))
-            found.append(FlowLoads(about=place, whole=whole, parts=parts, pressed=pressed))
-        return found
+            pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (position - np.array(grid.origin))
+            loads.append(FlowLoads(about=position, whole=body_action, parts=parts, pressed=pressed))
+        return loads
 
     def control(self, water: Fluid, dt: float, push: tuple[float, ...]) -> None:
-        """Note the force from the box, if there is one."""
+        """Append the force from the control volumes, if there are any."""
         for box in self.controls:
             self.control_rows.append(box.force(water, dt, push, self.setup.density))
 
     def refuse_nonsense(self, fastest: float, reference: float, row: np.ndarray, good: dict[str, np.ndarray]) -> None:
-        """Refuse fields that are no longer finite or far too fast; the error keeps the last good ones.
+        """Refuse fields that are not finite or far too fast; the error has the last good velocities.
 
         Args:
             fastest: fastest water now [m/s].
@@ -120,19 +130,22 @@ class Log:
     def record(self) -> Record:
         """The time series so far."""
         bodies, names = self.setup.bodies, COLUMNS if self.setup.grid.axes == 2 else SPACE_COLUMNS
-        counts = [len(rows) if _is_told(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)]
-        own, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
-        rows = np.array(self.rows).reshape(len(self.rows), HEAD + own + parts * len(PART_COLUMNS))
+        counts = [
+            len(rows) if _is_divided(body) else 1 for body, rows in zip(bodies, rows_of(list(bodies)), strict=True)
+        ]
+        body_columns, parts = len(bodies) * len(names), sum(n for n in counts if n > 1)
+        rows = np.array(self.rows).reshape(len(self.rows), HEAD + body_columns + parts * len(PART_COLUMNS))
         return Record(
             names=tuple(b.name for b in bodies), time=rows[:, 0], step=rows[:, 1], cycles=rows[:, 2:4].astype(int),
-            divergence=rows[:, 4], bodies=rows[:, HEAD : HEAD + own].reshape(len(rows), len(bodies), len(names)),
-            columns=names, parts=rows[:, HEAD + own :].reshape(len(rows), parts, len(PART_COLUMNS)),
+            divergence=rows[:, 4],
+            bodies=rows[:, HEAD : HEAD + body_columns].reshape(len(rows), len(bodies), len(names)),
+            columns=names, parts=rows[:, HEAD + body_columns :].reshape(len(rows), parts, len(PART_COLUMNS)),
             divided=tuple(n if n > 1 else 0 for n in counts),
         )  # fmt: skip
 
 
-def _is_told(body: AnyBody) -> bool:
-    """Return whether the record has the parts of a body, which then lie one behind the other."""
+def _is_divided(body: AnyBody) -> bool:
+    """Return whether the record has the parts of a body: those along a midline."""
     return isinstance(body.shape, Trunk | Midline)
 
 
@@ -141,44 +154,44 @@ def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, er
 
     Args:
         load: pressure and friction along its outline; None in space.
-        act: what the water did to it.
+        act: load of the water on the body.
         frame: mean velocity of the grid [m/s].
-        place: where it is.
+        place: pose of the body.
         error: estimated error of its force [-].
     """
     power = float(act.power - frame @ act.force)
-    along = () if load is None else (*load.pressure, *load.shear)
+    surface_forces = () if load is None else (*load.pressure, *load.shear)
     flat = len(act.moment) == 1
     angles = (place.angle,) if flat else (place.angle, place.pitch, place.roll)
     spins = (place.spin,) if flat else (place.spin_x, place.spin_y, place.spin)
     return [
-        *along, *act.moment, power, *place.position, *angles, *place.velocity, *spins, *act.force, error
+        *surface_forces, *act.moment, power, *place.position, *angles, *place.velocity, *spins, *act.force, error
     ]  # fmt: skip
 
 
 def part_columns(
-    body: AnyBody, acts: Reaction, about: tuple[float, ...], pose: Pose, time: float, frame: np.ndarray
+    body: AnyBody, acts: Reaction, reference_point: tuple[float, ...], pose: Pose, time: float, frame: np.ndarray
 ) -> list[float]:
     """Return ``record.PART_COLUMNS`` of a body's parts one after the other; nothing of a body of one part.
 
     Args:
         body: which.
-        acts: what the water did to each part, its torque about one point.
-        about: that point, in the frame of the grid [m].
+        acts: load of the water on each part, its torque about one point.
+        reference_point: that point, in the frame of the grid [m].
         pose: of the body, in the frame of the grid.
         time: end of the step [s].
         frame: mean velocity of the grid [m/s].
     """
     force, torque = acts.force, acts.moment
-    if len(force) < 2 or not _is_told(body):
+    if len(force) < 2 or not _is_divided(body):
         return []
     assert isinstance(body.shape, Trunk | Midline)
     power = acts.power - force @ frame
-    behind, moment = (part[::-1].cumsum(axis=0)[::-1] for part in (force, torque))
-    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(about)
-    if len(about) == 2:
-        joint = moment[:, 0] - (ends[:, 0] * behind[:, 1] - ends[:, 1] * behind[:, 0])
+    rear_force, rear_moment = (load[::-1].cumsum(axis=0)[::-1] for load in (force, torque))
+    ends = body.shape.at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)
+    if len(reference_point) == 2:
+        joint = rear_moment[:, 0] - (ends[:, 0] * rear_force[:, 1] - ends[:, 1] * rear_force[:, 0])
     else:  # the midline bends about the body's z
-        joint = (moment - np.stack(cross(ends.T, behind.T), axis=1)) @ pose.matrix[:, 2]
+        joint = (rear_moment - np.stack(cross(ends.T, rear_force.T), axis=1)) @ pose.matrix[:, 2]
     columns: list[float] = np.column_stack([force[:, :2], torque[:, -1], power, joint]).ravel().tolist()
     return columns

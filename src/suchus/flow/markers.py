@@ -1,4 +1,4 @@
-"""Points along the outline or over the skin of a body, where the water is felt."""
+"""Points along the outline or over the skin of a body, where loads are sampled."""
 
 from dataclasses import dataclass, field
 
@@ -12,7 +12,7 @@ class Markers:
     points: np.ndarray
     """Where, shape (axis, marker) [m]."""
     share: np.ndarray
-    """Length of outline or area of skin that each stands for, shape (marker,) [m, m^2]."""
+    """Length of outline or area of skin per marker, shape (marker,) [m, m^2]."""
     velocities: np.ndarray
     """Velocity of the surface, shape (axis, marker) [m/s]."""
     normals: np.ndarray
@@ -20,7 +20,7 @@ class Markers:
     spins: np.ndarray
     """Angular velocity of the surface there, about z in the plane, shape (1, marker), else (3, marker) [rad/s]."""
     part: np.ndarray | None = None
-    """Which of the body's parts each belongs to, counted from 0, shape (marker,); None for a body of one part [-]."""
+    """Index of the body's part that each belongs to, shape (marker,); None for a body of one part [-]."""
     station: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Where along a plane body: arc length of the midline, or of the outline where there is no midline; empty in
     space [m]."""
@@ -39,11 +39,11 @@ class Markers:
         y: np.ndarray = self.points[1]
         return y
 
-    def of(self, chosen: np.ndarray) -> "Markers":
-        """Return some of them, by a mask of shape (marker,)."""
-        station, side = (one[chosen] if one.size else one for one in (self.station, self.side))
+    def of(self, mask: np.ndarray) -> "Markers":
+        """Return the markers that a mask of shape (marker,) selects."""
+        station, side = (array[mask] if array.size else array for array in (self.station, self.side))
         return Markers(
-            points=self.points[:, chosen], share=self.share[chosen], velocities=self.velocities[:, chosen],
-            normals=self.normals[:, chosen], spins=self.spins[:, chosen],
-            part=None if self.part is None else self.part[chosen], station=station, side=side,
+            points=self.points[:, mask], share=self.share[mask], velocities=self.velocities[:, mask],
+            normals=self.normals[:, mask], spins=self.spins[:, mask],
+            part=None if self.part is None else self.part[mask], station=station, side=side,
         )  # fmt: skip

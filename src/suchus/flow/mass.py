@@ -1,4 +1,4 @@
-"""Area, centre and moments of a body's shape, and the momentum that its deformation alone would carry."""
+"""Area, centre and moments of a body's shape, and the momentum of its deformation."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -31,7 +31,7 @@ class Mass:
         return np.diag([self.area, self.area, self.moment])
 
     def recoil(self, _: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: 0, 0 and an angular one [rad/s]."""
+        """Return the velocity that the deformation takes from the frame: 0, 0 and the angular velocity [rad/s]."""
         return np.array([0.0, 0.0, self.swirl / self.moment])
 
 
@@ -58,25 +58,31 @@ class SpaceMass:
     def inertia(self, matrix: np.ndarray) -> np.ndarray:
         """Return the mass matrix over the density for motions along and about the world's axes, shape (6, 6).
 
-        ``matrix`` turns the body's frame into the world's, shape (3, 3).
+        Args:
+            matrix: rotation matrix from the body's frame to the world's, shape (3, 3).
         """
-        whole = np.zeros((6, 6))
-        whole[:3, :3], whole[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
-        return whole
+        inertia_matrix = np.zeros((6, 6))
+        inertia_matrix[:3, :3], inertia_matrix[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
+        return inertia_matrix
 
     def recoil(self, matrix: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: three zeros, three angular ones [rad/s]."""
+        """Return the velocity that the deformation takes from the frame: 0, 0, 0 and the angular velocity [rad/s]."""
         return np.concatenate([np.zeros(3), matrix @ np.linalg.solve(self.moments, self.swirl)])
 
 
 def tensor(second: np.ndarray) -> np.ndarray:
     """Return the tensor of inertia from the integrals of the products of coordinates, each of shape (3, 3) [m^5]."""
-    found: np.ndarray = np.trace(second) * np.eye(3) - second
-    return found
+    inertia_tensor: np.ndarray = np.trace(second) * np.eye(3) - second
+    return inertia_tensor
 
 
 def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
-    """Return the mass of a rigid polygon, counter-clockwise [m]."""
+    """Return the mass of a rigid polygon, counter-clockwise [m].
+
+    Args:
+        x: coordinates of the corners [m].
+        y: coordinates of the corners [m].
+    """
     p, q = np.roll(x, -1), np.roll(y, -1)
     cross = x * q - p * y
     area = float(cross.sum() / 2)
@@ -89,8 +95,10 @@ def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
 def of_midline(spine: np.ndarray) -> Mass:
     """Return the mass of a body from the rows of its midline.
 
-    Rows: x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s]. Each
-    cross-section is a rod; where the midline bends, its outer half counts for more than its inner one.
+    Each cross-section is a rod; where the midline bends, the outer half of the rod weighs more than the inner half.
+
+    Args:
+        spine: rows x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s].
     """
     w = (spine[3, 1:] + spine[3, :-1]) / 2
     area, centre, rate, second, swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)
@@ -98,7 +106,12 @@ def of_midline(spine: np.ndarray) -> Mass:
 
 
 def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
-    """Return the mass of a body with elliptic sections, from the rows of its midline and its half-heights [m]."""
+    """Return the mass of a body with elliptic sections from the rows of its midline.
+
+    Args:
+        spine: rows of the midline; see ``of_midline``.
+        half_height: of the sections at the stations [m].
+    """
     w, h = (spine[3, 1:] + spine[3, :-1]) / 2, (half_height[1:] + half_height[:-1]) / 2
     volume, centre, rate, (moment, xx, xy), swirl = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
     zz = float((np.pi * w * h**3 / 4 * np.hypot(np.diff(spine[0]), np.diff(spine[1]))).sum())

@@ -18,9 +18,9 @@ _NUMBERS = ("time", "_last", "_speed", "_reference", "_fastest", "_placed")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Snapshot:
-    """All that changes of a simulation, in copies; ``Simulation.restore`` goes back to it, as often as it is asked to.
+    """Copies of all of a simulation that changes; ``Simulation.restore`` can go back to it any number of times.
 
-    What a ``Body`` is told from outside is not in it: its shape and motion must be what they were at that time.
+    Shape and motion of a ``Body`` are not part of it: they must be the same as at that time.
     """
 
     numbers: Mapping[str, float]
@@ -32,7 +32,7 @@ class Snapshot:
     rows: tuple[int, int, np.ndarray | None]
     """Rows of the record and of its control volume, and the last row."""
     watched: tuple[Consistency, ...]
-    """How rates and places agreed so far."""
+    """State of the checks of the declared rates."""
     outlines: tuple[Markers, ...]
     """Skins of the bodies."""
 
@@ -40,28 +40,28 @@ class Snapshot:
 def take(sim: "Simulation") -> Snapshot:
     """Return a snapshot of a simulation."""
     log, state = sim._log, sim.water.state()
-    more = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
+    extra_arrays = {"frame": sim.frame, "held": log.held, "b": sim.water.b}
     return Snapshot(
         numbers={name: getattr(sim, name) for name in _NUMBERS},
-        arrays={name: np.array(value) for name, value in {**state, **more}.items()},
+        arrays={name: np.array(value) for name, value in {**state, **extra_arrays}.items()},
         swimmers={name: swimmer.state() for name, swimmer in sim.swimmers.items()},
         rows=(len(log.rows), len(log.control_rows), log.rows[-1] if log.rows else None),
-        watched=tuple(copy(one) for one in sim._watched), outlines=tuple(sim._outlines),
+        watched=tuple(copy(check) for check in sim._watched), outlines=tuple(sim._outlines),
     )  # fmt: skip
 
 
-def give(sim: "Simulation", kept: Snapshot) -> None:
-    """Let a simulation be what it was, but for the bodies in the equations, which are placed anew."""
-    for name, value in kept.numbers.items():
+def give(sim: "Simulation", snapshot: Snapshot) -> None:
+    """Restore a simulation from a snapshot; the bodies are placed anew in the next step."""
+    for name, value in snapshot.numbers.items():
         setattr(sim, name, value)
-    arrays = {name: value.copy() for name, value in kept.arrays.items()}
-    log, (count, controls, last) = sim._log, kept.rows
+    arrays = {name: value.copy() for name, value in snapshot.arrays.items()}
+    log, (count, controls, last_row) = sim._log, snapshot.rows
     del log.rows[count:], log.control_rows[controls:]
-    if last is not None:
-        log.rows[-1] = last
+    if last_row is not None:
+        log.rows[-1] = last_row
     log.held, sim.frame = arrays["held"], arrays["frame"]
     sim.water.resume(arrays)
-    for name, state in kept.swimmers.items():
+    for name, state in snapshot.swimmers.items():
         sim.swimmers[name].resume({key: value.copy() for key, value in state.items()})
-    sim._watched = [copy(one) for one in kept.watched]
-    sim._outlines = list(kept.outlines)
+    sim._watched = [copy(check) for check in snapshot.watched]
+    sim._outlines = list(snapshot.outlines)

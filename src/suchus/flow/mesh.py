@@ -25,16 +25,16 @@ from suchus.flow.pose import Pose
 from suchus.flow.shape import positive
 from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
 
-_ALIKE = 1e-6
+_SYMMETRY_TOLERANCE = 1e-6
 """Distance of corners from their mirror images, over the mesh's size, up to which it is symmetric [-]."""
 _PROBES = 8
-"""Points along the radius of the largest ball that may lie in the mesh, when its thickness is sought [-]."""
+"""Points along the radius of the largest ball that fits in the mesh, in the search for its thickness [-]."""
 _AMPLE = 1.05
 """Margin of that radius [-]."""
-_ALONG = 100
-"""Cells along the longest side of a box in which a surface is sought [-]."""
+_CELLS_ALONG_BOX = 100
+"""Cells along the longest side of the box in which the surface of a signed distance is searched [-]."""
 _NEWTON = 3
-"""Steps by which its corners are put onto it [-]."""
+"""Newton steps that move the corners onto the surface [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -50,11 +50,12 @@ class TriangleMesh(SpaceShape):
     vertices: np.ndarray
     """Corners in the body's own frame, shape (vertex, 3) [m]."""
     faces: np.ndarray
-    """Which three make each triangle, counter-clockwise seen from outside, shape (face, 3) [-]."""
+    """Indices of the corners of each triangle, counter-clockwise seen from outside, shape (face, 3) [-]."""
     _normals: np.ndarray = field(init=False, repr=False)
-    _thick: float = field(init=False, repr=False)
+    _max_thickness: float = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Refuse a mesh that is open, wound unevenly or looks inwards; compute its normals and its thickness."""
         vertices, faces = np.array(self.vertices, float), np.array(self.faces)
         if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not np.isfinite(vertices).all():
             raise InvalidDesign(f"the vertices have shape {vertices.shape}; give rows of three finite numbers.")
@@ -71,62 +72,72 @@ class TriangleMesh(SpaceShape):
                 "mesh.invert() of trimesh does."
             )
         object.__setattr__(self, "_normals", pseudo_normals(vertices, faces))
-        object.__setattr__(self, "_thick", self._widest())
+        object.__setattr__(self, "_max_thickness", self._max_ball_diameter())
 
     @property
     def even(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
         """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
-        tree, most = KDTree(self.vertices), _ALIKE * float(np.ptp(self.vertices, axis=0).max())
+        tree, tolerance = KDTree(self.vertices), _SYMMETRY_TOLERANCE * float(np.ptp(self.vertices, axis=0).max())
         mirrored = [self.vertices * np.where(np.arange(3) == d, -1, 1) for d in range(3)]
-        x, y, z = (float(np.max(tree.query(one)[0])) <= most for one in mirrored)
+        x, y, z = (float(np.max(tree.query(mirror_image)[0])) <= tolerance for mirror_image in mirrored)
         return x, y, z
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window, as far as ``reach``."""
-        place = pose.along(3)
+        frame = pose.along(3)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        out = np.zeros((4, z.size, y.size, x.size))
+        window_field = np.zeros((4, z.size, y.size, x.size))
         h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        normals = np.ascontiguousarray(self._normals @ place.matrix.T)
-        paint_mesh(out, px, py, pz, np.ascontiguousarray(self._placed(place)[self.faces]), normals, float(reach), h)
+        normals = np.ascontiguousarray(self._normals @ frame.matrix.T)
+        paint_mesh(
+            window_field, px, py, pz, np.ascontiguousarray(self._world_vertices(frame)[self.faces]), normals,
+            float(reach), h,
+        )  # fmt: skip
         u, v, w = (
-            np.ascontiguousarray(np.broadcast_to(rate, out[0].shape))
-            for rate in place.rates((px, py[:, None], pz[:, None, None]))
+            np.ascontiguousarray(np.broadcast_to(rate, window_field[0].shape))
+            for rate in frame.rates((px, py[:, None], pz[:, None, None]))
         )
-        return SpaceField(out[0], (out[1], out[2], out[3]), (u, v, w), np.full(out[0].shape, np.inf))
+        return SpaceField(
+            window_field[0],
+            (window_field[1], window_field[2], window_field[3]),
+            (u, v, w),
+            np.full(window_field[0].shape, np.inf),
+        )
 
-    def _placed(self, place: Pose) -> np.ndarray:
+    def _world_vertices(self, frame: Pose) -> np.ndarray:
         """Return the corners in the world, shape (vertex, 3) [m]."""
-        return np.stack(place.place(self.vertices.T), axis=1)
+        return np.stack(frame.place(self.vertices.T), axis=1)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        place = pose.along(3)
-        at, share, normals = middles_of(self._placed(place)[self.faces], spacing)
-        spins = np.broadcast_to(place.spins[:, None], at.shape)
-        return Markers(points=at, share=share, velocities=np.stack(place.rates(at)), normals=normals, spins=spins)
+        frame = pose.along(3)
+        points, areas, normals = middles_of(self._world_vertices(frame)[self.faces], spacing)
+        spins = np.broadcast_to(frame.spins[:, None], points.shape)
+        return Markers(
+            points=points, share=areas, velocities=np.stack(frame.rates(points)), normals=normals, spins=spins
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        at = self._placed(pose.along(3))
-        return tuple(np.stack([at.min(axis=0), at.max(axis=0)], axis=1).ravel().tolist())
+        vertices = self._world_vertices(pose.along(3))
+        return tuple(np.stack([vertices.min(axis=0), vertices.max(axis=0)], axis=1).ravel().tolist())
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter of the largest ball inside, to a twentieth of it."""
-        return np.zeros(1), np.full(1, self._thick)
+        return np.zeros(1), np.full(1, self._max_thickness)
 
-    def _widest(self) -> float:
+    def _max_ball_diameter(self) -> float:
         """Return the diameter of the largest ball inside [m], at most 6 volumes over the area of a convex body."""
         edges = self.vertices[self.faces[:, 1:]] - self.vertices[self.faces[:, :1]]
         area = 0.5 * float(np.sqrt((np.cross(edges[:, 0], edges[:, 1]) ** 2).sum(axis=1)).sum())
         reach = _AMPLE * 3 * self.volume(0.0) / area
-        step, low, high = reach / _PROBES, self.vertices.min(axis=0), self.vertices.max(axis=0)
+        step, lower_bound, upper_bound = reach / _PROBES, self.vertices.min(axis=0), self.vertices.max(axis=0)
         for _ in range(2):
-            x, y, z = (np.arange(a - step, b + 2 * step, step) for a, b in zip(low, high, strict=True))
+            x, y, z = (np.arange(a - step, b + 2 * step, step) for a, b in zip(lower_bound, upper_bound, strict=True))
             depth = -self.measure(x, y, z, 0.0, Pose(), reach).distance
             k, j, i = np.unravel_index(int(depth.argmax()), depth.shape)
             best = np.array([x[i], y[j], z[k]])
-            low, high, step = best - step, best + step, step / 4
+            lower_bound, upper_bound, step = best - step, best + step, step / 4
         return 2 * float(depth.max())
 
     @property
@@ -150,14 +161,14 @@ def _six_volumes(corners: np.ndarray) -> np.ndarray:
 
 
 def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
-    """Return the mass of what is still inside a closed mesh, by the corners of its faces (face, corner, axis) [m]."""
-    six, total, none = _six_volumes(corners), corners.sum(axis=1), (0.0, 0.0, 0.0)
+    """Return the mass inside a rigid closed mesh, from the corners of its faces (face, corner, axis) [m]."""
+    six, total, zero = _six_volumes(corners), corners.sum(axis=1), (0.0, 0.0, 0.0)
     volume = float(six.sum()) / 6
     centre = (six[:, None] * total).sum(axis=0) / 24 / volume
     second = (np.einsum("f,fi,fj->ij", six, total, total) + np.einsum("f,fki,fkj->ij", six, corners, corners)) / 120
     cx, cy, cz = centre.tolist()
     moments = tensor(second - volume * np.outer(centre, centre))
-    return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=none, moments=moments, swirl=none)
+    return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=zero, moments=moments, swirl=zero)
 
 
 def middles_of(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -165,19 +176,21 @@ def middles_of(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndar
 
     Args:
         corners: of the faces, shape (face, corner, axis) [m].
-        spacing: about how far apart the middles are to be [m].
+        spacing: approximate distance of the middles [m].
     """
     edges = np.roll(corners, -1, axis=1) - corners
     parts = np.maximum(1, np.ceil(np.sqrt((edges**2).sum(axis=2)).max(axis=1) / spacing)).astype(int)
-    across = np.cross(edges[:, 0], edges[:, 1])
-    area = 0.5 * np.sqrt((across**2).sum(axis=1))
-    points, share, normals = [], [], []
+    normal_vectors = np.cross(edges[:, 0], edges[:, 1])
+    area = 0.5 * np.sqrt((normal_vectors**2).sum(axis=1))
+    points, areas, normals = [], [], []
     for count in np.unique(parts):
-        some, weights = parts == count, _middles(int(count))
-        points.append(np.einsum("mk,fkd->dfm", weights, corners[some]).reshape(3, -1))
-        share.append(np.repeat(area[some] / count**2, count**2))
-        normals.append(np.repeat(across[some] / np.maximum(2 * area[some, None], 1e-300), count**2, axis=0).T)
-    return np.concatenate(points, axis=1), np.concatenate(share), np.concatenate(normals, axis=1)
+        is_selected, weights = parts == count, _middles(int(count))
+        points.append(np.einsum("mk,fkd->dfm", weights, corners[is_selected]).reshape(3, -1))
+        areas.append(np.repeat(area[is_selected] / count**2, count**2))
+        normals.append(
+            np.repeat(normal_vectors[is_selected] / np.maximum(2 * area[is_selected, None], 1e-300), count**2, axis=0).T
+        )
+    return np.concatenate(points, axis=1), np.concatenate(areas), np.concatenate(normals, axis=1)
 
 
 def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
@@ -192,10 +205,10 @@ def from_mesh(path: Path | str, *, scale: float = 1.0) -> TriangleMesh:
         UnreadableFile: the file is no mesh, or trimesh is not installed.
     """
     positive("scale", scale)
-    found = read_mesh(Path(path))
-    faces = np.array(found.faces)
-    whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return TriangleMesh(vertices=scale * np.array(found.vertices), faces=faces[whole])
+    mesh = read_mesh(Path(path))
+    faces = np.array(mesh.faces)
+    is_proper = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return TriangleMesh(vertices=scale * np.array(mesh.vertices), faces=faces[is_proper])
 
 
 def mesh_of_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> TriangleMesh:
@@ -210,62 +223,75 @@ def mesh_of_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> 
     Raises:
         InvalidDesign: the function is nowhere negative in the box, or negative on its sides, or not finite.
     """
-    low, high = np.array(box[::2], float), np.array(box[1::2], float)
-    cell = float((high - low).max()) / _ALONG
-    x, y, z = (np.arange(a, b + cell, cell) for a, b in zip(low, high, strict=True))
+    lower_bound, upper_bound = np.array(box[::2], float), np.array(box[1::2], float)
+    cell = float((upper_bound - lower_bound).max()) / _CELLS_ALONG_BOX
+    x, y, z = (np.arange(a, b + cell, cell) for a, b in zip(lower_bound, upper_bound, strict=True))
     wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
     values = np.asarray(function(wx, wy, wz), float)
-    where = ", ".join(f"{axis} = {a:.4g} to {b:.4g} m" for axis, a, b in zip("xyz", low, high, strict=True))
+    box_text = ", ".join(
+        f"{axis} = {a:.4g} to {b:.4g} m" for axis, a, b in zip("xyz", lower_bound, upper_bound, strict=True)
+    )
     if values.shape != wx.shape or not np.isfinite(values).all():
         raise InvalidDesign("the signed distance is not a finite number at every point of the box; mend the function.")
     if values.min() >= 0:
         raise InvalidDesign(
-            f"the signed distance is nowhere negative in {where}; it is negative inside the body. Give a box around it."
+            f"the signed distance is nowhere negative in {box_text}; it is negative inside the body. Give a box "
+            f"around it."
         )
     if min(float(np.take(values, (0, -1), axis=d).min()) for d in range(3)) <= 0:
-        raise InvalidDesign(f"the body reaches the sides of its box {where}; give a larger box.")
-    found = isosurface(-values, 0.0, (x[0], y[0], z[0]), cell)
-    points, step = found.points.T, 1e-4 * cell
+        raise InvalidDesign(f"the body reaches the sides of its box {box_text}; give a larger box.")
+    surface = isosurface(-values, 0.0, (x[0], y[0], z[0]), cell)
+    points, step = surface.points.T, 1e-4 * cell
     for _ in range(_NEWTON):
         slope = np.stack([function(*(points + d)) - function(*(points - d)) for d in step * np.eye(3)[:, :, None]])
         slope /= 2 * step
         points = points - function(*points) * slope / np.maximum((slope**2).sum(axis=0), 1e-12)
-    return TriangleMesh(vertices=points.T, faces=found.faces)
+    return TriangleMesh(vertices=points.T, faces=surface.faces)
 
 
 def _refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
-    """Refuse a surface that is not closed, or whose faces do not all look to one side of it.
+    """Refuse a surface that is not closed, or whose faces have different orientations.
+
+    Args:
+        vertices: corners of the mesh, shape (vertex, 3) [m].
+        faces: indices of each triangle's corners, shape (face, 3).
 
     Raises:
-        InvalidDesign: naming an edge, and the remedy.
+        InvalidDesign: the message names an edge and the remedy.
     """
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    ways, back = start * len(vertices) + end, end * len(vertices) + start
-    there, count = np.unique(ways, return_counts=True)
+    edge_keys, reverse_keys = start * len(vertices) + end, end * len(vertices) + start
+    unique_keys, count = np.unique(edge_keys, return_counts=True)
     if (count > 1).any():
-        first, last = divmod(int(there[count > 1][0]), len(vertices))
+        start_vertex, end_vertex = divmod(int(unique_keys[count > 1][0]), len(vertices))
         raise InvalidDesign(
-            f"two faces of the mesh go the same way along the edge from {_at(vertices[first])} to "
-            f"{_at(vertices[last])} m: they look to different sides, or more than two meet there. Wind them evenly, as "
-            "trimesh.repair.fix_winding does, and keep one surface."
+            f"two faces of the mesh go the same way along the edge from {_point_text(vertices[start_vertex])} to "
+            f"{_point_text(vertices[end_vertex])} m: they look to different sides, or more than two meet there. "
+            "Wind them evenly, as trimesh.repair.fix_winding does, and keep one surface."
         )
-    alone = np.flatnonzero(~np.isin(back, there))
-    if alone.size:
-        first, last = int(start[alone[0]]), int(end[alone[0]])
+    open_edges = np.flatnonzero(~np.isin(reverse_keys, unique_keys))
+    if open_edges.size:
+        start_vertex, end_vertex = int(start[open_edges[0]]), int(end[open_edges[0]])
         raise InvalidDesign(
-            f"the mesh is open: it has {alone.size} edges with one face, the first from {_at(vertices[first])} to "
-            f"{_at(vertices[last])} m. Close it, as trimesh.repair.fill_holes or Blender does."
+            f"the mesh is open: it has {open_edges.size} edges with one face, the first from "
+            f"{_point_text(vertices[start_vertex])} to {_point_text(vertices[end_vertex])} m. Close it, as "
+            "trimesh.repair.fill_holes or Blender does."
         )
 
 
-def _at(point: np.ndarray) -> str:
-    return f"({', '.join(f'{part:.4g}' for part in point)})"
+def _point_text(point: np.ndarray) -> str:
+    return f"({', '.join(f'{coordinate:.4g}' for coordinate in point)})"
 
 
 def pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return the pseudo-normals of each face, its three edges and its three corners, shape (face, 7, 3) [-].
 
-    An edge's is the sum of its faces' normals, a corner's that of all around it, weighted by their angles there.
+    The pseudo-normal of an edge is the sum of the normals of its two faces. That of a corner is the sum of the normals
+    of all faces around it, weighted by their angles at the corner.
+
+    Args:
+        vertices: corners of the mesh, shape (vertex, 3) [m].
+        faces: indices of each triangle's corners, shape (face, 3).
     """
     corners = vertices[faces]
     edges = np.roll(corners, -1, axis=1) - corners
@@ -273,39 +299,45 @@ def pseudo_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     flat = np.cross(edges[:, 0], edges[:, 1])
     flat = flat / np.maximum(np.sqrt((flat**2).sum(axis=1, keepdims=True)), 1e-300)
     cosine = -((edges / length) * np.roll(edges / length, 1, axis=1)).sum(axis=2)
-    around = np.zeros(vertices.shape)
-    np.add.at(around, faces, np.arccos(np.clip(cosine, -1, 1))[:, :, None] * flat[:, None])
+    vertex_normals = np.zeros(vertices.shape)
+    np.add.at(vertex_normals, faces, np.arccos(np.clip(cosine, -1, 1))[:, :, None] * flat[:, None])
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    ways, back = start * len(vertices) + end, end * len(vertices) + start
-    order = np.argsort(ways)
-    other = order[np.searchsorted(ways, back, sorter=order)] // 3
-    found = np.empty((len(faces), 7, 3))
-    found[:, 0] = flat
-    found[:, 1:4] = flat[:, None] + flat[other].reshape(-1, 3, 3)
-    found[:, 4:] = around[faces]
-    return found / np.maximum(np.sqrt((found**2).sum(axis=2, keepdims=True)), 1e-300)
+    edge_keys, reverse_keys = start * len(vertices) + end, end * len(vertices) + start
+    order = np.argsort(edge_keys)
+    neighbour_faces = order[np.searchsorted(edge_keys, reverse_keys, sorter=order)] // 3
+    normals = np.empty((len(faces), 7, 3))
+    normals[:, 0] = flat
+    normals[:, 1:4] = flat[:, None] + flat[neighbour_faces].reshape(-1, 3, 3)
+    normals[:, 4:] = vertex_normals[faces]
+    return normals / np.maximum(np.sqrt((normals**2).sum(axis=2, keepdims=True)), 1e-300)
 
 
 def _middles(count: int) -> np.ndarray:
     """Return the weights of a triangle's corners at the middles of ``count**2`` equal parts, shape (part, 3) [-]."""
     i, j = (a.ravel() for a in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
-    up, down = i + j < count, i + j < count - 1
-    first = np.concatenate([i[up] + 1 / 3, i[down] + 2 / 3]) / count
-    second = np.concatenate([j[up] + 1 / 3, j[down] + 2 / 3]) / count
-    return np.stack([1 - first - second, first, second], axis=1)
+    is_upright, is_inverted = i + j < count, i + j < count - 1
+    weight_1 = np.concatenate([i[is_upright] + 1 / 3, i[is_inverted] + 2 / 3]) / count
+    weight_2 = np.concatenate([j[is_upright] + 1 / 3, j[is_inverted] + 2 / 3]) / count
+    return np.stack([1 - weight_1 - weight_2, weight_1, weight_2], axis=1)
 
 
 @part
-def _dot(ax, ay, az, bx, by, bz):
-    return ax * bx + ay * by + az * bz
+def _dot(x1, y1, z1, x2, y2, z2):
+    return x1 * x2 + y1 * y2 + z1 * z2
 
 
 @part
-def _nearest(px, py, pz, t):
-    """Return the shares of the second and third corner at a triangle's point nearest to a point, and what that is on.
+def _nearest_point(px, py, pz, t):
+    """Return two barycentric weights of a triangle's point nearest to a point, and the feature that it lies on.
 
-    0 is the face, 1 to 3 the edges after its corners, 4 to 6 the corners; by the regions of Voronoi (Ericson 2005,
-    section 5.1.5).
+    The weights are those of the second and third corner. Features: 0 is the face, 1 to 3 are the edges after its
+    corners, 4 to 6 the corners. By the regions of Voronoi (Ericson 2005, section 5.1.5).
+
+    Args:
+        px: x of the point.
+        py: y of the point.
+        pz: z of the point.
+        t: corners of the triangle, shape (corner, axis).
     """
     ux, uy, uz = t[1, 0] - t[0, 0], t[1, 1] - t[0, 1], t[1, 2] - t[0, 2]
     vx, vy, vz = t[2, 0] - t[0, 0], t[2, 1] - t[0, 1], t[2, 2] - t[0, 2]
@@ -331,22 +363,34 @@ def _nearest(px, py, pz, t):
     if a <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
         w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
         return 1.0 - w, w, 2
-    whole = a + b + c
-    return b / whole, c / whole, 0
+    total = a + b + c
+    return b / total, c / total, 0
 
 
 @part
-def _span(low, high, reach, start, h, count):
-    """Return first and end of the points of a line that lie within a reach of a stretch."""
-    return max(int(np.ceil((low - reach - start) / h)), 0), min(int(np.floor((high + reach - start) / h)) + 1, count)
+def _span(lower_bound, upper_bound, reach, start, h, count):
+    """Return the first point of a line that lies within a reach of an interval, and the point after the last.
+
+    Args:
+        lower_bound: of the interval.
+        upper_bound: of the interval.
+        reach: distance around it.
+        start: coordinate of the line's first point.
+        h: distance of the points.
+        count: points of the line.
+    """
+    return max(int(np.ceil((lower_bound - reach - start) / h)), 0), min(
+        int(np.floor((upper_bound + reach - start) / h)) + 1, count
+    )
 
 
 @threaded
-def paint_mesh(out, x, y, z, corners, normals, reach, h):
+def paint_mesh(window_field, x, y, z, corners, normals, reach, h):
     """Write signed distance and normal (3) of a mesh to a window, shape (4, z, y, x).
 
     Args:
-        out: where to, zeros; beyond ``reach`` the normal stays so, and the distance is plus or minus ``reach``.
+        window_field: array to write to, zeros; beyond ``reach`` the normal stays zero, and the distance is plus or
+            minus ``reach``.
         x: coordinates of the points, ``h`` apart.
         y: coordinates of the points, ``h`` apart.
         z: coordinates of the points.
@@ -355,11 +399,11 @@ def paint_mesh(out, x, y, z, corners, normals, reach, h):
         reach: distance up to which both are exact.
         h: distance of the points.
     """
-    for n in prange(out.shape[1]):
+    for n in prange(window_field.shape[1]):
         q = signed(n)
-        for j in range(out.shape[2]):
-            for i in range(out.shape[3]):
-                out[0, q, j, i] = reach
+        for j in range(window_field.shape[2]):
+            for i in range(window_field.shape[3]):
+                window_field[0, q, j, i] = reach
         for f in range(corners.shape[0]):
             t = corners[f]
             if z[q] < min(t[0, 2], t[1, 2], t[2, 2]) - reach or z[q] > max(t[0, 2], t[1, 2], t[2, 2]) + reach:
@@ -368,35 +412,44 @@ def paint_mesh(out, x, y, z, corners, normals, reach, h):
             i0, i1 = _span(min(t[0, 0], t[1, 0], t[2, 0]), max(t[0, 0], t[1, 0], t[2, 0]), reach, x[0], h, x.size)
             for j in range(j0, j1):
                 for i in range(i0, i1):
-                    v, w, on = _nearest(x[i], y[j], z[q], t)
+                    v, w, feature = _nearest_point(x[i], y[j], z[q], t)
                     u = 1.0 - v - w
                     dx = x[i] - (u * t[0, 0] + v * t[1, 0] + w * t[2, 0])
                     dy = y[j] - (u * t[0, 1] + v * t[1, 1] + w * t[2, 1])
                     dz = z[q] - (u * t[0, 2] + v * t[1, 2] + w * t[2, 2])
-                    away = np.sqrt(dx * dx + dy * dy + dz * dz)
-                    if away >= abs(out[0, q, j, i]):
+                    distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+                    if distance >= abs(window_field[0, q, j, i]):
                         continue
-                    side = dx * normals[f, on, 0] + dy * normals[f, on, 1] + dz * normals[f, on, 2]
-                    off = away if side >= 0.0 else -away
-                    out[0, q, j, i] = off
-                    if away > 1e-9 * h:
-                        out[1, q, j, i], out[2, q, j, i], out[3, q, j, i] = dx / off, dy / off, dz / off
+                    side = dx * normals[f, feature, 0] + dy * normals[f, feature, 1] + dz * normals[f, feature, 2]
+                    signed_distance = distance if side >= 0.0 else -distance
+                    window_field[0, q, j, i] = signed_distance
+                    if distance > 1e-9 * h:
+                        window_field[1, q, j, i] = dx / signed_distance
+                        window_field[2, q, j, i] = dy / signed_distance
+                        window_field[3, q, j, i] = dz / signed_distance
                     else:
                         for d in range(3):
-                            out[1 + d, q, j, i] = normals[f, on, d]
-        for j in range(out.shape[2]):
-            _fill_row(out, q, j, reach)
+                            window_field[1 + d, q, j, i] = normals[f, feature, d]
+        for j in range(window_field.shape[2]):
+            _fill_row(window_field, q, j, reach)
 
 
 @part
-def _fill_row(out, q, j, reach):
-    """Give the points of a row that no triangle reached the sign of their neighbour that one did."""
-    inside, known = False, False
-    for i in range(out.shape[3]):
-        if abs(out[0, q, j, i]) < reach:
-            if not known and out[0, q, j, i] < 0.0:
+def _fill_row(window_field, q, j, reach):
+    """Give the points of a row that no triangle reached the sign of a neighbour that a triangle reached.
+
+    Args:
+        window_field: distance and normal, shape (4, z, y, x).
+        q: index of the row along z.
+        j: index of the row along y.
+        reach: absolute distance of the points that no triangle reached.
+    """
+    is_inside, is_known = False, False
+    for i in range(window_field.shape[3]):
+        if abs(window_field[0, q, j, i]) < reach:
+            if not is_known and window_field[0, q, j, i] < 0.0:
                 for k in range(i):
-                    out[0, q, j, k] = -reach
-            inside, known = out[0, q, j, i] < 0.0, True
-        elif inside:
-            out[0, q, j, i] = -reach
+                    window_field[0, q, j, k] = -reach
+            is_inside, is_known = window_field[0, q, j, i] < 0.0, True
+        elif is_inside:
+            window_field[0, q, j, i] = -reach

@@ -39,9 +39,10 @@ class MidlineState:
     heading_rate: np.ndarray
     """Rate of the heading [rad/s]."""
     half_width_rate: np.ndarray | None = None
-    """Rate of the half-width, or None if it stays [m/s]."""
+    """Rate of the half-width, or None if it is constant [m/s]."""
 
     def __post_init__(self) -> None:
+        """Refuse arrays that do not fit each other, are not finite, or have a negative half-width."""
         if self.x.ndim != 1 or self.x.size < 3:
             raise InvalidDesign(f"the midline has shape {self.x.shape}; give at least 3 stations in one row.")
         for name in ("x", "y", "heading", "half_width", "x_rate", "y_rate", "heading_rate", "half_width_rate"):
@@ -63,7 +64,7 @@ class MidlineState:
 
     @property
     def swell(self) -> np.ndarray:
-        """Rate of the half-width, zero if it stays [m/s]."""
+        """Rate of the half-width, zero if it is constant [m/s]."""
         return np.zeros(self.x.size) if self.half_width_rate is None else self.half_width_rate.astype(np.float64)
 
     @property
@@ -99,50 +100,54 @@ MOST_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
 
-def check_cuts(cuts: tuple[float, ...], what: str) -> None:
+def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
     """Refuse cuts that divide nothing.
+
+    Args:
+        cuts: arc lengths at which a body is divided [m].
+        body_kind: what the body is called in messages.
 
     Raises:
         InvalidDesign: they do not rise from 0, or are too many.
     """
-    if not all(isfinite(cut) for cut in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
-        raise InvalidDesign(f"the cuts of a {what} are at {cuts} m; give rising arc lengths above 0.")
+    if not all(isfinite(arc) for arc in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
+        raise InvalidDesign(f"the cuts of a {body_kind} are at {cuts} m; give rising arc lengths above 0.")
     if len(cuts) >= MOST_PARTS:
-        raise InvalidDesign(f"a {what} has {len(cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
+        raise InvalidDesign(f"a {body_kind} has {len(cuts)} cuts; up to {MOST_PARTS - 1} are allowed.")
 
 
 class Remembered:
-    """A midline over time that remembers what it was, and where: a step asks for the same times often."""
+    """A midline over time that caches its last states: a step needs the midline at the same times often."""
 
     LAST = 4
-    """Times that are remembered [-]."""
+    """Number of times that are cached [-]."""
 
     def __init__(self, spine: Callable[[float], MidlineState]) -> None:
-        self._spine, self._known = spine, dict[float, MidlineState]()
-        self._placed: tuple[float, Pose, MidlineState] | None = None
+        self._spine, self._states = spine, dict[float, MidlineState]()
+        self._world_state: tuple[float, Pose, MidlineState] | None = None
 
     def __call__(self, time: float) -> MidlineState:
-        """Return the midline at a time [s]; its arrays are its own, whatever becomes of those that were given."""
-        if time not in self._known:
+        """Return the midline at a time [s]; its arrays are copies."""
+        if time not in self._states:
             state = copy(self._spine(time))
-            for one in fields(state):
-                if (values := getattr(state, one.name)) is not None:
-                    object.__setattr__(state, one.name, values.copy())
-            if len(self._known) == self.LAST:
-                del self._known[next(iter(self._known))]
-            self._known[time] = state
-        return self._known[time]
+            for attribute in fields(state):
+                if (values := getattr(state, attribute.name)) is not None:
+                    object.__setattr__(state, attribute.name, values.copy())
+            if len(self._states) == self.LAST:
+                del self._states[next(iter(self._states))]
+            self._states[time] = state
+        return self._states[time]
 
     def placed(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time [s] in the world; its arrays are to be read only."""
-        if self._placed is None or self._placed[:2] != (time, pose):
-            self._placed = time, pose, self(time).placed(pose)
-        return self._placed[2]
+        if self._world_state is None or self._world_state[:2] != (time, pose):
+            self._world_state = time, pose, self(time).placed(pose)
+        return self._world_state[2]
 
     def forget(self) -> None:
-        """Ask anew from now on: the body has become another."""
-        self._known.clear()
-        self._placed = None
+        """Clear the cache, because the body has changed."""
+        self._states.clear()
+        self._world_state = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,8 +159,7 @@ class Midline(Shape):
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
-    [m]."""
+    """Arc lengths, from the first station, at which the body is divided into the parts of ``Record.along`` [m]."""
 
     def __post_init__(self) -> None:
         check_cuts(self.cuts, "midline")
@@ -170,40 +174,48 @@ class Midline(Shape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
-    def _placed(self, time: float, pose: Pose) -> MidlineState:
+    def _world_midline(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time in the world."""
         spine = self.spine
         return spine.placed(time, pose) if isinstance(spine, Remembered) else spine(time).placed(pose)
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
-        placed = self._placed(time, pose)
+        midline = self._world_midline(time, pose)
         h = (x[-1] - x[0]) / (x.size - 1)
-        field = Field(*paint(placed.rows, placed.swell, x[0], y[0], h, x.size, y.size, float(reach)))
+        field = Field(*paint(midline.rows, midline.swell, x[0], y[0], h, x.size, y.size, float(reach)))
         if self.cuts:
-            field.part = self._nearest_parts(placed, x, y, field.distance < reach)
+            field.part = self._nearest_parts(midline, x, y, field.distance < reach)
         return field
 
-    def _nearest_parts(self, placed: MidlineState, x: np.ndarray, y: np.ndarray, near: np.ndarray) -> np.ndarray:
-        """Return which part holds the section through each point of a window, in the body and near it."""
-        rows, columns = np.nonzero(near)
+    def _nearest_parts(self, midline: MidlineState, x: np.ndarray, y: np.ndarray, is_near: np.ndarray) -> np.ndarray:
+        """Return the part whose section passes through each point of a window near the body; 0 elsewhere.
+
+        Args:
+            midline: in the world.
+            x: coordinates of the window's columns [m].
+            y: coordinates of the window's rows [m].
+            is_near: which points are in or near the body, shape (y, x).
+        """
+        rows, columns = np.nonzero(is_near)
         px, py = x[columns], y[rows]
-        k = KDTree(np.column_stack([placed.x, placed.y])).query(np.column_stack([px, py]))[1]
-        along = (px - placed.x[k]) * np.cos(placed.heading[k]) + (py - placed.y[k]) * np.sin(placed.heading[k])
-        part = np.zeros(near.shape)
-        part[rows, columns] = np.searchsorted(self.cuts, placed.arc[k] + along, side="right")
-        return part
+        k = KDTree(np.column_stack([midline.x, midline.y])).query(np.column_stack([px, py]))[1]
+        heading = midline.heading[k]
+        axial_offset = (px - midline.x[k]) * np.cos(heading) + (py - midline.y[k]) * np.sin(heading)
+        part_index = np.zeros(is_near.shape)
+        part_index[rows, columns] = np.searchsorted(self.cuts, midline.arc[k] + axial_offset, side="right")
+        return part_index
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
         """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
-        placed = self._placed(time, pose)
-        return np.column_stack([np.interp(arc, placed.arc, line) for line in (placed.x, placed.y)])
+        midline = self._world_midline(time, pose)
+        return np.column_stack([np.interp(arc, midline.arc, line) for line in (midline.x, midline.y)])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the outline's edges, long edges split."""
-        placed = self._placed(time, pose)
-        outline = ring(placed.rows)
-        n, arc = placed.x.size, placed.arc
+        midline = self._world_midline(time, pose)
+        outline = ring(midline.rows)
+        n, arc = midline.x.size, midline.arc
         station = np.concatenate([arc, arc[::-1]])
         nxt = np.roll(outline, -1, axis=1)
         length = np.hypot(*(nxt - outline))
@@ -211,35 +223,35 @@ class Midline(Shape):
         parts = np.maximum(1, np.round(length[edge] / spacing)).astype(int)
         edge = np.repeat(edge, parts)
         count = np.repeat(parts, parts)
-        part = (np.arange(count.size) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / count
-        point = outline[:, edge] * (1 - part) + nxt[:, edge] * part
-        along = nxt[:, edge] - outline[:, edge]
-        normal = np.array([along[1], -along[0]]) / length[edge]
-        s = station[edge] * (1 - part) + np.roll(station, -1)[edge] * part
+        fraction = (np.arange(count.size) - np.repeat(np.cumsum(parts) - parts, parts) + 0.5) / count
+        point = outline[:, edge] * (1 - fraction) + nxt[:, edge] * fraction
+        edge_vector = nxt[:, edge] - outline[:, edge]
+        normal = np.array([edge_vector[1], -edge_vector[0]]) / length[edge]
+        s = station[edge] * (1 - fraction) + np.roll(station, -1)[edge] * fraction
         side = np.where(edge < n - 1, -1.0, np.where((edge >= n) & (edge < 2 * n - 1), 1.0, 0.0))
         guess = np.where(edge < n, edge, 2 * n - 1 - edge)
-        vx, vy, spin = sections(point, guess, placed.rows, placed.swell)
-        part_of = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
+        vx, vy, spin = sections(point, guess, midline.rows, midline.swell)
+        part_index = np.searchsorted(self.cuts, s, side="right") if self.cuts else None
         return Markers(
             points=point, share=length[edge] / count, velocities=np.array([vx, vy]), normals=normal, spins=spin[None],
-            part=part_of, station=s, side=side,
+            part=part_index, station=s, side=side,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        outline = ring(self._placed(time, pose).rows)
+        outline = ring(self._world_midline(time, pose).rows)
         return (
             float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
         )  # fmt: skip
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the midline, but for its ends where they are round: wider than the way to the tip is long."""
-        placed = self._placed(time, pose)
-        to_tip = np.minimum(placed.arc, placed.arc[-1] - placed.arc)
-        slim = np.flatnonzero(placed.half_width < to_tip)
-        if slim.size < 2:
+        """Return the midline without its round ends, where the half-width is larger than the distance to the tip."""
+        midline = self._world_midline(time, pose)
+        to_tip = np.minimum(midline.arc, midline.arc[-1] - midline.arc)
+        slender_stations = np.flatnonzero(midline.half_width < to_tip)
+        if slender_stations.size < 2:
             return None
-        return np.array([placed.x, placed.y])[:, slim[0] : slim[-1] + 1]
+        return np.array([midline.x, midline.y])[:, slender_stations[0] : slender_stations[-1] + 1]
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""

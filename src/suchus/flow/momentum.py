@@ -2,12 +2,12 @@
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """Forces on bodies from the momentum that the immersion itself exchanges with the water.
 
-In each step the immersion changes the momentum of the cells in and around a body by a known amount. What of it does
-not go into the momentum of the region that the body fills is what the body gives to the water: the balance of the
-discrete equations is exact, whatever the wall looks like between the nodes. Angular momentum gives the torque and
-energy the power in the same way. The immersion holds a skin ``wall_offset`` thick with the body; it counts as water.
-With it as a part of the body the torque of a turning cylinder is 6 % off at 32 cells a diameter, without 0.8 %. (The
-inertia of a translating one, whose skin also keeps the water away, comes out 2 to 3 % too large.)
+In each step the immersion changes the momentum of the cells in and around a body by a known amount. One part of it
+changes the momentum of the region that the body fills; the body gives the rest to the water. This balance is exact for
+the discrete equations, whatever the wall looks like between the nodes. Angular momentum gives the torque and energy the
+power in the same way. The immersion moves a skin of thickness ``wall_offset`` with the body; the skin counts as water.
+If it counted as body, the torque of a turning cylinder would be wrong by 6 % at 32 cells a diameter; as water it is
+wrong by 0.8 %. (The inertia of a translating cylinder, whose skin also keeps the water away, is 2 to 3 % too large.)
 """
 
 from dataclasses import dataclass
@@ -21,219 +21,294 @@ from suchus.flow.slab import row_length
 
 
 def sums_of(axes: int) -> int:
-    """Return how many sums are kept per body: momentum, angular momentum (in the plane that about z), energy."""
+    """Return the number of sums per body: momentum, angular momentum (in the plane only about z), energy."""
     return axes + len(TURNS[axes]) + 1
 
 
 def contents_of(axes: int) -> int:
-    """Return how much is kept of a body's region: the sums of its motion, its volume and its first moments."""
+    """Return the number of sums per body's region: the sums of its motion, its volume and its first moments."""
     return sums_of(axes) + 1 + axes
 
 
 @part
-def _about_z(up):
-    """Return where the angular momentum about z is kept; those about x and y, in space, stand before it."""
-    return up + 1 if up == 1 else up + 3
+def _spin_column(slab_axis):
+    """Return the column of the angular momentum about z; in space those about x and y come before it."""
+    return slab_axis + 1 if slab_axis == 1 else slab_axis + 3
 
 
 @part
-def _tilt(sums, m, component, x, y, z, given):
-    """Add the angular momentum about x and about y that a component of a momentum has at a place in space."""
+def _tilt(sums, m, component, x, y, z, impulse):
+    """Add the angular momentum about x and about y of an impulse along one axis at a place in space.
+
+    Args:
+        sums: shape (body, ``sums_of``).
+        m: row of the body.
+        component: axis of the impulse.
+        x: place [cells].
+        y: place [cells].
+        z: place [cells].
+        impulse: along the axis.
+    """
     if component == 0:
-        sums[m, 4] += z * given
+        sums[m, 4] += z * impulse
     elif component == 1:
-        sums[m, 3] += -z * given
+        sums[m, 3] += -z * impulse
     else:
-        sums[m, 3] += y * given
-        sums[m, 4] += -x * given
+        sums[m, 3] += y * impulse
+        sums[m, 4] += -x * impulse
 
 
 @compiled
-def collect(sums, out, blend, raw, mean, passage, mu1, p, owner, component, place, inner, dt, keep):
-    """Add to ``sums`` (body, ``sums_of``) what the immersion gave to one component of the velocity in one stage.
+def collect(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
+    """Add the impulse of the immersion on one component of the velocity in one stage, with its moments and energy.
 
-    ``mean`` is the body's velocity in the window, mean of the step's start and end: with that of the end alone the
-    power is too large by half the work of the added mass in a step. The sums are of m/s per cell; lengths for the
-    moments are in cells from the grid's corner. ``mean``, ``raw``, ``mu1`` and ``owner`` are arrays of the window; see
-    ``slab``.
+    ``mean``, ``raw``, ``mu1`` and ``owner`` are near arrays, those of the window; see ``slab``. The mean velocity is
+    needed: with that of the step's end alone the power is too large by half the work of the added mass in a step.
+
+    Args:
+        sums: shape (body, ``sums_of``), to add to [m/s per cell; moments about the grid's corner, lengths in cells].
+        velocity: the component after the stage [m/s].
+        blend: the component at the last stage [m/s].
+        raw: the fluid's own update without the pressure [m/s].
+        mean: the bodies' velocity, mean of the step's start and end [m/s].
+        passage: fraction of the pressure's gradient that acts on the faces [-].
+        mu1: first moments of the kernel, shape (axis, slab, cell).
+        p: pressure over density.
+        owner: part of the bodies that each face belongs to [-].
+        component: axis of the component.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        inner: strides within a slab.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stayed [-].
     """
-    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
-    wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
-    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (-1, 2)
-    c0, c1 = place[3 * up + 2], place[3 * up + 3]
-    for j in range(place[w] + 1, place[w + 1] - 1):
+    slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
+    r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (-1, 2)
+    c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
+    for j in range(layout[w] + 1, layout[w + 1] - 1):
         for row in range(r0 + 1, r1 - 1):
             for i in range(c0 + 1, c1 - 1):
-                k = row * wide + i
-                at = (row - r0) * columns + i - c0 if up > 1 else i - c0
-                touched = passage[j, k] < 1
-                for d in range(up + 1):
-                    touched = touched or mu1[d, j - place[w], at] != 0
-                if not touched:
+                k = row * row_cells + i
+                index = (row - r0) * columns + i - c0 if slab_axis > 1 else i - c0
+                is_immersed = passage[j, k] < 1
+                for d in range(slab_axis + 1):
+                    is_immersed = is_immersed or mu1[d, j - layout[w], index] != 0
+                if not is_immersed:
                     continue
-                before = p[j - 1, k]
-                for d in range(up):
-                    before = p[j, k - signed(inner[d])] if component == d else before
-                rise = np.float64(p[j, k]) - before
-                moved = (np.float64(out[j, k]) - keep * np.float64(blend[j, k])) / (1.0 - keep)
-                given = moved - raw[j - place[w], at] + dt * rise
-                m, y = owner[j - place[w], at], (row if up > 1 else j) - PAD + 0.5
-                sums[m, component] += given
+                pressure_before = p[j - 1, k]
+                for d in range(slab_axis):
+                    pressure_before = p[j, k - signed(inner[d])] if component == d else pressure_before
+                rise = np.float64(p[j, k]) - pressure_before
+                immersed_velocity = (np.float64(velocity[j, k]) - keep * np.float64(blend[j, k])) / (1.0 - keep)
+                impulse = immersed_velocity - raw[j - layout[w], index] + dt * rise
+                m, y = owner[j - layout[w], index], (row if slab_axis > 1 else j) - PAD + 0.5
+                sums[m, component] += impulse
                 if component == 0:
-                    sums[m, turn] += -y * given
+                    sums[m, turn] += -y * impulse
                 elif component == 1:
-                    sums[m, turn] += (i - PAD + 0.5) * given
-                if up > 1:
-                    _tilt(sums, m, component, i - PAD + 0.5, y, j - PAD + 0.5, given)
-                sums[m, turn + 1] += mean[j - place[w], at] * given
+                    sums[m, turn] += (i - PAD + 0.5) * impulse
+                if slab_axis > 1:
+                    _tilt(sums, m, component, i - PAD + 0.5, y, j - PAD + 0.5, impulse)
+                sums[m, turn + 1] += mean[j - layout[w], index] * impulse
 
 
 @part
-def _to_owners(sums, column, owners, o, at, columns, done):
-    """Add what is done in a cell to the parts that own its faces, to each by as many of these as it has."""
-    axes = len(owners)
-    share = done / (2 * axes)
-    for d in range(axes):
-        behind, beside = (1 if d == axes - 1 else 0), (0 if d == axes - 1 else 1 if d == 0 else columns)
-        sums[owners[d, o, at], column] += share
-        sums[owners[d, o + behind, at + beside], column] += share
+def _add_to_owners(sums, column, owners, o, index, columns, contribution):
+    """Add a cell's contribution to the parts that own its faces, an equal amount for each face.
 
-
-@compiled
-def dilatation_work(sums, p, source, owners, place, inner, dt):
-    """Take from the energy what the pressure does on the divergence of the bodies' own motion inside them."""
-    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
-    wide, columns = signed(row_length(inner, p.shape[1])), place[3 * up + 3] - place[3 * up + 2] + 1
-    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
-    c0, c1 = place[3 * up + 2], place[3 * up + 3]
-    for j in range(place[w], place[w + 1]):
-        for row in range(r0, r1):
-            for i in range(c0, c1):
-                o, at = j - place[w], (row - r0) * columns + i - c0
-                if source[o, at] != 0:
-                    done = dt * np.float64(p[j, row * wide + i]) * source[o, at]
-                    _to_owners(sums, turn + 1, owners, o, at, columns, done)
-
-
-@compiled
-def pressed(sums, p, mu0, owners, place, near, inner, weight):
-    """Add to ``sums`` (body, 1 + axes) what the pressure does inside the region of each body, times a weight.
-
-    Columns: the pressure summed over its cells, each by the body's share, and its first moments from the grid's corner
-    [.., .. cells]. What lies in the window of ``place`` counts; ``owners``, one for each axis, are arrays of the window
-    ``near``.
+    Args:
+        sums: shape (body, column).
+        column: column to add to.
+        owners: part that each face belongs to, shape (axis, slab, cell), near arrays.
+        o: slab in the window.
+        index: cell in the slab of the window.
+        columns: cells along a row of the window.
+        contribution: of the cell.
     """
-    up, w = len(inner), len(inner) + 2
-    wide, columns = signed(row_length(inner, p.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
-    n0, n1 = near[w + 2] if up > 1 else 0, near[3 * up + 2]
-    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
-    c0, c1 = place[3 * up + 2], place[3 * up + 3]
-    for j in range(place[w], place[w + 1]):
-        for row in range(r0, r1):
-            for i in range(c0, c1):
-                k = row * wide + i
-                wet = np.float64(mu0[up, j, k]) + mu0[up, j + 1, k]
-                for d in range(up):
-                    wet += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
-                share = 1.0 - wet / (2 * up + 2)
-                if share <= 0.0:
-                    continue
-                o, at = j - near[w], (row - n0) * columns + i - n1
-                done = weight * share * np.float64(p[j, k])
-                _to_owners(sums, 0, owners, o, at, columns, done)
-                _to_owners(sums, 1, owners, o, at, columns, done * (i - PAD + 0.5))
-                _to_owners(sums, 2, owners, o, at, columns, done * ((row if up > 1 else j) - PAD + 0.5))
-                if up > 1:
-                    _to_owners(sums, 3, owners, o, at, columns, done * (j - PAD + 0.5))
+    axes = len(owners)
+    face_contribution = contribution / (2 * axes)
+    for d in range(axes):
+        slab_step, cell_step = (1 if d == axes - 1 else 0), (0 if d == axes - 1 else 1 if d == 0 else columns)
+        sums[owners[d, o, index], column] += face_contribution
+        sums[owners[d, o + slab_step, index + cell_step], column] += face_contribution
 
 
 @compiled
-def parted(sums, p, mu0, owners, place, near, inner, weight):
-    """Take from ``sums`` (body, ``sums_of``) what the pressure inside bodies does across joints of their links.
+def dilatation_work(sums, p, source, owners, layout, inner, dt):
+    """Subtract from the energy the work of the pressure on the divergence of the bodies' own motion inside them.
 
-    A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure that
-    stands there pushes these apart: it cancels in their sum, and works where they turn against each other. By the
-    share of the cell in the body this is what ``dilatation_work`` takes from the power. In space only; see ``pressed``.
+    Args:
+        sums: shape (body, ``sums_of``), to change.
+        p: pressure over density.
+        source: divergence of the bodies' own motion, near array.
+        owners: part that each face belongs to, one near array for each axis.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        inner: strides within a slab.
+        dt: length of the step [cells per (m/s)].
+    """
+    slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
+    r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
+    c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
+    for j in range(layout[w], layout[w + 1]):
+        for row in range(r0, r1):
+            for i in range(c0, c1):
+                o, index = j - layout[w], (row - r0) * columns + i - c0
+                if source[o, index] != 0:
+                    work = dt * np.float64(p[j, row * row_cells + i]) * source[o, index]
+                    _add_to_owners(sums, turn + 1, owners, o, index, columns, work)
+
+
+@compiled
+def pressed(sums, p, mu0, owners, layout, near_layout, inner, weight):
+    """Add the integral of the pressure inside the region of each body and its first moments, times a weight.
+
+    Args:
+        sums: shape (body, 1 + axes), to add to: the pressure summed over the cells, each by the body's fraction, and
+            its first moments about the grid's corner [.., .. cells].
+        p: pressure over density.
+        mu0: fluid fraction of the faces, shape (axis, slab, cell).
+        owners: part that each face belongs to, one near array for each axis.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab.
+        weight: factor of all sums.
+    """
+    slab_axis, w = len(inner), len(inner) + 2
+    row_cells = signed(row_length(inner, p.shape[1]))
+    columns = near_layout[3 * slab_axis + 3] - near_layout[3 * slab_axis + 2] + 1
+    n0, n1 = near_layout[w + 2] if slab_axis > 1 else 0, near_layout[3 * slab_axis + 2]
+    r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
+    c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
+    for j in range(layout[w], layout[w + 1]):
+        for row in range(r0, r1):
+            for i in range(c0, c1):
+                k = row * row_cells + i
+                mu0_sum = np.float64(mu0[slab_axis, j, k]) + mu0[slab_axis, j + 1, k]
+                for d in range(slab_axis):
+                    mu0_sum += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
+                body_fraction = 1.0 - mu0_sum / (2 * slab_axis + 2)
+                if body_fraction <= 0.0:
+                    continue
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
+                weighted_pressure = weight * body_fraction * np.float64(p[j, k])
+                _add_to_owners(sums, 0, owners, o, index, columns, weighted_pressure)
+                _add_to_owners(sums, 1, owners, o, index, columns, weighted_pressure * (i - PAD + 0.5))
+                _add_to_owners(
+                    sums, 2, owners, o, index, columns, weighted_pressure * ((row if slab_axis > 1 else j) - PAD + 0.5)
+                )
+                if slab_axis > 1:
+                    _add_to_owners(sums, 3, owners, o, index, columns, weighted_pressure * (j - PAD + 0.5))
+
+
+@compiled
+def parted(sums, p, mu0, owners, layout, near_layout, inner, weight):
+    """Subtract from the sums what the pressure inside bodies does across joints of their links.
+
+    A body has no pressure inside. Where a cell's two faces across an axis belong to two links, the pressure in the cell
+    pushes these links apart. It cancels in their sum, and it does work where they turn against each other. By the
+    body's fraction of the cell this is what ``dilatation_work`` takes from the power. In space only.
+
+    Args:
+        sums: shape (body, ``sums_of``), to change.
+        p: see ``pressed``.
+        mu0: see ``pressed``.
+        owners: see ``pressed``.
+        layout: see ``pressed``.
+        near_layout: see ``pressed``.
+        inner: see ``pressed``.
+        weight: see ``pressed``.
     """
     w = len(inner) + 2
-    wide, columns = signed(row_length(inner, p.shape[1])), near[9] - near[8] + 1
-    n0, n1 = near[w + 2], near[8]
-    for j in range(place[w], place[w + 1]):
-        for row in range(place[w + 2], place[w + 3]):
-            for i in range(place[8], place[9]):
-                o, at = j - near[w], (row - n0) * columns + i - n1
-                left, right = owners[0, o, at], owners[0, o, at + 1]
-                before, behind = owners[1, o, at], owners[1, o, at + columns]
-                low, high = owners[2, o, at], owners[2, o + 1, at]
-                if left == right and before == behind and low == high:
+    row_cells, columns = signed(row_length(inner, p.shape[1])), near_layout[9] - near_layout[8] + 1
+    n0, n1 = near_layout[w + 2], near_layout[8]
+    for j in range(layout[w], layout[w + 1]):
+        for row in range(layout[w + 2], layout[w + 3]):
+            for i in range(layout[8], layout[9]):
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
+                owner_left, owner_right = owners[0, o, index], owners[0, o, index + 1]
+                owner_front, owner_back = owners[1, o, index], owners[1, o, index + columns]
+                owner_below, owner_above = owners[2, o, index], owners[2, o + 1, index]
+                if owner_left == owner_right and owner_front == owner_back and owner_below == owner_above:
                     continue
-                k = row * wide + i
-                wet = np.float64(mu0[2, j, k]) + mu0[2, j + 1, k]
+                k = row * row_cells + i
+                mu0_sum = np.float64(mu0[2, j, k]) + mu0[2, j + 1, k]
                 for d in range(2):
-                    wet += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
-                share = 1.0 - wet / 6
-                if share <= 0.0:
+                    mu0_sum += np.float64(mu0[d, j, k]) + mu0[d, j, k + signed(inner[d])]
+                body_fraction = 1.0 - mu0_sum / 6
+                if body_fraction <= 0.0:
                     continue
-                push = weight * share * np.float64(p[j, k])
+                push = weight * body_fraction * np.float64(p[j, k])
                 x, y, z = i - PAD + 0.5, row - PAD + 0.5, j - PAD + 0.5
-                for m, way in ((left, -push), (right, push)):
-                    sums[m, 0] += way
-                    sums[m, 4] += z * way
-                    sums[m, 5] += -y * way
-                for m, way in ((before, -push), (behind, push)):
-                    sums[m, 1] += way
-                    sums[m, 3] += -z * way
-                    sums[m, 5] += x * way
-                for m, way in ((low, -push), (high, push)):
-                    sums[m, 2] += way
-                    sums[m, 3] += y * way
-                    sums[m, 4] += -x * way
+                for m, force in ((owner_left, -push), (owner_right, push)):
+                    sums[m, 0] += force
+                    sums[m, 4] += z * force
+                    sums[m, 5] += -y * force
+                for m, force in ((owner_front, -push), (owner_back, push)):
+                    sums[m, 1] += force
+                    sums[m, 3] += -z * force
+                    sums[m, 5] += x * force
+                for m, force in ((owner_below, -push), (owner_above, push)):
+                    sums[m, 2] += force
+                    sums[m, 3] += y * force
+                    sums[m, 4] += -x * force
 
 
 @compiled
-def contents(sums, b, mu0, owner, component, place, near, inner):
-    """Add to ``sums`` (body, ``contents_of``) what the region of each body holds of one component of the velocity.
+def contents(sums, b, mu0, owner, component, layout, near_layout, inner):
+    """Add what the region of each body holds of one component of the velocity.
 
-    Columns: the sums of its motion, its volume and first moments [m/s, m^2/s^2, cells]. What lies in the window of
-    ``place`` counts; ``b`` and ``owner`` are arrays of the window ``near``.
+    Args:
+        sums: shape (body, ``contents_of``), to add to: the sums of its motion, its volume and first moments [m/s,
+            m^2/s^2, cells].
+        b: the bodies' velocity along the component, near array [m/s].
+        mu0: fluid fraction of the component's faces.
+        owner: part that each face belongs to, near array.
+        component: axis of the component.
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab.
     """
-    up, w, turn = len(inner), len(inner) + 2, _about_z(len(inner))
-    wide, columns = signed(row_length(inner, mu0.shape[1])), near[3 * up + 3] - near[3 * up + 2] + 1
-    n0, n1 = near[w + 2] if up > 1 else 0, near[3 * up + 2]
-    r0, r1 = (place[w + 2], place[w + 3]) if up > 1 else (0, 1)
-    c0, c1 = place[3 * up + 2], place[3 * up + 3]
-    axes = up + 1
-    for j in range(place[w], place[w + 1]):
+    slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
+    row_cells = signed(row_length(inner, mu0.shape[1]))
+    columns = near_layout[3 * slab_axis + 3] - near_layout[3 * slab_axis + 2] + 1
+    n0, n1 = near_layout[w + 2] if slab_axis > 1 else 0, near_layout[3 * slab_axis + 2]
+    r0, r1 = (layout[w + 2], layout[w + 3]) if slab_axis > 1 else (0, 1)
+    c0, c1 = layout[3 * slab_axis + 2], layout[3 * slab_axis + 3]
+    axes = slab_axis + 1
+    for j in range(layout[w], layout[w + 1]):
         for row in range(r0, r1):
             for i in range(c0, c1):
-                k = row * wide + i
-                share = 1.0 - np.float64(mu0[j, k])
-                if share == 0.0:
+                k = row * row_cells + i
+                body_fraction = 1.0 - np.float64(mu0[j, k])
+                if body_fraction == 0.0:
                     continue
-                o, at = j - near[w], (row - n0) * columns + i - n1
-                m = owner[o, at]
+                o, index = j - near_layout[w], (row - n0) * columns + i - n1
+                m = owner[o, index]
                 x = i - PAD + (0.0 if component == 0 else 0.5)
-                y = (row if up > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
-                held, part_of = share * b[o, at], share / axes
-                sums[m, component] += held
+                y = (row if slab_axis > 1 else j) - PAD + (0.0 if component == 1 else 0.5)
+                momentum, axis_fraction = body_fraction * b[o, index], body_fraction / axes
+                sums[m, component] += momentum
                 if component == 0:
-                    sums[m, turn] += -y * held
+                    sums[m, turn] += -y * momentum
                 elif component == 1:
-                    sums[m, turn] += x * held
-                sums[m, turn + 1] += 0.5 * held * b[o, at]
-                sums[m, turn + 2] += part_of
-                sums[m, turn + 3] += part_of * x
-                sums[m, turn + 4] += part_of * y
-                if up > 1:
+                    sums[m, turn] += x * momentum
+                sums[m, turn + 1] += 0.5 * momentum * b[o, index]
+                sums[m, turn + 2] += axis_fraction
+                sums[m, turn + 3] += axis_fraction * x
+                sums[m, turn + 4] += axis_fraction * y
+                if slab_axis > 1:
                     z = j - PAD + (0.0 if component == 2 else 0.5)
-                    _tilt(sums, m, component, x, y, z, held)
-                    sums[m, turn + 5] += part_of * z
+                    _tilt(sums, m, component, x, y, z, momentum)
+                    sums[m, turn + 5] += axis_fraction * z
 
 
 def skins(
     markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
-    """Return what ``contents`` counts too much: the skin ``offset`` cells thick, which is water, part by part.
+    """Return the contents of the skin of water, ``offset`` cells thick, that ``contents`` counts as body, part by part.
 
     Args:
         markers: of one body.
@@ -244,13 +319,13 @@ def skins(
     """
     axes = len(origin)
     w = offset * markers.share / h ** (axes - 1)
-    place = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
+    position = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
     v = markers.velocities
     square = v[0] ** 2 + v[1] ** 2
     if axes == 3:
         square = square + v[2] ** 2
-    around = (place[a] * v[b] - place[b] * v[a] for a, b in TURNS[axes])
-    columns = (*v, *around, 0.5 * square, np.ones(w.size), *place)
+    angular = (position[a] * v[b] - position[b] * v[a] for a, b in TURNS[axes])
+    columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
     if count == 1 or markers.part is None:
         return (w * np.array(columns)).sum(axis=1)[None]
     return np.stack([np.bincount(markers.part, w * column, count) for column in columns], axis=1)
@@ -258,12 +333,12 @@ def skins(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What the water does to a body, or to each of its parts, mean over a step; in the plane per metre of depth."""
+    """Load of the water on a body, or on each of its parts, mean over a step; in the plane per metre of depth."""
 
     force: np.ndarray
     """Force (x, y) or (x, y, z), shape (..., axis) [N/m, N]."""
     moment: np.ndarray
-    """Torque about the axes through the asked point, (z,) in the plane, counter-clockwise, or (x, y, z), shape
+    """Torque about the axes through a reference point, (z,) in the plane, counter-clockwise, or (x, y, z), shape
     (..., turn) [N, N m]."""
     power: np.ndarray
     """Power that the surface gives to the water, in the frame of the grid, shape (...) [W/m, W]."""
@@ -273,31 +348,37 @@ class Reaction:
         """Torque about z, shape (...) [N, N m]."""
         return self.moment[..., -1]
 
-    def __getitem__(self, which: int | slice) -> "Reaction":
-        """Return that on one or some of several bodies or parts."""
-        return Reaction(force=self.force[which], moment=self.moment[which], power=self.power[which])
+    def __getitem__(self, index: int | slice) -> "Reaction":
+        """Return the loads on one or some of several bodies or parts."""
+        return Reaction(force=self.force[index], moment=self.moment[index], power=self.power[index])
 
-    def whole(self, cut: tuple[bool, ...]) -> "Reaction":
-        """Return that of the whole body, of which this is the part between the mirrors that cut it; see ``body.cuts``.
+    def whole(self, mirror_cuts: tuple[bool, ...]) -> "Reaction":
+        """Return the load on the whole body, if mirrors cut it and this is the load on the part in the domain.
 
         Forces through a mirror, and torques about the axes in it, vanish.
         """
-        times, across = 2 ** sum(cut), [low or high for low, high in zip(cut[::2], cut[1::2], strict=True)]
-        moved = np.array([0.0 if off else times for off in across])
-        turned = np.array([0.0 if across[a] or across[b] else times for a, b in TURNS[len(across)]])
-        return Reaction(force=moved * self.force, moment=turned * self.moment, power=times * self.power)
+        times, has_mirror = (
+            2 ** sum(mirror_cuts),
+            [
+                has_lower_mirror or has_upper_mirror
+                for has_lower_mirror, has_upper_mirror in zip(mirror_cuts[::2], mirror_cuts[1::2], strict=True)
+            ],
+        )
+        force_factor = np.array([0.0 if is_cut else times for is_cut in has_mirror])
+        moment_factor = np.array([0.0 if has_mirror[a] or has_mirror[b] else times for a, b in TURNS[len(has_mirror)]])
+        return Reaction(force=force_factor * self.force, moment=moment_factor * self.moment, power=times * self.power)
 
 
 def reaction(
-    given: np.ndarray, before: np.ndarray, now: np.ndarray, *, dt: float, push: tuple[float, ...], about: np.ndarray,
-    origin: tuple[float, ...], h: float, density: float,
+    impulse: np.ndarray, start_contents: np.ndarray, end_contents: np.ndarray, *, dt: float,
+    push: tuple[float, ...], about: np.ndarray, origin: tuple[float, ...], h: float, density: float,
 ) -> Reaction:  # fmt: skip
-    """Return the water's action on a body, or on each of its parts, over a step.
+    """Return the mean load of the water on a body, or on each of its parts, over a step.
 
     Args:
-        given: what the immersion gave over the step, shape (..., ``sums_of``) [m/s and so on].
-        before: contents of the region at the start of the step, shape (..., ``contents_of``).
-        now: the same at its end.
+        impulse: sums that the immersion added over the step, shape (..., ``sums_of``) [m/s and so on].
+        start_contents: contents of the region at the start of the step, shape (..., ``contents_of``).
+        end_contents: the same at its end.
         dt: the step [s].
         push: uniform acceleration of the water [m/s^2].
         about: point of the torque, in the frame of the grid [m].
@@ -307,17 +388,19 @@ def reaction(
     """
     axes, turns = len(origin), TURNS[len(origin)]
     energy = axes + len(turns)
-    change, middle = now[..., : energy + 1] - before[..., : energy + 1], 0.5 * (now + before)
+    change = end_contents[..., : energy + 1] - start_contents[..., : energy + 1]
+    mean_contents = 0.5 * (end_contents + start_contents)
     centre = (about - np.array(origin)) / h
-    size, first = middle[..., energy + 1, None], middle[..., energy + 2 :]
-    force = (change[..., :axes] - given[..., :axes]) / dt - size * np.array(push)
+    size, first_moments = mean_contents[..., energy + 1, None], mean_contents[..., energy + 2 :]
+    force = (change[..., :axes] - impulse[..., :axes]) / dt - size * np.array(push)
     moment = [
-        (change[..., axes + n] - given[..., axes + n]) / dt - (first[..., a] * push[b] - first[..., b] * push[a])
+        (change[..., axes + n] - impulse[..., axes + n]) / dt
+        - (first_moments[..., a] * push[b] - first_moments[..., b] * push[a])
         - (centre[a] * force[..., b] - centre[b] * force[..., a])
         for n, (a, b) in enumerate(turns)
     ]  # fmt: skip
-    power, scale = (given[..., energy] - change[..., energy]) / dt, density
-    for d, own in enumerate(push):
-        power = power + own * middle[..., d]
+    power, scale = (impulse[..., energy] - change[..., energy]) / dt, density
+    for d, acceleration in enumerate(push):
+        power = power + acceleration * mean_contents[..., d]
         scale *= h
     return Reaction(force=scale * force, moment=scale * h * np.stack(moment, axis=-1), power=scale * power)

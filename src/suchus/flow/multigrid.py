@@ -42,40 +42,48 @@ from suchus.flow.stencil import (
 )  # fmt: skip
 
 X, B, DINV, FACES = range(4)
-"""What a level holds: solution, right side, inverse diagonal, and from there on face coefficients, axis by axis."""
+"""Kinds of values of a level: solution, right side, inverse diagonal, then face coefficients, axis by axis."""
 
 COARSEST = 32
-"""Most cells along a side of the last level, which is solved by Jacobi steps alone [-]."""
+"""Largest number of cells along a side of the coarsest level, which is solved by Jacobi steps alone [-]."""
 
 LONGEST = 16 * COARSEST
 """Largest number of cells along a side of the coarsest level of a long channel, which takes more steps there [-]."""
 
 LEFT = 0.02
-"""Share of each error that solving the coarsest level leaves [-]. Where it left half of the smoothest, a patch of the
-started cylinder at Re 1000 that stopped after one cycle a stage shook by up to 6 % of its drag."""
+"""Fraction of each error that the solve of the coarsest level leaves [-]. With half of the smoothest error left and one
+cycle a stage, the drag of an impulsively started cylinder in a patch, at Re 1000, oscillated by up to 6 %."""
 
 
 @part
 def _shape(layout, k, inner):
-    """Return how many slabs a level has, and how many cells a slab of it, those around the domain with them."""
+    """Return the number of slabs of a level, and of cells in a slab, both with the padding."""
     rows = layout[k, 2] + 2 * PAD if len(inner) > 1 else 1
     return layout[k, 1] + 2 * PAD, rows * (layout[k, len(inner) + 1] + 2 * PAD)
 
 
 @part
 def level(store, layout, inner, kind, k):
-    """Return the array of one kind on level ``k``; see ``slab`` for the rows of the layout."""
-    high, length = _shape(layout, k, inner)
-    start = layout[k, 0] + kind * high * length
-    return store[start : start + high * length].reshape(high, length)
+    """Return the array of one kind on level ``k``; see ``slab`` for the rows of the layout.
+
+    Args:
+        store: arrays of all levels, end to end.
+        layout: one row for each level; see ``slab``.
+        inner: strides within a slab of level 0.
+        kind: ``X``, ``B`` or ``DINV``.
+        k: level; 0 is the finest.
+    """
+    slab_count, length = _shape(layout, k, inner)
+    start = layout[k, 0] + kind * slab_count * length
+    return store[start : start + slab_count * length].reshape(slab_count, length)
 
 
 @part
 def faces_of(store, layout, inner, k):
     """Return the coefficients of the faces on level ``k``, shape (axis, slab, cell)."""
-    (high, length), axes = _shape(layout, k, inner), len(inner) + 1
-    start = layout[k, 0] + FACES * high * length
-    return store[start : start + axes * high * length].reshape(axes, high, length)
+    (slab_count, length), axes = _shape(layout, k, inner), len(inner) + 1
+    start = layout[k, 0] + FACES * slab_count * length
+    return store[start : start + axes * slab_count * length].reshape(axes, slab_count, length)
 
 
 @part
@@ -86,149 +94,227 @@ def _strides(layout, inner, k):
 
 @part
 def _fold(j, n, periodic):
-    """Return the slab of the domain that slab ``j``, which may lie beyond a wall, is a copy of."""
+    """Return the slab of the domain whose values slab ``j`` has; ``j`` may lie beyond a wall."""
     if periodic:
         return (j - PAD + n) % n + PAD
     return min(max(j, PAD), PAD + n - 1)
 
 
 @part
-def _first(out, o, b, own, rect, slab, inner, repeats):
-    """Write slab ``slab`` after the first smoothing steps to slab ``o`` of ``out``."""
-    first, end = run_of(inner, b.shape[1])
-    first_steps(out, o, NONE, b, slab, inner, first, end)
-    give_slab(out, o, own, rect, slab, inner)
-    seal_slab(out, o, inner, repeats)
+def _first_smoothing(slabs, o, b, patch_values, rect, slab, inner, repeats):
+    """Write the solution in one slab after the first smoothing steps, which start from nothing.
+
+    Args:
+        slabs: work array of slabs, to write to.
+        o: which of its slabs is written.
+        b: right side of the level.
+        patch_values: solution in the patch where more steps are taken; see ``patch``.
+        rect: where the patch lies.
+        slab: slab of the level.
+        inner: strides within a slab.
+        repeats: whether each axis is periodic.
+    """
+    first_cell, end = run_of(inner, b.shape[1])
+    first_steps(slabs, o, NONE, b, slab, inner, first_cell, end)
+    give_slab(slabs, o, patch_values, rect, slab, inner)
+    seal_slab(slabs, o, inner, repeats)
 
 
 @part
-def _sum_rest(coarse, coarse_slab, rest, b, slab, inner, below):
-    """Write to a coarse slab what two slabs of the right side have more than slabs 0 and 1 of ``rest``, summed."""
+def _restrict_residual(coarse, coarse_slab, residual, b, slab, inner, coarse_inner):
+    """Write the summed residual of two slabs to a slab of the coarse level's right side.
+
+    Args:
+        coarse: right side of the coarse level, to write to.
+        coarse_slab: which of its slabs.
+        residual: on entry the operator applied to the solution in both slabs, shape (2, cell); a work array then.
+        b: right side of the level.
+        slab: first of the two slabs.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+    """
     c, j = unsigned(coarse_slab), unsigned(slab)
-    first, end = run_of(inner, b.shape[1])
-    for k in range(first, end):
-        rest[0, k] = (b[j, k] + b[j + UNIT, k]) - (rest[0, k] + rest[1, k])
-    wide, narrow = row_length(inner, b.shape[1]), row_length(below, coarse.shape[1])
-    half = rest.dtype.type(0.5)
-    for n in range(row_count(below, coarse.shape[1])):
-        fine = (n + n + EDGE) * wide if len(inner) > 1 else NONE
-        row = (n + EDGE) * narrow if len(inner) > 1 else NONE
+    first_cell, end = run_of(inner, b.shape[1])
+    for k in range(first_cell, end):
+        residual[0, k] = (b[j, k] + b[j + UNIT, k]) - (residual[0, k] + residual[1, k])
+    row_cells, coarse_row_cells = row_length(inner, b.shape[1]), row_length(coarse_inner, coarse.shape[1])
+    half = residual.dtype.type(0.5)
+    for n in range(row_count(coarse_inner, coarse.shape[1])):
+        fine = (n + n + EDGE) * row_cells if len(inner) > 1 else NONE
+        row = (n + EDGE) * coarse_row_cells if len(inner) > 1 else NONE
         if len(inner) > 1:
-            for k in range(fine + EDGE, fine + wide - EDGE):
-                rest[0, k] = half * (rest[0, k] + rest[0, k + wide])
-        for k in range(EDGE, narrow - EDGE):
+            for k in range(fine + EDGE, fine + row_cells - EDGE):
+                residual[0, k] = half * (residual[0, k] + residual[0, k + row_cells])
+        for k in range(EDGE, coarse_row_cells - EDGE):
             i = fine + k + k - EDGE
-            coarse[c, row + k] = rest[0, i] + rest[0, i + UNIT]
+            coarse[c, row + k] = residual[0, i] + residual[0, i + UNIT]
 
 
 @part
-def _down(coarse, b, faces, place, room, rect, j0, j1, inner, below, repeats):
-    """Write the summed residual after the first smoothing steps to slabs ``j0`` to ``j1`` of ``coarse``."""
-    size, own, again = place[1], patch(room, rect, inner, ONE), repeats[len(inner)]
-    rest, rows = np.empty((2, b.shape[1]), b.dtype), np.empty((4, b.shape[1]), b.dtype)
-    low, mid, high, top = 0, 1, 2, 3
+def _descend(coarse, b, faces, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+    """Write the summed residual after the first smoothing steps to some slabs of the coarse level.
+
+    Args:
+        coarse: right side of the coarse level, to write to.
+        b: right side of the level.
+        faces: coefficients of the level's faces.
+        level_layout: the level's row of the layout; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rect: where the level's patch lies.
+        j0: first coarse slab.
+        j1: the coarse slab after the last.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+        repeats: whether each axis is periodic.
+    """
+    size, patch_values, is_periodic = level_layout[1], patch(buffer, rect, inner, ONE), repeats[len(inner)]
+    residual, rows = np.empty((2, b.shape[1]), b.dtype), np.empty((4, b.shape[1]), b.dtype)
+    lower_slot, middle_slot, upper_slot, top_slot = 0, 1, 2, 3
     j = 2 * (j0 - PAD) + PAD
-    _first(rows, low, b, own, rect, _fold(j - 1, size, again), inner, repeats)
-    _first(rows, mid, b, own, rect, j, inner, repeats)
+    _first_smoothing(rows, lower_slot, b, patch_values, rect, _fold(j - 1, size, is_periodic), inner, repeats)
+    _first_smoothing(rows, middle_slot, b, patch_values, rect, j, inner, repeats)
     for cj in range(j0, j1):
         j = 2 * (cj - PAD) + PAD
-        _first(rows, high, b, own, rect, j + 1, inner, repeats)
-        _first(rows, top, b, own, rect, _fold(j + 2, size, again), inner, repeats)
-        apply_slabs(rest, 0, rows, low, mid, high, faces, place, j, inner)
-        apply_slabs(rest, 1, rows, mid, high, top, faces, place, j + 1, inner)
-        _sum_rest(coarse, cj, rest, b, j, inner, below)
-        seal_slab(coarse, cj, below, repeats)
-        low, mid, high, top = high, top, low, mid
+        _first_smoothing(rows, upper_slot, b, patch_values, rect, j + 1, inner, repeats)
+        _first_smoothing(rows, top_slot, b, patch_values, rect, _fold(j + 2, size, is_periodic), inner, repeats)
+        apply_slabs(residual, 0, rows, lower_slot, middle_slot, upper_slot, faces, level_layout, j, inner)
+        apply_slabs(residual, 1, rows, middle_slot, upper_slot, top_slot, faces, level_layout, j + 1, inner)
+        _restrict_residual(coarse, cj, residual, b, j, inner, coarse_inner)
+        seal_slab(coarse, cj, coarse_inner, repeats)
+        lower_slot, middle_slot, upper_slot, top_slot = upper_slot, top_slot, lower_slot, middle_slot
 
 
 @part
-def _add_coarse(out, o, coarse, mix, slab, inner, below):
-    """Add to slab ``o`` of ``out``, which is slab ``slab`` of its level, the coarse cells, linear between them."""
-    near = unsigned((slab - PAD) // 2 + PAD)
-    far = near - UNIT if (slab - PAD) % 2 == 0 else near + UNIT
-    o, most, some = unsigned(o), out.dtype.type(0.75), out.dtype.type(0.25)
+def _add_coarse(slabs, o, coarse, mix, slab, inner, coarse_inner):
+    """Add to a slab the solution of the coarse level, linear between its cells.
+
+    Args:
+        slabs: work array of slabs, to add to.
+        o: which of its slabs.
+        coarse: solution of the coarse level.
+        mix: work array for a slab and a row of coarse cells.
+        slab: slab of the level.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+    """
+    near_slab = unsigned((slab - PAD) // 2 + PAD)
+    far_slab = near_slab - UNIT if (slab - PAD) % 2 == 0 else near_slab + UNIT
+    o, near_weight, far_weight = unsigned(o), slabs.dtype.type(0.75), slabs.dtype.type(0.25)
     for k in range(EDGE - UNIT, unsigned(coarse.shape[1]) - EDGE + UNIT):
-        mix[k] = most * coarse[near, k] + some * coarse[far, k]
-    if len(inner) == 1:  # apart: where a row is too short to be vectorised its sums are contracted in another way
+        mix[k] = near_weight * coarse[near_slab, k] + far_weight * coarse[far_slab, k]
+    if len(inner) == 1:  # separate loop: a row that is too short to be vectorised would be rounded in another way
         for k in range(EDGE, unsigned(coarse.shape[1]) - EDGE):
             i = k + k - EDGE
-            out[o, i] += most * mix[k] + some * mix[k - UNIT]
-            out[o, i + UNIT] += most * mix[k] + some * mix[k + UNIT]
+            slabs[o, i] += near_weight * mix[k] + far_weight * mix[k - UNIT]
+            slabs[o, i + UNIT] += near_weight * mix[k] + far_weight * mix[k + UNIT]
         return
-    wide, narrow = row_length(inner, out.shape[1]), row_length(below, coarse.shape[1])
+    row_cells, coarse_row_cells = row_length(inner, slabs.shape[1]), row_length(coarse_inner, coarse.shape[1])
     line = unsigned(coarse.shape[1])
-    for n in range(row_count(inner, out.shape[1])):
-        row, beside = (n + EDGE) * wide, (n // (UNIT + UNIT) + EDGE) * narrow
-        behind = beside - narrow if n % (UNIT + UNIT) == NONE else beside + narrow
-        for k in range(EDGE - UNIT, narrow - EDGE + UNIT):
-            mix[line + k] = most * mix[beside + k] + some * mix[behind + k]
-        for k in range(EDGE, narrow - EDGE):
+    for n in range(row_count(inner, slabs.shape[1])):
+        row, near_row = (n + EDGE) * row_cells, (n // (UNIT + UNIT) + EDGE) * coarse_row_cells
+        far_row = near_row - coarse_row_cells if n % (UNIT + UNIT) == NONE else near_row + coarse_row_cells
+        for k in range(EDGE - UNIT, coarse_row_cells - EDGE + UNIT):
+            mix[line + k] = near_weight * mix[near_row + k] + far_weight * mix[far_row + k]
+        for k in range(EDGE, coarse_row_cells - EDGE):
             i = row + k + k - EDGE
-            out[o, i] += most * mix[line + k] + some * mix[line + k - UNIT]
-            out[o, i + UNIT] += most * mix[line + k] + some * mix[line + k + UNIT]
+            slabs[o, i] += near_weight * mix[line + k] + far_weight * mix[line + k - UNIT]
+            slabs[o, i + UNIT] += near_weight * mix[line + k] + far_weight * mix[line + k + UNIT]
 
 
 @part
-def _up(x, b, coarse, faces, dinv, place, room, rect, j0, j1, inner, below, repeats):
-    """Write the first smoothing steps, the coarse correction and the last two steps to slabs ``j0`` to ``j1``."""
-    again, size, own = repeats[len(inner)], place[1], patch(room, rect, inner, ONE)
+def _ascend(x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, j1, inner, coarse_inner, repeats):
+    """Write the first smoothing steps, the coarse correction and the last two steps to some slabs.
+
+    Args:
+        x: solution to write.
+        b: right side of the level.
+        coarse: solution of the coarse level.
+        faces: coefficients of the level's faces.
+        dinv: inverse diagonal of the level.
+        level_layout: the level's row of the layout; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rect: where the level's patch lies.
+        j0: first slab.
+        j1: the slab after the last.
+        inner: strides within a slab.
+        coarse_inner: the same on the coarse level.
+        repeats: whether each axis is periodic.
+    """
+    is_periodic, size, patch_values = repeats[len(inner)], level_layout[1], patch(buffer, rect, inner, ONE)
     rows = np.empty((6, b.shape[1]), b.dtype)
-    mix = np.empty(coarse.shape[1] + signed(row_length(below, coarse.shape[1])), b.dtype)
-    two, one = weights(inner, b.dtype.type)
+    mix = np.empty(coarse.shape[1] + signed(row_length(coarse_inner, coarse.shape[1])), b.dtype)
+    second_weights, first_weights = weights(inner, b.dtype.type)
     a, m, z = 0, 1, 2  # slabs that the last step but one reads
-    low, mid, high = 3, 4, 5  # slabs that the last step reads
+    lower_slot, middle_slot, upper_slot = 3, 4, 5  # slabs that the last step reads
     for j in range(j0 - 2, j1 + 2):
         a, m, z = m, z, a
-        here = _fold(j, size, again)
-        _first(rows, z, b, own, rect, here, inner, repeats)
-        _add_coarse(rows, z, coarse, mix, here, inner, below)
+        source_slab = _fold(j, size, is_periodic)
+        _first_smoothing(rows, z, b, patch_values, rect, source_slab, inner, repeats)
+        _add_coarse(rows, z, coarse, mix, source_slab, inner, coarse_inner)
         seal_slab(rows, z, inner, repeats)
         if j < j0:
             continue
-        low, mid, high = mid, high, low
-        if j > PAD + size and not again:
-            copy_slab(rows, high, rows, mid)
+        lower_slot, middle_slot, upper_slot = middle_slot, upper_slot, lower_slot
+        if j > PAD + size and not is_periodic:
+            copy_slab(rows, upper_slot, rows, middle_slot)
         else:
-            here = _fold(j - 1, size, again)
-            relax_slabs(rows, high, rows, a, m, z, b, faces, dinv, place, here, one, inner, repeats)
-        if j == PAD + 1 and not again:
-            copy_slab(rows, mid, rows, high)
+            source_slab = _fold(j - 1, size, is_periodic)
+            relax_slabs(
+                rows, upper_slot, rows, a, m, z, b, faces, dinv, level_layout, source_slab, first_weights, inner,
+                repeats,
+            )  # fmt: skip
+        if j == PAD + 1 and not is_periodic:
+            copy_slab(rows, middle_slot, rows, upper_slot)
         if j >= j0 + 2:
-            relax_slabs(x, j - 2, rows, low, mid, high, b, faces, dinv, place, j - 2, two, inner, repeats)
+            relax_slabs(
+                x, j - 2, rows, lower_slot, middle_slot, upper_slot, b, faces, dinv, level_layout, j - 2,
+                second_weights, inner, repeats,
+            )  # fmt: skip
 
 
 @threaded_part
-def _down_threaded(coarse, b, faces, place, room, rect, inner, below, repeats):
+def _down_threaded(coarse, b, faces, level_layout, buffer, rect, inner, coarse_inner, repeats):
+    """Do what ``_descend`` does for all slabs, on several threads."""
     end = coarse.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST // 2)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
-        _down(coarse, b, faces, place, room, rect, j0, min(j0 + block, end), inner, below, repeats)
+        _descend(coarse, b, faces, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner, repeats)
 
 
 @threaded_part
-def _up_threaded(x, b, coarse, faces, dinv, place, room, rect, inner, below, repeats):
+def _up_threaded(x, b, coarse, faces, dinv, level_layout, buffer, rect, inner, coarse_inner, repeats):
+    """Do what ``_ascend`` does for all slabs, on several threads."""
     end = x.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         j0 = PAD + signed(n) * block
-        _up(x, b, coarse, faces, dinv, place, room, rect, j0, min(j0 + block, end), inner, below, repeats)
+        _ascend(
+            x, b, coarse, faces, dinv, level_layout, buffer, rect, j0, min(j0 + block, end), inner, coarse_inner,
+            repeats,
+        )  # fmt: skip
 
 
 @part
 def _live_mean(b, dinv, inner):
-    """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level."""
-    end, wide, total, live = b.shape[0] - PAD, signed(row_length(inner, b.shape[1])), 0.0, 0
+    """Return the mean over the cells that have an open face: without walls that fix it, the pressure has no level.
+
+    Args:
+        b: right side of the level.
+        dinv: inverse diagonal; 0 in a cell without an open face.
+        inner: strides within a slab.
+    """
+    end, row_cells, total, live = b.shape[0] - PAD, signed(row_length(inner, b.shape[1])), 0.0, 0
     if len(inner) == 1:
         for j in range(PAD, end):
-            for i in range(PAD, wide - PAD):
+            for i in range(PAD, row_cells - PAD):
                 if dinv[j, i] > 0:
                     total += b[j, i]
                     live += 1
     else:
         for j in range(PAD, end):
-            for row in range(PAD, signed(b.shape[1]) // wide - PAD):
-                for k in range(row * wide + PAD, row * wide + wide - PAD):
+            for row in range(PAD, signed(b.shape[1]) // row_cells - PAD):
+                for k in range(row * row_cells + PAD, row * row_cells + row_cells - PAD):
                     if dinv[j, k] > 0:
                         total += b[j, k]
                         live += 1
@@ -237,131 +323,183 @@ def _live_mean(b, dinv, inner):
 
 @part
 def _reaches(cells, axes):
-    """Return how far each step on the coarsest level goes, and the weight of the Jacobi steps that they are made of.
+    """Return the relaxation factor of each step on the coarsest level, and the weight of its Jacobi steps.
 
-    Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2, with as
-    many steps, an even number, as leave the share ``LEFT`` of each.
+    Chebyshev's semi-iteration for eigenvalues from that of the smoothest error along the longest side up to 2. It takes
+    as many steps, an even number, as leave the fraction ``LEFT`` of each error.
+
+    Args:
+        cells: of the longest side.
+        axes: of the grid.
     """
-    least = (1.0 - np.cos(np.pi / cells)) / axes
-    middle = 1.0 + 0.5 * least
-    share = (1.0 - 0.5 * least) / middle
-    steps = int(np.ceil(np.arccosh(1.0 / LEFT) / np.arccosh(1.0 / share)))
-    reaches = np.ones(steps + steps % 2)
-    for k in range(1, reaches.size):
-        reaches[k] = 1.0 / (1.0 - (0.5 if k == 1 else 0.25) * share**2 * reaches[k - 1])
-    return reaches, 1.0 / middle
+    min_eigenvalue = (1.0 - np.cos(np.pi / cells)) / axes
+    middle = 1.0 + 0.5 * min_eigenvalue
+    ratio = (1.0 - 0.5 * min_eigenvalue) / middle
+    steps = int(np.ceil(np.arccosh(1.0 / LEFT) / np.arccosh(1.0 / ratio)))
+    factors = np.ones(steps + steps % 2)
+    for k in range(1, factors.size):
+        factors[k] = 1.0 / (1.0 - (0.5 if k == 1 else 0.25) * ratio**2 * factors[k - 1])
+    return factors, 1.0 / middle
 
 
 @part
-def _reach(y, step, slab, far):
-    """Write ``y + far (step - y)`` to a slab of ``y``."""
+def _relax(y, step, slab, factor):
+    """Write ``y + factor (step - y)`` to a slab of ``y``."""
     j = unsigned(slab)
     for k in range(unsigned(y.shape[1])):
-        y[j, k] += far * (step[j, k] - y[j, k])
+        y[j, k] += factor * (step[j, k] - y[j, k])
 
 
 @part
-def _solve_coarsest(x, b, faces, dinv, place, inner, repeats):
+def _solve_coarsest(x, b, faces, dinv, level_layout, inner, repeats):
+    """Solve the coarsest level by Chebyshev's semi-iteration on Jacobi steps, from nothing; ``b`` loses its mean.
+
+    Args:
+        x: solution to write; the steps are an even number, so that it has the last one.
+        b: right side of the level, changed.
+        faces: coefficients of the level's faces.
+        dinv: inverse diagonal of the level.
+        level_layout: the level's row of the layout; see ``slab``.
+        inner: strides within a slab.
+        repeats: whether each axis is periodic.
+    """
     y, step = np.zeros_like(x), np.zeros_like(x)
     x[:] = 0
-    mean, wide, real = _live_mean(b, dinv, inner), row_length(inner, x.shape[1]), x.dtype.type
+    mean, row_cells, real = _live_mean(b, dinv, inner), row_length(inner, x.shape[1]), x.dtype.type
     for j in range(PAD, x.shape[0] - PAD):
         for n in range(row_count(inner, x.shape[1])):
-            s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
-            for k in range(s, s + wide - EDGE - EDGE):
+            s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+            for k in range(s, s + row_cells - EDGE - EDGE):
                 b[unsigned(j), k] -= mean
-    longest = 1
+    max_cells = 1
     for axis in range(len(inner) + 1):
-        longest = max(longest, place[1 + axis])
-    reaches, weight = _reaches(longest, len(inner) + 1)
-    for far in reaches:
-        smooth(step, x, b, faces, dinv, place, real(weight), inner, repeats)
+        max_cells = max(max_cells, level_layout[1 + axis])
+    factors, weight = _reaches(max_cells, len(inner) + 1)
+    for factor in factors:
+        smooth(step, x, b, faces, dinv, level_layout, real(weight), inner, repeats)
         for j in range(PAD, x.shape[0] - PAD):
-            _reach(y, step, j, real(far))
+            _relax(y, step, j, real(factor))
         seal_ends(y, repeats[len(inner)])
         x, y = y, x
 
 
 @part
-def cycle(x, store, layout, room, rects, inner, repeats):
-    """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``."""
-    last = layout.shape[0] - 1
-    for k in range(last):
-        own, below = _strides(layout, inner, k), _strides(layout, inner, k + 1)
+def cycle(x, store, layout, buffer, rects, inner, repeats):
+    """Write one V-cycle for the right side ``B`` of level 0, started from nothing, to ``x``.
+
+    Args:
+        x: solution to write.
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        buffer: values in the patches; see ``patch``.
+        rects: where each level's patch lies.
+        inner: strides within a slab of level 0.
+        repeats: whether each axis is periodic.
+    """
+    last_level = layout.shape[0] - 1
+    for k in range(last_level):
+        level_inner, coarse_inner = _strides(layout, inner, k), _strides(layout, inner, k + 1)
         b, coarse = level(store, layout, inner, B, k), level(store, layout, inner, B, k + 1)
-        faces, place, rect = faces_of(store, layout, inner, k), layout[k], rects[k]
+        faces, level_layout, rect = faces_of(store, layout, inner, k), layout[k], rects[k]
         seal_ends(b, repeats[len(inner)])
         if rect[1] < rect[2]:
-            start(room, rect, b, own)
+            start(buffer, rect, b, level_inner)
         if b.size < SERIAL_BELOW:
-            _down(coarse, b, faces, place, room, rect, PAD, coarse.shape[0] - PAD, own, below, repeats)
+            _descend(
+                coarse, b, faces, level_layout, buffer, rect, PAD, coarse.shape[0] - PAD, level_inner, coarse_inner,
+                repeats,
+            )  # fmt: skip
         else:
-            _down_threaded(coarse, b, faces, place, room, rect, own, below, repeats)
+            _down_threaded(coarse, b, faces, level_layout, buffer, rect, level_inner, coarse_inner, repeats)
     _solve_coarsest(
-        x if last == 0 else level(store, layout, inner, X, last),
-        level(store, layout, inner, B, last),
-        faces_of(store, layout, inner, last),
-        level(store, layout, inner, DINV, last),
-        layout[last],
-        _strides(layout, inner, last),
+        x if last_level == 0 else level(store, layout, inner, X, last_level),
+        level(store, layout, inner, B, last_level),
+        faces_of(store, layout, inner, last_level),
+        level(store, layout, inner, DINV, last_level),
+        layout[last_level],
+        _strides(layout, inner, last_level),
         repeats,
     )
-    for k in range(last - 1, -1, -1):
-        own, below = _strides(layout, inner, k), _strides(layout, inner, k + 1)
+    for k in range(last_level - 1, -1, -1):
+        level_inner, coarse_inner = _strides(layout, inner, k), _strides(layout, inner, k + 1)
         b, coarse = level(store, layout, inner, B, k), level(store, layout, inner, X, k + 1)
         faces, dinv = faces_of(store, layout, inner, k), level(store, layout, inner, DINV, k)
-        place, rect, out = layout[k], rects[k], x if k == 0 else level(store, layout, inner, X, k)
+        level_layout, rect, solution = layout[k], rects[k], x if k == 0 else level(store, layout, inner, X, k)
         if b.size < SERIAL_BELOW:
-            _up(out, b, coarse, faces, dinv, place, room, rect, PAD, out.shape[0] - PAD, own, below, repeats)
+            _ascend(
+                solution, b, coarse, faces, dinv, level_layout, buffer, rect, PAD, solution.shape[0] - PAD, level_inner,
+                coarse_inner, repeats,
+            )  # fmt: skip
         else:
-            _up_threaded(out, b, coarse, faces, dinv, place, room, rect, own, below, repeats)
+            _up_threaded(
+                solution, b, coarse, faces, dinv, level_layout, buffer, rect, level_inner, coarse_inner, repeats
+            )
         if rect[1] < rect[2]:
-            end(room, rect, out, own)
-            if len(inner) > 1:  # there a patch has changed cells beside the sides
-                for j in range(max(rect[1], PAD), min(rect[2], out.shape[0] - PAD)):
-                    seal_slab(out, j, own, repeats)
-        seal_ends(out, repeats[len(inner)])
+            end(buffer, rect, solution, level_inner)
+            if len(inner) > 1:  # the patch has changed cells next to the sides
+                for j in range(max(rect[1], PAD), min(rect[2], solution.shape[0] - PAD)):
+                    seal_slab(solution, j, level_inner, repeats)
+        seal_ends(solution, repeats[len(inner)])
 
 
 @part
-def _coefficients(cx, cy, dinv, place):
+def _coefficients(cx, cy, dinv, level_layout):
     """Fill the inverse diagonal of a plane level in the window; a cell with no open face gets 0.
 
-    The quotient is estimated and improved where it is vectorised: written like the one below it has another last digit.
+    It is not written like the one for space below: vectorised division there rounds the last digit in another way.
+
+    Args:
+        cx: coefficients of the faces across x.
+        cy: coefficients of the faces across y.
+        dinv: inverse diagonal to write.
+        level_layout: the level's row of the layout; see ``slab``.
     """
     small = cx.dtype.type(1e-6)
-    for j in range(place[3], place[4]):
-        for i in range(place[5], place[6]):
+    for j in range(level_layout[3], level_layout[4]):
+        for i in range(level_layout[5], level_layout[6]):
             total = (cx[j, i] + cx[j, i + 1]) + (cy[j, i] + cy[j + 1, i])
             dinv[j, i] = 1 / total if total > small else 0
 
 
 @part
-def _coefficients_in_space(faces, dinv, place, inner):
-    """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0."""
-    small, up, wide = dinv.dtype.type(1e-6), len(inner), signed(row_length(inner, dinv.shape[1]))
-    for j in range(place[4], place[5]):
-        for row in range(place[6], place[7]):
-            for k in range(row * wide + place[8], row * wide + place[9]):
-                total = faces[up, j, k] + faces[up, j + 1, k]
-                for d in range(up):
+def _coefficients_in_space(faces, dinv, level_layout, inner):
+    """Fill the inverse diagonal of a level in space in the window; a cell with no open face gets 0.
+
+    Args:
+        faces: coefficients of the faces, shape (axis, slab, cell).
+        dinv: inverse diagonal to write.
+        level_layout: the level's row of the layout; see ``slab``.
+        inner: strides within a slab.
+    """
+    small, slab_axis, row_cells = dinv.dtype.type(1e-6), len(inner), signed(row_length(inner, dinv.shape[1]))
+    for j in range(level_layout[4], level_layout[5]):
+        for row in range(level_layout[6], level_layout[7]):
+            for k in range(row * row_cells + level_layout[8], row * row_cells + level_layout[9]):
+                total = faces[slab_axis, j, k] + faces[slab_axis, j + 1, k]
+                for d in range(slab_axis):
                     total += faces[d, j, k] + faces[d, j, k + signed(inner[d])]
                 dinv[j, k] = 1 / total if total > small else 0
 
 
 @part
-def _in_line(before, here, after):
-    """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved."""
-    resistance = here * after + 2 * before * after + before * here
-    return 4 * before * here * after / resistance if resistance > 0 else before
+def _in_line(c0, c1, c2):
+    """Return the coefficient of three faces in line between the middles of two coarse cells, the outer ones halved.
+
+    Args:
+        c0: coefficient of the face before.
+        c1: of the middle face.
+        c2: of the face behind.
+    """
+    resistance = c1 * c2 + 2 * c0 * c2 + c0 * c1
+    return 4 * c0 * c1 * c2 / resistance if resistance > 0 else c0
 
 
 @part
 def _joined(face, j, k, axis, inner):
     """Return a coarse face's coefficient from those of its fine faces and of the faces before and behind them.
 
-    What they carry side by side lets the water through bodies thinner than a coarse cell; what the faces carry in
-    line blocks it beside their ends too. With the geometric mean of both a solve needs half the cycles of the first.
+    Faces in parallel let water through bodies thinner than a coarse cell; faces in series block it beside the bodies'
+    ends too. With the geometric mean of both a solve needs half the cycles that it needs with the first.
 
     Args:
         face: coefficients of the fine level's faces across one axis.
@@ -372,57 +510,80 @@ def _joined(face, j, k, axis, inner):
     """
     axes = len(inner) + 1
     dj, dk = (1, 0) if axis == len(inner) else (0, signed(inner[axis]))
-    beside, in_line = face.dtype.type(0), face.dtype.type(0)
+    parallel_sum, series_sum = face.dtype.type(0), face.dtype.type(0)
     for m in range(2 ** len(inner)):
         fj, fk = j, k
         for n in range(len(inner)):
-            other = (axis + 1 + n) % axes
+            side_axis = (axis + 1 + n) % axes
             if m >> n & 1:
-                fj += 1 if other == len(inner) else 0
-                fk += 0 if other == len(inner) else signed(inner[other])
-        here = face[fj, fk]
-        beside += here
-        in_line += _in_line(face[fj - dj, fk - dk], here, face[fj + dj, fk + dk])
-    share = face.dtype.type(1 / 2 ** len(inner))
-    return np.sqrt(share * beside * (share * in_line))
+                fj += 1 if side_axis == len(inner) else 0
+                fk += 0 if side_axis == len(inner) else signed(inner[side_axis])
+        coefficient = face[fj, fk]
+        parallel_sum += coefficient
+        series_sum += _in_line(face[fj - dj, fk - dk], coefficient, face[fj + dj, fk + dk])
+    fraction = face.dtype.type(1 / 2 ** len(inner))
+    return np.sqrt(fraction * parallel_sum * (fraction * series_sum))
 
 
 @part
-def _coarse_faces(coarse, fine, place, narrow, inner, axis):
-    """Fill the coefficients of a coarse level's faces across one axis in its window; ``narrow``: its row's length."""
-    up, wide = len(inner), signed(row_length(inner, fine.shape[1]))
-    r0, r1 = (place[up + 4], place[up + 5] + 1) if up > 1 else (0, 1)
-    for cj in range(place[up + 2], place[up + 3] + 1):
+def _coarse_faces(coarse, fine, level_layout, coarse_row_cells, inner, axis):
+    """Fill the coefficients of a coarse level's faces across one axis in its window.
+
+    Args:
+        coarse: coefficients of the coarse faces, shape (slab, cell), to write to.
+        fine: those of the fine level.
+        level_layout: the coarse level's row of the layout; see ``slab``.
+        coarse_row_cells: cells along a row of the coarse level.
+        inner: strides within a slab of the fine level.
+        axis: axis that the faces lie across.
+    """
+    slab_axis, row_cells = len(inner), signed(row_length(inner, fine.shape[1]))
+    r0, r1 = (level_layout[slab_axis + 4], level_layout[slab_axis + 5] + 1) if slab_axis > 1 else (0, 1)
+    for cj in range(level_layout[slab_axis + 2], level_layout[slab_axis + 3] + 1):
         j = 2 * (cj - PAD) + PAD
         for row in range(r0, r1):
-            base = (2 * (row - PAD) + PAD) * wide if up > 1 else 0
-            for ci in range(place[3 * up + 2], place[3 * up + 3] + 1):
+            base = (2 * (row - PAD) + PAD) * row_cells if slab_axis > 1 else 0
+            for ci in range(level_layout[3 * slab_axis + 2], level_layout[3 * slab_axis + 3] + 1):
                 k = base + 2 * (ci - PAD) + PAD
-                coarse[cj, row * narrow + ci] = _joined(fine, j, k, axis, inner)
+                coarse[cj, row * coarse_row_cells + ci] = _joined(fine, j, k, axis, inner)
 
 
 @compiled
 def coarsen(store, layout, inner):
-    """Fill the inverse diagonals and every coarser level's coefficients inside the windows."""
+    """Fill the inverse diagonals and every coarser level's coefficients inside the windows.
+
+    Args:
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        inner: strides within a slab of level 0.
+    """
     for k in range(layout.shape[0]):
-        faces, own = faces_of(store, layout, inner, k), _strides(layout, inner, k)
+        faces, level_inner = faces_of(store, layout, inner, k), _strides(layout, inner, k)
         if len(inner) == 1:
             _coefficients(faces[0], faces[1], level(store, layout, inner, DINV, k), layout[k])
         else:
-            _coefficients_in_space(faces, level(store, layout, inner, DINV, k), layout[k], own)
+            _coefficients_in_space(faces, level(store, layout, inner, DINV, k), layout[k], level_inner)
         if k + 1 == layout.shape[0]:
             return
         coarse = faces_of(store, layout, inner, k + 1)
-        narrow = layout[k + 1, len(inner) + 1] + 2 * PAD
+        coarse_row_cells = layout[k + 1, len(inner) + 1] + 2 * PAD
         for d in range(len(inner) + 1):
-            _coarse_faces(coarse[d], faces[d], layout[k + 1], narrow, own, d)
+            _coarse_faces(coarse[d], faces[d], layout[k + 1], coarse_row_cells, level_inner, d)
 
 
 @compiled
-def spread(store, layout, room, rects, inner):
-    """Copy the coefficients of all levels to the room; see ``patch``."""
+def spread(store, layout, buffer, rects, inner):
+    """Copy the coefficients of all levels to the patches; see ``patch``.
+
+    Args:
+        store: arrays of all levels; see ``level``.
+        layout: one row for each level; see ``slab``.
+        buffer: values in the patches.
+        rects: where each level's patch lies.
+        inner: strides within a slab of level 0.
+    """
     for k in range(layout.shape[0] - 1):
         if rects[k, 1] < rects[k, 2]:
             dinv = level(store, layout, inner, DINV, k)
             faces = faces_of(store, layout, inner, k)
-            take_coefficients(room, rects[k], layout[k], faces, dinv, _strides(layout, inner, k))
+            take_coefficients(buffer, rects[k], layout[k], faces, dinv, _strides(layout, inner, k))
