@@ -15,9 +15,10 @@ from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Solid, positive
 
 _STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
-_MOST, _OFF = 0.9, 0.02  # share of an outline on which a distance has the gradient 1, but for corners, and how nearly
-_FLATTEST = 0.01  # share of it whose gradient is no measure: at corners it is a mean
-_BETWEEN = 8  # points that are then put in each step
+_MIN_EXACT_FRACTION = 0.9  # fraction of an outline on which the gradient of a true distance is 1; corners are the rest
+_GRADIENT_TOLERANCE = 0.02  # deviation of such a gradient from 1
+_MIN_GRADIENT_QUANTILE = 0.01  # quantile of the gradient that bounds it from below: at corners it is a mean
+_SUBDIVISIONS = 8  # points that are then put in each step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,21 +50,21 @@ class Polygon(Solid):
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance and outward normal."""
         px, py = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        out = np.empty((3, px.size))
-        measure_outline(out, px.ravel(), py.ravel(), self._around, self._flat)
-        d, nx, ny = out.reshape(3, *px.shape)
+        fields = np.empty((3, px.size))
+        measure_outline(fields, px.ravel(), py.ravel(), self._outline_points, self._flat)
+        d, nx, ny = fields.reshape(3, *px.shape)
         return d, nx, ny
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window, as far as ``reach``."""
         h = float(x[-1] - x[0]) / (x.size - 1)
-        outline = np.stack(pose.to_world(*self._around))
+        outline = np.stack(pose.to_world(*self._outline_points))
         d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
         vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(*np.meshgrid(x, y)))
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
 
     @property
-    def _around(self) -> np.ndarray:
+    def _outline_points(self) -> np.ndarray:
         return np.ascontiguousarray(self.corners.T)
 
     @property
@@ -75,9 +76,9 @@ class Polygon(Solid):
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         length = np.hypot(*edges.T)
         parts = np.maximum(1, np.round(count * length / length.sum())).astype(int)
-        within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-        share = within / np.repeat(parts, parts)
-        points = np.repeat(self.corners, parts, axis=0) + share[:, None] * np.repeat(edges, parts, axis=0)
+        edge_index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        fraction = edge_index / np.repeat(parts, parts)
+        points = np.repeat(self.corners, parts, axis=0) + fraction[:, None] * np.repeat(edges, parts, axis=0)
         return points[:, 0], points[:, 1]
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -134,19 +135,21 @@ def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
     Raises:
         UnreadableFile: a row is not two numbers, or the count is another.
     """
-    first, corners = rows[0], rows[1:]
-    whole = all(count == int(count) and count > 1 for count in first if abs(count) < 1e9) and bool(first)
-    if whole and len(first) in (1, 2) and sum(first) == len(corners) and all(len(row) == 2 for row in corners):
-        above = int(first[0])
+    counts, corners = rows[0], rows[1:]
+    is_count = all(count == int(count) and count > 1 for count in counts if abs(count) < 1e9) and bool(counts)
+    if is_count and len(counts) in (1, 2) and sum(counts) == len(corners) and all(len(row) == 2 for row in corners):
+        if len(counts) == 1:
+            return corners
         # two surfaces, both from the nose on, which they share
-        return corners if len(first) == 1 else corners[:above][::-1] + corners[above + (corners[0] == corners[above]) :]
+        upper_count = int(counts[0])
+        return corners[:upper_count][::-1] + corners[upper_count + (corners[0] == corners[upper_count]) :]
     for row in rows:
         if len(row) != 2:
-            shown = " ".join(f"{number:g}" for number in row[:6])
-            counted = f"; a single number at the beginning is the count of rows after it, here {len(corners)}"
+            row_text = " ".join(f"{number:g}" for number in row[:6])
+            hint = f"; a single number at the beginning is the count of rows after it, here {len(corners)}"
             raise UnreadableFile(
-                f"the outline {path} is not two columns of numbers, x and y: it has the row {shown!r}"
-                f"{counted if row is first and len(row) == 1 else ''}."
+                f"the outline {path} is not two columns of numbers, x and y: it has the row {row_text!r}"
+                f"{hint if row is counts and len(row) == 1 else ''}."
             )
     return rows
 
@@ -173,13 +176,13 @@ class Implicit(Solid):
     box: tuple[float, float, float, float]
     """A rectangle around the body: x0, x1, y0, y1 [m]."""
     _ring: np.ndarray = field(init=False, repr=False)
-    _least: float | None = field(init=False, repr=False)
+    _min_gradient: float | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_ring", _around(self.sdf, self.box))
+        object.__setattr__(self, "_ring", _trace_outline(self.sdf, self.box))
         sizes = np.hypot(*self._rises(*self._ring.T)) / (2 * self._step)
-        exact = np.quantile(np.abs(sizes - 1), _MOST) < _OFF
-        object.__setattr__(self, "_least", None if exact else float(np.quantile(sizes, _FLATTEST)))
+        exact = np.quantile(np.abs(sizes - 1), _MIN_EXACT_FRACTION) < _GRADIENT_TOLERANCE
+        object.__setattr__(self, "_min_gradient", None if exact else float(np.quantile(sizes, _MIN_GRADIENT_QUANTILE)))
 
     @property
     def _step(self) -> float:
@@ -195,18 +198,18 @@ class Implicit(Solid):
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
-        flat = size < 1e-3 * self._step * (self._least or 1.0)  # in the very middle: any direction will do
+        flat = size < 1e-3 * self._step * (self._min_gradient or 1.0)  # in the very middle: any direction will do
         safe = np.where(flat, 1.0, size)
-        if self._least is not None:
-            value = value / np.maximum(size / (2 * self._step), self._least)
+        if self._min_gradient is not None:
+            value = value / np.maximum(size / (2 * self._step), self._min_gradient)
         return value, np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return points around the body, evenly spaced."""
         closed = np.concatenate([self._ring, self._ring[:1]])
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-        at = np.linspace(0, arc[-1], count, endpoint=False)
-        return np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])
+        arc_positions = np.linspace(0, arc[-1], count, endpoint=False)
+        return np.interp(arc_positions, arc, closed[:, 0]), np.interp(arc_positions, arc, closed[:, 1])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter of the largest circle inside, to a hundredth of the outline's size."""
@@ -241,14 +244,14 @@ def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Imp
     return Implicit(sdf=function, box=(x0, x1, y0, y1))
 
 
-def union(one: Solid, other: Solid) -> Implicit:
+def union(shape: Solid, other_shape: Solid) -> Implicit:
     """Return the body that is inside either of two, which must overlap."""
-    return _joined(one, other, np.minimum)
+    return _joined(shape, other_shape, np.minimum)
 
 
-def difference(one: Solid, other: Solid) -> Implicit:
+def difference(shape: Solid, other_shape: Solid) -> Implicit:
     """Return the body inside the first and not inside the second, which must leave it in one piece without a hole."""
-    return _joined(one, other, lambda a, b: np.maximum(a, -b))
+    return _joined(shape, other_shape, lambda a, b: np.maximum(a, -b))
 
 
 def scaled(shape: Solid, factor: float) -> Implicit:
@@ -261,14 +264,16 @@ def scaled(shape: Solid, factor: float) -> Implicit:
     return from_sdf(lambda x, y: factor * shape.distance(x / factor, y / factor)[0], _box([shape], factor))
 
 
-def _joined(one: Solid, other: Solid, both: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
-    return from_sdf(lambda x, y: both(one.distance(x, y)[0], other.distance(x, y)[0]), _box([one, other], 1.0))
+def _joined(shape: Solid, other_shape: Solid, combine: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
+    return from_sdf(
+        lambda x, y: combine(shape.distance(x, y)[0], other_shape.distance(x, y)[0]), _box([shape, other_shape], 1.0)
+    )
 
 
 def _box(shapes: list[Solid], factor: float) -> tuple[float, float, float, float]:
     x, y = np.concatenate([np.stack(shape.outline(512)) for shape in shapes], axis=1) * factor
-    room = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
-    return float(x.min()) - room, float(x.max()) + room, float(y.min()) - room, float(y.max()) + room
+    margin = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
+    return float(x.min()) - margin, float(x.max()) + margin, float(y.min()) - margin, float(y.max()) + margin
 
 
 def _size(box: tuple[float, float, float, float]) -> float:
@@ -288,18 +293,18 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
         return np.sign((q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0])
 
     for k in range(len(corners)):
-        others = np.arange(k + 2, len(corners) - (k == 0))
-        if not others.size:
+        candidates = np.arange(k + 2, len(corners) - (k == 0))
+        if not candidates.size:
             continue
-        p, q = a[others], b[others]
-        apart = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
-        far = side(p, q, a[k]) * side(p, q, b[k]) > 0
-        beside = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
+        p, q = a[candidates], b[candidates]
+        is_on_one_side = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
+        has_edge_on_one_side = side(p, q, a[k]) * side(p, q, b[k]) > 0
+        is_box_disjoint = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
             np.minimum(p, q) > np.maximum(a[k], b[k])
         ).any(axis=1)
-        hit = np.flatnonzero(~(apart | far | beside))
+        hit = np.flatnonzero(~(is_on_one_side | has_edge_on_one_side | is_box_disjoint))
         if hit.size:
-            return k, int(others[hit[0]])
+            return k, int(candidates[hit[0]])
     return None
 
 
@@ -307,12 +312,14 @@ def _widest(shape: Solid) -> float:
     """Return the diameter of the largest circle inside the outline of a shape."""
     x, y = shape.outline(512)
     gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))
-    out = np.empty((3, gx.size))
-    measure_outline(out, gx.ravel(), gy.ravel(), np.stack([x, y]), 0.0)
-    return max(-2 * float(out[0].min()), 0.0)
+    fields = np.empty((3, gx.size))
+    measure_outline(fields, gx.ravel(), gy.ravel(), np.stack([x, y]), 0.0)
+    return max(-2 * float(fields[0].min()), 0.0)
 
 
-def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]) -> np.ndarray:
+def _trace_outline(
+    sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]
+) -> np.ndarray:
     """Return the outline of where a function is negative, counter-clockwise, shape (point, 2) [m].
 
     It is walked along: a step ahead at right angles to the gradient, then back to zero by Newton's method.
@@ -337,28 +344,28 @@ def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[floa
         x, y = p
         return np.stack([sdf(x + eps, y) - sdf(x - eps, y), sdf(x, y + eps) - sdf(x, y - eps)]) / (2 * eps)
 
-    def onto(p: np.ndarray, times: int) -> np.ndarray:
+    def project(p: np.ndarray, times: int) -> np.ndarray:
         for _ in range(times):
             g = gradient(p)
             p = p - sdf(*p) * g / np.maximum((g * g).sum(axis=0), 1e-12)
         return p
 
-    inside = np.unravel_index(int(values.argmin()), values.shape)
-    row = values[inside[0], inside[1] :]
-    start = np.array([[gx[0, inside[1] + int(np.flatnonzero(row > 0)[0])]], [gy[inside[0], 0]]])
-    here = first = onto(start, 8)
-    points = [first]
+    deepest = np.unravel_index(int(values.argmin()), values.shape)
+    row = values[deepest[0], deepest[1] :]
+    start = np.array([[gx[0, deepest[1] + int(np.flatnonzero(row > 0)[0])]], [gy[deepest[0], 0]]])
+    point = first_point = project(start, 8)
+    points = [first_point]
     for _ in range(64 * _STEPS):
-        g = gradient(here)
-        here = onto(here + step * np.stack([-g[1], g[0]]) / np.maximum(np.hypot(*g), 1e-12), 2)
-        if len(points) > 3 and np.hypot(*(here - first)) < 0.75 * step:
-            return _finer(np.concatenate(points, axis=1), lambda p: onto(p, 3)).T
-        points.append(here)
+        g = gradient(point)
+        point = project(point + step * np.stack([-g[1], g[0]]) / np.maximum(np.hypot(*g), 1e-12), 2)
+        if len(points) > 3 and np.hypot(*(point - first_point)) < 0.75 * step:
+            return _refine_ring(np.concatenate(points, axis=1), lambda p: project(p, 3)).T
+        points.append(point)
     raise InvalidDesign("the outline of the signed distance does not close; its gradient should be about 1 near it.")
 
 
-def _finer(ring: np.ndarray, onto: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+def _refine_ring(ring: np.ndarray, project: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """Return a ring of points, shape (2, point), with ``_BETWEEN`` times as many, all put onto the outline."""
-    share = np.arange(_BETWEEN) / _BETWEEN
-    ahead = np.roll(ring, -1, axis=1)
-    return onto((ring[:, :, None] * (1 - share) + ahead[:, :, None] * share).reshape(2, -1))
+    fraction = np.arange(_SUBDIVISIONS) / _SUBDIVISIONS
+    next_points = np.roll(ring, -1, axis=1)
+    return project((ring[:, :, None] * (1 - fraction) + next_points[:, :, None] * fraction).reshape(2, -1))

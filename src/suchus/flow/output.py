@@ -33,7 +33,7 @@ def snapshot(sim: Fields) -> xr.Dataset:
     The velocity has the dimension ``component`` as well, and so has the vorticity in space.
     The coordinates are those of the world: those of a grid that follows a body travel.
     """
-    grid, (place, drift) = sim.water.grid, sim.frame
+    grid, (position, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
     names = tuple("xyz"[: grid.axes])
     cells = names[::-1]
@@ -42,16 +42,16 @@ def snapshot(sim: Fields) -> xr.Dataset:
         "velocity": (("component", *cells), velocity), "pressure": (cells, sim.pressure),
         "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_share),
     }  # fmt: skip
+    coords: dict[str, object] = {
+        name: (name, getattr(grid, name) + shift, {"units": "m"}) for name, shift in zip(names, position, strict=True)
+    }
     return xr.Dataset(
         {
             name: (dims, np.asarray(value, np.float32), {"units": _UNITS[name], "long_name": _NAMES[name]})
             for name, (dims, value) in values.items()
         },
-        coords={
-            **{name: (name, getattr(grid, name) + own, {"units": "m"}) for name, own in zip(names, place, strict=True)},
-            "component": list(names), "time": ((), sim.time, {"units": "s"}),
-        },
-    )  # fmt: skip
+        coords={**coords, "component": list(names), "time": ((), sim.time, {"units": "s"})},
+    )
 
 
 def save_vti(sim: Fields, path: Path | str) -> None:
@@ -112,8 +112,8 @@ class FieldSeries:
     """``*.nc`` for NetCDF with all times, ``*.pvd`` for a series of .vti files beside it."""
     times: Sequence[float]
     """Times at which the fields are written: at the end of the first step from each on [s]."""
-    _next: int = field(default=0, init=False)
-    _last: float = field(default=-np.inf, init=False)
+    _next_index: int = field(default=0, init=False)
+    _last_time: float = field(default=-np.inf, init=False)
 
     def __post_init__(self) -> None:
         self.path, self.times = Path(self.path), tuple(float(time) for time in self.times)
@@ -129,15 +129,15 @@ class FieldSeries:
             Unwritable: naming the place.
             UnreadableFile: a file of that name holds something else.
         """
-        if not np.isfinite(self._last):  # those before this run were written by the one that it goes on from
+        if not np.isfinite(self._last_time):  # those before this run were written by the one that it goes on from
             started = sim.time - (sim.record.step[-1] if sim.record.step.size else 0.0)
-            while started > 0 and self._next < len(self.times) and self.times[self._next] <= started * (1 + 1e-12):
-                self._next += 1
-        self._last = sim.time
-        due = self._next
-        while self._next < len(self.times) and sim.time >= self.times[self._next] * (1 - 1e-12):
-            self._next += 1
-        if self._next > due:
+            if started > 0:
+                self._next_index = sum(time <= started * (1 + 1e-12) for time in self.times)
+        self._last_time = sim.time
+        due = self._next_index
+        while self._next_index < len(self.times) and sim.time >= self.times[self._next_index] * (1 - 1e-12):
+            self._next_index += 1
+        if self._next_index > due:
             (_add_to_netcdf if Path(self.path).suffix == ".nc" else _add_to_collection)(sim, Path(self.path))
 
 
@@ -145,8 +145,8 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
     new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
         travelled = dict(zip("xyz", sim.frame[0], strict=False))
-        places: dict[str, object] = {name: new[name] - own for name, own in travelled.items()}
-        places |= {f"grid_{name}": ((), own, {"units": "m"}) for name, own in travelled.items()}
+        places: dict[str, object] = {name: new[name] - shift for name, shift in travelled.items()}
+        places |= {f"grid_{name}": ((), shift, {"units": "m"}) for name, shift in travelled.items()}
         new = new.assign_coords(places)
     new = new.expand_dims("time")
     if path.exists():
@@ -171,12 +171,14 @@ def _add_to_collection(sim: Fields, path: Path) -> None:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise UnreadableFile(f"{path} cannot be read: {error}; give another name.") from error
-        entries = [(float(at), unescape(name)) for at, name in findall(r'timestep="([0-9.e+-]+)" file="([^"]+)"', text)]
+        entries = [
+            (float(time), unescape(name)) for time, name in findall(r'timestep="([0-9.e+-]+)" file="([^"]+)"', text)
+        ]
         entries = [entry for entry in entries if entry[0] < sim.time * (1 - 1e-12)]
     name = f"{path.stem}_{len(entries):04d}.vti"
     save_vti(sim, path.with_name(name))
     entries.append((float(sim.time), name))
-    rows = "\n".join(f'<DataSet timestep="{at!r}" file="{escape(file)}"/>' for at, file in entries)
+    rows = "\n".join(f'<DataSet timestep="{time!r}" file="{escape(file)}"/>' for time, file in entries)
     _write(
         path,
         f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="1.0">\n<Collection>\n{rows}\n</Collection>\n'

@@ -37,19 +37,19 @@ PATIENCE = 15
 @part
 def _dots(z, az, r, d, slab, inner):
     """Return (z, A z), (d, A z), (r, z) and (r, d) of a slab; the last is nearly nothing, so r's sums are double."""
-    j, wide = unsigned(slab), row_length(inner, z.shape[1])
-    all_own, all_old, gain, left = 0.0, 0.0, 0.0, 0.0
+    j, row_cells = unsigned(slab), row_length(inner, z.shape[1])
+    z_az, d_az, r_z, r_d = 0.0, 0.0, 0.0, 0.0
     for n in range(row_count(inner, z.shape[1])):
-        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
-        own, old = z.dtype.type(0.0), z.dtype.type(0.0)
-        for k in range(s, s + wide - EDGE - EDGE):
-            own += z[j, k] * az[0, k]
-            old += d[j, k] * az[0, k]
-            gain += np.float64(r[j, k]) * np.float64(z[j, k])
-            left += np.float64(r[j, k]) * np.float64(d[j, k])
-        all_own += own
-        all_old += old
-    return all_own, all_old, gain, left
+        s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+        row_z_az, row_d_az = z.dtype.type(0.0), z.dtype.type(0.0)
+        for k in range(s, s + row_cells - EDGE - EDGE):
+            row_z_az += z[j, k] * az[0, k]
+            row_d_az += d[j, k] * az[0, k]
+            r_z += np.float64(r[j, k]) * np.float64(z[j, k])
+            r_d += np.float64(r[j, k]) * np.float64(d[j, k])
+        z_az += row_z_az
+        d_az += row_d_az
+    return z_az, d_az, r_z, r_d
 
 
 @threaded_part
@@ -58,18 +58,18 @@ def _measure(z, r, d, faces, place, inner, sums):
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
-        first = PAD + signed(n) * block
+        block_start = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
-        for j in range(first, min(first + block, end)):
+        for j in range(block_start, min(block_start + block, end)):
             apply_slabs(az, 0, z, j - 1, j, j + 1, faces, place, j, inner)
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
 
 @part
-def _mix(out, o, z, d, slab, a, b):
+def _mix(output, o, z, d, slab, a, b):
     o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(z.shape[1])):
-        out[o, k] = a * z[j, k] + b * d[j, k]
+        output[o, k] = a * z[j, k] + b * d[j, k]
 
 
 @part
@@ -80,17 +80,17 @@ def _rise(x, e, slab, alpha):
 
 
 @part
-def _lower(r, slab, q, alpha, inner):
+def _subtract_scaled(r, slab, q, alpha, inner):
     """Subtract ``alpha`` times the one slab of ``q`` from a slab of ``r``; return its summed size."""
-    whole, j, wide = 0.0, unsigned(slab), row_length(inner, r.shape[1])
+    slab_sum, j, row_cells = 0.0, unsigned(slab), row_length(inner, r.shape[1])
     for n in range(row_count(inner, r.shape[1])):
-        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
-        total = r.dtype.type(0.0)
-        for k in range(s, s + wide - EDGE - EDGE):
+        s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+        row_sum = r.dtype.type(0.0)
+        for k in range(s, s + row_cells - EDGE - EDGE):
             r[j, k] -= alpha * q[0, k]
-            total += abs(r[j, k])
-        whole += total
-    return whole
+            row_sum += abs(r[j, k])
+        slab_sum += row_sum
+    return slab_sum
 
 
 @threaded_part
@@ -99,11 +99,11 @@ def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
-        first = PAD + signed(n) * block
+        block_start = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
-        for j in range(first, min(first + block, end)):
+        for j in range(block_start, min(block_start + block, end)):
             apply_slabs(q, 0, z, j - 1, j, j + 1, faces, place, j, inner)
-            sums[j, 0] = _lower(r, j, q, alpha, inner)
+            sums[j, 0] = _subtract_scaled(r, j, q, alpha, inner)
             sums[j, 1] = largest_size(r, j, inner, top)
             seal_slab(r, j, inner, repeats)
 
@@ -111,34 +111,34 @@ def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
 @threaded_part
 def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
     """Write ``r -= alpha A (z + beta d)`` and each slab's sum of |r| and largest |r|."""
-    end, one = z.shape[0] - PAD, z.dtype.type(1.0)
+    end, unity = z.shape[0] - PAD, z.dtype.type(1.0)
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
-        low, mid, high = 0, 1, 2
-        first = PAD + signed(n) * block
-        for j in range(first - 1, min(first + block, end) + 1):
-            low, mid, high = mid, high, low
-            _mix(rows, high, z, d, j, one, beta)
-            if j > first:
+        lower_slab, mid, upper_slab = 0, 1, 2
+        block_start = PAD + signed(n) * block
+        for j in range(block_start - 1, min(block_start + block, end) + 1):
+            lower_slab, mid, upper_slab = mid, upper_slab, lower_slab
+            _mix(rows, upper_slab, z, d, j, unity, beta)
+            if j > block_start:
                 c = j - 1
-                apply_slabs(q, 0, rows, low, mid, high, faces, place, c, inner)
-                sums[c, 0] = _lower(r, c, q, alpha, inner)
+                apply_slabs(q, 0, rows, lower_slab, mid, upper_slab, faces, place, c, inner)
+                sums[c, 0] = _subtract_scaled(r, c, q, alpha, inner)
                 sums[c, 1] = largest_size(r, c, inner, top)
                 seal_slab(r, c, inner, repeats)
 
 
 @threaded_part
-def _keep(x, e, z, d, alpha, beta, before, inner):
+def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
     """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
-    one, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
+    unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
     for n in prange((x.shape[0] + block - 1) // block):
-        first = signed(n) * block
-        for j in range(first, min(first + block, x.shape[0])):
-            _mix(e, j, z, d, j, one, beta)
-            if before != 0:
-                _mix(x, j, z, d, j, alpha, alpha * beta + before)
+        block_start = signed(n) * block
+        for j in range(block_start, min(block_start + block, x.shape[0])):
+            _mix(e, j, z, d, j, unity, beta)
+            if previous_alpha != 0:
+                _mix(x, j, z, d, j, alpha, alpha * beta + previous_alpha)
             else:
                 _rise(x, e, j, alpha)
 
@@ -152,15 +152,15 @@ def _total(sums, column):
 
 
 @part
-def _most(sums, column):
-    most, k = 0.0, unsigned(column)
+def _max_of_column(sums, column):
+    maximum, k = 0.0, unsigned(column)
     for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
-        most = sums[j, k] if sums[j, k] > most else most
-    return most
+        maximum = sums[j, k] if sums[j, k] > maximum else maximum
+    return maximum
 
 
 @compiled
-def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit, max_limit, least, most):
+def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limit, max_limit, min_cycles, max_cycles):
     """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
 
     One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it. It takes at
@@ -175,49 +175,49 @@ def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit,
     cells = 1
     for axis in range(len(inner) + 1):
         cells *= place[1 + axis]
-    last, alpha, beta, before = 1.0, 0.0, 0.0, 0.0
-    begun, due, kept = d, False, False
-    mean, largest, best, since = 0.0, 0.0, np.inf, 0
+    d_ad, alpha, beta, previous_alpha = 1.0, 0.0, 0.0, 0.0
+    initial_d, is_pending, is_stored = d, False, False
+    mean, maximum, min_excess, stalled_cycles = 0.0, 0.0, np.inf, 0
     k = 0
-    while k < most and since < (STALLED if best <= NEARLY else PATIENCE):
+    while k < max_cycles and stalled_cycles < (STALLED if min_excess <= NEARLY else PATIENCE):
         if k >= 2:
-            _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
-            d, q, before, due, kept = q, d, 0.0, False, True
-        cycle(d if k == 0 else z, store, layout, room, rects, inner, repeats)
+            _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
+            d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
+        cycle(d if k == 0 else z, store, layout, buffer, rects, inner, repeats)
         _measure(d if k == 0 else z, r, d, faces, place, inner, sums)
-        own, old, gain = _total(sums, 0), _total(sums, 1), _total(sums, 2)
-        turn = 0.0 if k == 0 else -old / last
-        last = own + turn * old
-        if last < PARALLEL * own:
-            turn, last = 0.0, own
-        if not last > 0:
+        z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
+        turn = 0.0 if k == 0 else -d_az / d_ad
+        d_ad = z_az + turn * d_az
+        if d_ad < PARALLEL * z_az:
+            turn, d_ad = 0.0, z_az
+        if not d_ad > 0:
             break
-        alpha, beta = (gain + turn * _total(sums, 3)) / last, turn
+        alpha, beta = (r_z + turn * _total(sums, 3)) / d_ad, turn
         if k == 0:
             _first_step(r, d, faces, place, real(alpha), inner, repeats, sums)
-            before = alpha
+            previous_alpha = alpha
         else:
             _step(r, z, d, faces, place, real(alpha), real(beta), inner, repeats, sums)
-            due = True
+            is_pending = True
         k += 1
-        before_last = mean, largest
-        mean, largest = _total(sums, 0) / cells, _most(sums, 1)
-        if k >= least and mean <= mean_limit and largest <= max_limit:
+        previous_residuals = mean, maximum
+        mean, maximum = _total(sums, 0) / cells, _max_of_column(sums, 1)
+        if k >= min_cycles and mean <= mean_limit and maximum <= max_limit:
             break
-        worst = max(mean / mean_limit, largest / max_limit)
-        if k > 2 and worst > WORSE * best and best <= NEARLY:
-            mean, largest = before_last
-            due = False
+        excess = max(mean / mean_limit, maximum / max_limit)
+        if k > 2 and excess > WORSE * min_excess and min_excess <= NEARLY:
+            mean, maximum = previous_residuals
+            is_pending = False
             break
-        since = 0 if worst < 0.8 * best else since + 1
-        best = min(best, worst)
-    if not kept:
-        return k, mean, largest, before + due * alpha * beta, due * alpha
-    if due:
-        _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
+        stalled_cycles = 0 if excess < 0.8 * min_excess else stalled_cycles + 1
+        min_excess = min(min_excess, excess)
+    if not is_stored:
+        return k, mean, maximum, previous_alpha + is_pending * alpha * beta, is_pending * alpha
+    if is_pending:
+        _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
     for j in range(x.shape[0]):
-        copy_slab(begun, j, x, j)
-    return k, mean, largest, 1.0, 0.0
+        copy_slab(initial_d, j, x, j)
+    return k, mean, maximum, 1.0, 0.0
 
 
 @dataclass(slots=True)
@@ -264,10 +264,10 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
 def place_window(layout: np.ndarray, window: Window) -> None:
     """Write the window (first and end along each axis, the last axis first, padded) and its coarser images."""
     axes = layout.shape[1] // 3
-    first, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
+    start, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
     for row in layout:
         cells = row[1 : 1 + axes].tolist()
-        inside = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(first, end, cells, strict=True)]
-        row[1 + axes :] = [value for pair in inside for value in pair]
-        if end[0] > first[0]:
-            first, end = [a // 2 - 1 for a in first], [(b + 1) // 2 + 1 for b in end]
+        bounds = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(start, end, cells, strict=True)]
+        row[1 + axes :] = [value for pair in bounds for value in pair]
+        if end[0] > start[0]:
+            start, end = [a // 2 - 1 for a in start], [(b + 1) // 2 + 1 for b in end]

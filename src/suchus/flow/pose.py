@@ -16,23 +16,25 @@ TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 """For each axis of turning of a grid with so many axes, the first and the second axis that lie across it."""
 
 
-def cross(one: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> tuple[Any, Any, Any]:
+def cross(
+    first_vector: Sequence[float] | np.ndarray, second_vector: Sequence[float] | np.ndarray
+) -> tuple[Any, Any, Any]:
     """Return the vector product of vectors of shape (3, ...), component by component."""
-    (a, b, c), (x, y, z) = one, other
+    (a, b, c), (x, y, z) = first_vector, second_vector
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def turned(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
     """Return vectors of shape (3, ...) turned by a rotation matrix, component by component."""
     x, y, z = vectors
-    one, two, three = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
-    return one, two, three
+    rotated_x, rotated_y, rotated_z = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
+    return rotated_x, rotated_y, rotated_z
 
 
 def length(parts: Sequence[float] | np.ndarray) -> float:
     """Return the length of a vector of one, two or three parts, in their unit."""
-    given = np.asarray(parts, float)
-    return abs(float(given[0])) if given.size == 1 else float(speeds(given))
+    vector = np.asarray(parts, float)
+    return abs(float(vector[0])) if vector.size == 1 else float(speeds(vector))
 
 
 def speeds(velocity: np.ndarray) -> np.ndarray:
@@ -76,7 +78,7 @@ class Pose:
         if not isfinite(sum(self.position) + sum(self.velocity) + turns):
             self._refuse_endless()
         position, velocity = (
-            (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
+            (*vector, 0.0) if len(vector) == 2 and axes == 3 else vector for vector in (self.position, self.velocity)
         )
         if len(position) != axes or len(velocity) != axes:
             raise InvalidDesign(
@@ -99,9 +101,9 @@ class Pose:
             InvalidDesign: naming them.
         """
         for name in ("position", "velocity", "angle", "spin", "pitch", "roll", "spin_x", "spin_y"):
-            given = getattr(self, name)
-            if not all(map(isfinite, given if isinstance(given, tuple) else (given,))):
-                raise InvalidDesign(f"{name} of a pose is {show(given)}; finite numbers are needed.")
+            quantity = getattr(self, name)
+            if not all(map(isfinite, quantity if isinstance(quantity, tuple) else (quantity,))):
+                raise InvalidDesign(f"{name} of a pose is {show(quantity)}; finite numbers are needed.")
 
     @property
     def in_plane(self) -> bool:
@@ -124,20 +126,23 @@ class Pose:
     def place(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return points of the body's frame in the world, in space, component by component [m]."""
         x, y, z = (
-            part + at for part, at in zip(turned(self.matrix, points), self.along(3).position, strict=True)
+            coordinate + origin
+            for coordinate, origin in zip(turned(self.matrix, points), self.along(3).position, strict=True)
         )  # fmt: skip
         return x, y, z
 
     def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return points of the world in the body's frame, in space, component by component [m]."""
-        away = [part - at for part, at in zip(points, self.along(3).position, strict=True)]
-        return turned(self.matrix.T, away)
+        relative = [coordinate - origin for coordinate, origin in zip(points, self.along(3).position, strict=True)]
+        return turned(self.matrix.T, relative)
 
     def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
         """Return the velocity that the rigid motion gives to points of the world, in space [m/s]."""
-        place = self.along(3)
-        away = [part - at for part, at in zip(points, place.position, strict=True)]
-        x, y, z = (own + part for own, part in zip(place.velocity, cross(place.spins, away), strict=True))
+        pose = self.along(3)
+        relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
+        x, y, z = (
+            linear + rotational for linear, rotational in zip(pose.velocity, cross(pose.spins, relative), strict=True)
+        )
         return x, y, z
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -193,10 +198,11 @@ class Oscillation:
         heave, pitch = rate * time + self.phase, rate * time + self.pitch_phase
         return Pose(
             position=tuple(
-                mean + part * np.sin(heave) for mean, part in zip_longest(self.centre, self.heave, fillvalue=0.0)
+                mean + amplitude * np.sin(heave)
+                for mean, amplitude in zip_longest(self.centre, self.heave, fillvalue=0.0)
             ),
             angle=self.mean_angle + self.pitch * np.sin(pitch),
-            velocity=tuple(rate * part * np.cos(heave) for part in self.heave),
+            velocity=tuple(rate * amplitude * np.cos(heave) for amplitude in self.heave),
             spin=rate * self.pitch * np.cos(pitch),
         )
 
@@ -214,7 +220,7 @@ class Glide:
         """Return the pose at a time [s]."""
         return Pose(
             position=tuple(
-                start + part * time for start, part in zip_longest(self.start, self.velocity, fillvalue=0.0)
+                start + speed * time for start, speed in zip_longest(self.start, self.velocity, fillvalue=0.0)
             ),
             velocity=self.velocity,
         )

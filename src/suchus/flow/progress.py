@@ -13,8 +13,8 @@ _QUIET = 2.0
 class Bar:
     """Shows a run's progress on the error stream, once it has lasted two seconds."""
 
-    def __init__(self, start: float, until: float, cells: int, *, show: bool) -> None:
-        self._start, self._until, self._cells, self._show = start, until, cells, show
+    def __init__(self, start: float, end_time: float, cells: int, *, show: bool) -> None:
+        self._start, self._end_time, self._cells, self._show = start, end_time, cells, show
         self._opened, self._began, self._steps = monotonic(), 0.0, -1
         self._progress: Progress | None = None
         self._task = TaskID(0)
@@ -44,6 +44,6 @@ class Bar:
                 console=Console(stderr=True), refresh_per_second=4,
             )  # fmt: skip
             self._progress.start()
-            self._task = self._progress.add_task("", total=self._until, speed=0.0)
+            self._task = self._progress.add_task("", total=self._end_time, speed=0.0)
         speed = self._steps * self._cells / max(monotonic() - self._began, 1e-9) / 1e6
         self._progress.update(self._task, completed=time, speed=speed)

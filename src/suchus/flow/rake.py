@@ -49,42 +49,42 @@ def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) ->
     Raises:
         InvalidDesign: a point that is not in the domain.
     """
-    where, axes = np.atleast_2d(np.asarray(points, float)), water.axes
-    if where.ndim != 2 or where.shape[1] != axes:
+    positions, axes = np.atleast_2d(np.asarray(points, float)), water.axes
+    if positions.ndim != 2 or positions.shape[1] != axes:
         raise InvalidDesign(
             f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:axes])}) for each point."
         )
-    local = where - frame[0]
-    _check(water.layers[-1].grid, where, local, frame[0])
-    pressure, velocity = np.empty(len(where)), np.empty((axes, len(where)))
+    local = positions - frame[0]
+    _check(water.layers[-1].grid, positions, local, frame[0])
+    pressure, velocity = np.empty(len(positions)), np.empty((axes, len(positions)))
     for layer in reversed(water.layers):  # what the finest has at a point counts
-        here = np.flatnonzero(_inside(layer.grid, local))
-        places, steps = padded(local[here].T, layer.grid), steps_of(layer.p)
-        found = np.empty(len(here))
-        interpolate(layer.p.reshape(-1), steps, places, found)
-        pressure[here] = found
-        for d, part in enumerate(layer.velocity):
+        indices = np.flatnonzero(_is_inside(layer.grid, local))
+        places, steps = padded(local[indices].T, layer.grid), steps_of(layer.p)
+        values = np.empty(len(indices))
+        interpolate(layer.p.reshape(-1), steps, places, values)
+        pressure[indices] = values
+        for d, component in enumerate(layer.velocity):
             on_faces = places.copy()
             on_faces[d] += 0.5
-            interpolate(part.reshape(-1), steps, on_faces, found)
-            velocity[d, here] = found
-    return Sample(points=where, velocity=velocity.T + frame[1], pressure=density * (pressure - water.level))
+            interpolate(component.reshape(-1), steps, on_faces, values)
+            velocity[d, indices] = values
+    return Sample(points=positions, velocity=velocity.T + frame[1], pressure=density * (pressure - water.level))
 
 
-def _inside(grid: Grid, local: np.ndarray) -> np.ndarray:
+def _is_inside(grid: Grid, local: np.ndarray) -> np.ndarray:
     """Return which points, shape (point, axis), lie in a grid."""
-    low = np.array(grid.origin)
-    return np.asarray(((local >= low) & (local <= low + grid.size)).all(axis=1))
+    low_corner = np.array(grid.origin)
+    return np.asarray(((local >= low_corner) & (local <= low_corner + grid.size)).all(axis=1))
 
 
-def _check(grid: Grid, where: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
-    outside = np.flatnonzero(~_inside(grid, local))
-    if outside.size:
-        low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
-        point = ", ".join(f"{part:.4g}" for part in where[outside[0]])
+def _check(grid: Grid, positions: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
+    outside_indices = np.flatnonzero(~_is_inside(grid, local))
+    if outside_indices.size:
+        low_corner, high_corner = np.array(grid.origin), np.array(grid.origin) + grid.size
+        point = ", ".join(f"{coordinate:.4g}" for coordinate in positions[outside_indices[0]])
         ends = ", ".join(
-            f"{axis} = {first:.4g} to {last:.4g} m"
-            for axis, first, last in zip("xyz", low + frame, high + frame, strict=False)
+            f"{axis} = {lower_bound:.4g} to {upper_bound:.4g} m"
+            for axis, lower_bound, upper_bound in zip("xyz", low_corner + frame, high_corner + frame, strict=False)
         )
         raise InvalidDesign(f"the point ({point}) m is outside the domain {ends}; give points in it.")
 
@@ -140,6 +140,6 @@ class Rake:
         return np.array([sample.pressure for sample in self._samples])
 
 
-def due_after(time: float, every: float | None) -> float:
+def due_after(time: float, interval: float | None) -> float:
     """Return the next multiple of ``every`` after a time [s]; 0, which is always past, if that is None."""
-    return 0.0 if every is None else float((np.floor(time / every * (1 + 1e-12)) + 1) * every * (1 - 1e-12))
+    return 0.0 if interval is None else float((np.floor(time / interval * (1 + 1e-12)) + 1) * interval * (1 - 1e-12))

@@ -94,9 +94,9 @@ class Record:
     def units(self) -> dict[str, str]:
         """The unit of each column, as CF conventions write it; forces in the plane are per metre of depth."""
         force, torque = ("N", "N m") if self.axes == 3 else ("N m-1", "N")
-        own = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
-        own["power"] = "W" if self.axes == 3 else "W m-1"
-        return {n: own.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
+        unit_by_column = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
+        unit_by_column["power"] = "W" if self.axes == 3 else "W m-1"
+        return {n: unit_by_column.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
         """Return one of the ``columns`` of one body, by its name or number, shape (step,).
@@ -120,8 +120,8 @@ class Record:
         number = self._number(body)
         if not any(self.divided[number:][:1]):
             raise OutsideLimits(f"body {self.names[number]!r} is not divided; give its Midline or Trunk some cuts.")
-        first = sum(self.divided[:number])
-        return self.parts[:, first : first + self.divided[number], PART_COLUMNS.index(name)]
+        start = sum(self.divided[:number])
+        return self.parts[:, start : start + self.divided[number], PART_COLUMNS.index(name)]
 
     def _number(self, body: str | int) -> int:
         if isinstance(body, str) and body in self.names:
@@ -154,7 +154,8 @@ class Record:
         if self.axes == 2:
             raise OutsideLimits("a body in the plane has no attitude but its angle; take column('angle').")
         angles = [self.column(name, body) for name in ("angle", "pitch", "roll")]
-        return np.array([rotation.from_angles(*each) for each in zip(*angles, strict=True)]).reshape(-1, 4)
+        quaternions = [rotation.from_angles(*step_angles) for step_angles in zip(*angles, strict=True)]
+        return np.array(quaternions).reshape(-1, 4)
 
     def coefficients(
         self,
@@ -181,8 +182,8 @@ class Record:
             OutsideLimits: a reference that is not a positive number, an area in the plane or none in space.
         """
         if (area is None) != (self.axes == 2):
-            what = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
-            raise OutsideLimits(f"the area of the reference is {area}: {what}.")
+            message = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
+            raise OutsideLimits(f"the area of the reference is {area}: {message}.")
         size = length if area is None else area
         for name, value, unit in (
             ("length", length, "m"), ("speed", speed, "m/s"), ("density", density, "kg/m3"), ("area", size, "m2"),

@@ -48,7 +48,7 @@ REFUSED = 0.2
 DOUBTED = 0.1
 """Estimated error of the force from which a warning is given [-]."""
 
-_AT_ONE, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
+_ERROR_AT_ONE_CELL, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
 
 
 def cells_across(length: float, speed: float, viscosity: float, cell: float) -> float:
@@ -69,9 +69,9 @@ def estimate(cells: float, *, blunt: bool = False) -> float:
 
     ``blunt`` is whether it is that of a blunt body in space.
     """
-    return 0.0 if cells == inf else _AT_ONE[blunt] * cells ** -_ORDER[blunt]
+    return 0.0 if cells == inf else _ERROR_AT_ONE_CELL[blunt] * cells ** -_ORDER[blunt]
 
 
 def needed(error: float, *, blunt: bool = False) -> float:
     """Return the cells across the layer at which the estimate is ``error``; ``blunt`` as in ``estimate``."""
-    return float((_AT_ONE[blunt] / error) ** (1 / _ORDER[blunt]))
+    return float((_ERROR_AT_ONE_CELL[blunt] / error) ** (1 / _ORDER[blunt]))

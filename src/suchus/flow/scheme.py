@@ -26,19 +26,19 @@ TRIED = -1.0, 0.0, 3.0
 @part
 def median(a, b, c):
     """Return the middle one of three numbers."""
-    low = a if a < b else b
-    high = a if a > b else b
-    capped = high if high < c else c
-    return low if low > capped else capped
+    smaller = a if a < b else b
+    larger = a if a > b else b
+    capped = larger if larger < c else c
+    return smaller if smaller > capped else capped
 
 
 @part
 def limited_quick(upstream, centre, downstream):
     """Return the face value: QUICK, kept monotone between its neighbours."""
     real = type(centre)
-    quick = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
+    quick_value = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
     steepest = real(10.0) * centre - real(9.0) * upstream
-    return median(quick, centre, median(steepest, centre, downstream))
+    return median(quick_value, centre, median(steepest, centre, downstream))
 
 
 def central(upstream, centre, downstream):  # noqa: ARG001
@@ -70,16 +70,16 @@ class Scheme:
         """
         compiled, name = numba.njit(self.face), self.name
         try:
-            found = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
+            face_values = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
         except Exception as error:  # whatever a user's function raises, and numba's errors, which have no base but this
             raise InvalidDesign(
                 f"the advection scheme {name} cannot be used: {show(str(error).strip())}; it is a function "
                 f"of three numbers (upstream, centre, downstream) that numba compiles and that returns one."
             ) from error
-        for value, has in zip(TRIED, found, strict=True):
-            if not (isfinite(has) and abs(has - value) <= 1e-5 * abs(value)):
+        for value, face_value in zip(TRIED, face_values, strict=True):
+            if not (isfinite(face_value) and abs(face_value - value) <= 1e-5 * abs(value)):
                 raise InvalidDesign(
-                    f"the advection scheme {name} makes {has:.6g} m/s of water that moves at {value:g} m/s "
+                    f"the advection scheme {name} makes {face_value:.6g} m/s of water that moves at {value:g} m/s "
                     f"everywhere; shares of the three velocities must add up to 1."
                 )
 

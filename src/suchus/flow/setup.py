@@ -87,7 +87,7 @@ class Setup:
                 raise InvalidDesign(f"{name} is {value}; a positive number is needed.")
         if not 0 < self.courant <= 1:
             raise InvalidDesign(f"courant is {self.courant}; above 1 the time stepping explodes. Give 0 to 1, say 0.8.")
-        if not callable(self.stream) and not all(isfinite(part) for part in self.stream):
+        if not callable(self.stream) and not all(isfinite(component) for component in self.stream):
             raise InvalidDesign(f"stream is {self.stream} m/s; two finite numbers are needed.")
         if self.step is not None and not (isfinite(self.step) and self.step > 0):
             raise InvalidDesign(f"step is {self.step} s; a time step is positive. Give None to let the solver choose.")
@@ -104,8 +104,10 @@ class Setup:
             )
         bodies: Any = self.bodies
         if not isinstance(bodies, tuple) or not all(isinstance(b, Body | FreeBody) for b in bodies):
-            given = getattr(bodies, "__name__", type(bodies).__name__)
-            raise InvalidDesign(f"bodies is a {given}; give a tuple of Body and FreeBody, (body,) for a single one.")
+            type_name = getattr(bodies, "__name__", type(bodies).__name__)
+            raise InvalidDesign(
+                f"bodies is a {type_name}; give a tuple of Body and FreeBody, (body,) for a single one."
+            )
         if not callable(self.stream):
             self._check_stream(self.stream, "")
         names = [b.name for b in self.bodies]
@@ -169,24 +171,26 @@ class Setup:
         if self.start is None:
             return self.far(0.0)[component]
         ends = [n + 2 * PAD for n in grid.cells]
-        along = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
-        points = np.meshgrid(*along[::-1], indexing="ij")[::-1]
-        given = self.start(*points)
-        if len(given) != self.grid.axes:
-            raise InvalidDesign(f"start gives {len(given)} velocities; one along each of {self.grid.axes} axes counts.")
-        velocity = np.asarray(given[component], float)
+        coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
+        points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
+        velocities = self.start(*points)
+        if len(velocities) != self.grid.axes:
+            raise InvalidDesign(
+                f"start gives {len(velocities)} velocities; one along each of {self.grid.axes} axes counts."
+            )
+        velocity = np.asarray(velocities[component], float)
         if velocity.shape not in ((), points[0].shape) or not np.isfinite(velocity).all():
             raise InvalidDesign(
-                f"start gives {show(given[component])} along {'xyz'[component]}; a finite velocity for each point is "
-                f"needed [m/s], shape {points[0].shape}."
+                f"start gives {show(velocities[component])} along {'xyz'[component]}; a finite velocity for each point "
+                f"is needed [m/s], shape {points[0].shape}."
             )
         return velocity
 
-    def _check_stream(self, stream: Any, when: str) -> None:
+    def _check_stream(self, stream: Any, time_text: str) -> None:
         allowed = [(2,), (self.grid.axes,)]
         if np.shape(stream) not in allowed or not np.isfinite(np.asarray(stream, float)).all():
-            what = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
-            raise InvalidDesign(f"stream is {show(stream)}{when}; give {what} in m/s.")
+            needs = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
+            raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
     def check(self) -> dict[str, float]:
         """Return, per body, the share of its length that is too thin for the grid.
@@ -195,16 +199,16 @@ class Setup:
             InvalidDesign: a body outside the domain, too thin everywhere, or a Reynolds number that the grid
                 cannot carry.
         """
-        thin = {}
+        thin_fractions = {}
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             pose = pose.along(self.grid.axes)
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
-            thin[body.name] = thin_share(body, self.grid, 0.0)
+            thin_fractions[body.name] = thin_share(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
-        return thin
+        return thin_fractions
 
     @property
     def _mirrors(self) -> tuple[bool, ...]:
@@ -212,14 +216,14 @@ class Setup:
         sides = self.sides if self.around is None else sides_of(self.grid, self.around, self.sides)
         return sides.mirrors(self.grid.axes)
 
-    def _check_weight(self, body: FreeBody, cut: tuple[bool, ...]) -> None:
+    def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
         """Refuse a weight that would draw a body through a mirror that cuts it.
 
         Raises:
             InvalidDesign: naming the axis.
         """
         for axis, pull in enumerate(body.gravity):
-            if pull and any(cut[2 * axis : 2 * axis + 2]):
+            if pull and any(mirror_cuts[2 * axis : 2 * axis + 2]):
                 name = "xyz"[axis]
                 raise InvalidDesign(
                     f"gravity of {body.name} is {body.gravity} m/s2, and a Mirror across {name} cuts it, where it must "
@@ -249,17 +253,17 @@ class Setup:
         """
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
-        cells, blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _blunt(body)
-        error, fewest = estimate(cells, blunt=blunt), needed(REFUSED, blunt=blunt)
-        if not self.coarse and cells * slack**0.5 < fewest:
+        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _has_blunt_shape(body)
+        error, min_cells = estimate(cells, blunt=is_blunt), needed(REFUSED, blunt=is_blunt)
+        if not self.coarse and cells * slack**0.5 < min_cells:
             layer = cells * self.grid.cell
-            least = prod(self.grid.cells) * (fewest / cells) ** self.grid.axes / 1e6
-            size = f" (this domain then takes {least:.3g} million cells)" if self.grid.axes == 3 else ""
+            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.axes / 1e6
+            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.axes == 3 else ""
             raise InvalidDesign(
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
-                f"{100 * error:.0f} %; take cells of at most {layer / fewest:.3g} m{size}, better "
-                f"{layer / needed(DOUBTED, blunt=blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
+                f"{100 * error:.0f} %; take cells of at most {layer / min_cells:.3g} m{size}, better "
+                f"{layer / needed(DOUBTED, blunt=is_blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
                 f"own, coarse=True to go on anyway."
             )
         return error
@@ -268,7 +272,7 @@ class Setup:
         """Return what is to be said of an estimated error of a body's force, if anything is."""
         if self.coarse or error <= DOUBTED:
             return None
-        cells, better = (needed(wanted, blunt=_blunt(body)) for wanted in (error, DOUBTED))
+        cells, better = (needed(target_error, blunt=_has_blunt_shape(body)) for target_error in (error, DOUBTED))
         times = ceil(100 * better / cells) / 100
         return Doubtful(
             f"the boundary layer of {body.name} is {cells:.2g} cells thin: its force may be off by some "
@@ -279,5 +283,5 @@ class Setup:
         )
 
 
-def _blunt(body: Body | FreeBody) -> bool:
+def _has_blunt_shape(body: Body | FreeBody) -> bool:
     return isinstance(body.shape, SpaceShape) and body.shape.blunt

@@ -90,7 +90,7 @@ class Shape(ABC):
         return True
 
 
-_ROUGH, _FEWEST = 256, 32
+_COARSE_POINTS, _MIN_POINTS = 256, 32
 """Points by which the length of an outline is found, and those that markers are made of, at least [-]."""
 
 
@@ -134,7 +134,7 @@ class Solid(Shape):
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        x, y = pose.to_world(*_ring(self, _ROUGH))
+        x, y = pose.to_world(*_ring(self, _COARSE_POINTS))
         return float(x.min()), float(x.max()), float(y.min()), float(y.max())
 
     def mass(self, time: float) -> Mass:
@@ -145,13 +145,13 @@ class Solid(Shape):
 def _ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return ``count`` points around the outline, which is rigid: they are kept, where the shape can be a key."""
     try:
-        return _kept_ring(shape, count)
+        return _cached_ring(shape, count)
     except TypeError:
         return shape.outline(count)
 
 
 @lru_cache(maxsize=64)
-def _kept_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _cached_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
     x, y = (np.array(line, float) for line in shape.outline(count))
     x.flags.writeable = y.flags.writeable = False
     return x, y
@@ -159,13 +159,13 @@ def _kept_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _edges(shape: Solid, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return middles, outward normals and lengths of the outline's edges in the body's frame, about evenly spaced."""
-    rough = np.stack(_ring(shape, _ROUGH))
-    around = float(np.hypot(*(np.roll(rough, -1, axis=1) - rough)).sum())
-    here = np.stack(_ring(shape, max(_FEWEST, int(np.ceil(around / spacing)))))
-    following = np.roll(here, -1, axis=1)
-    along = following - here
-    length = np.hypot(*along)
-    return (here + following) / 2, np.stack([along[1], -along[0]]) / length, length
+    coarse_ring = np.stack(_ring(shape, _COARSE_POINTS))
+    perimeter = float(np.hypot(*(np.roll(coarse_ring, -1, axis=1) - coarse_ring)).sum())
+    corners = np.stack(_ring(shape, max(_MIN_POINTS, int(np.ceil(perimeter / spacing)))))
+    next_corners = np.roll(corners, -1, axis=1)
+    edges = next_corners - corners
+    length = np.hypot(*edges)
+    return (corners + next_corners) / 2, np.stack([edges[1], -edges[0]]) / length, length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,10 +208,10 @@ class Ellipse(Solid):
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance and outward normal, by Newton's method on the foot point."""
-        px, py = (np.ascontiguousarray(part, float) for part in np.broadcast_arrays(x, y))
-        out = np.empty((3, px.size))
-        measure_ellipse(out, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
-        d, nx, ny = out.reshape(3, *px.shape)
+        px, py = (np.ascontiguousarray(coordinate, float) for coordinate in np.broadcast_arrays(x, y))
+        fields = np.empty((3, px.size))
+        measure_ellipse(fields, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
+        d, nx, ny = fields.reshape(3, *px.shape)
         return d, nx, ny
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -265,8 +265,8 @@ class Plate(Solid):
         s = np.linspace(0, 2 * (turn + flat), count, endpoint=False)
         lap, second = s % (turn + flat), np.where(s >= turn + flat, -1.0, 1.0)
         angle = np.minimum(lap / r, np.pi) - np.pi / 2
-        along = np.maximum(lap - turn, 0.0)
-        return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
+        flat_distance = np.maximum(lap - turn, 0.0)
+        return second * (half + r * np.cos(angle) - flat_distance), second * r * np.sin(angle)
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray:
         """Return the line between the middles of the round ends."""

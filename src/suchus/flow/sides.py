@@ -182,10 +182,10 @@ class Sides:
 
     def __post_init__(self) -> None:
         check_kinds(self)
-        for first, second in zip(NAMES[::2], NAMES[1::2], strict=True):
-            if isinstance(getattr(self, first), Periodic) != isinstance(getattr(self, second), Periodic):
+        for low_name, high_name in zip(NAMES[::2], NAMES[1::2], strict=True):
+            if isinstance(getattr(self, low_name), Periodic) != isinstance(getattr(self, high_name), Periodic):
                 raise InvalidDesign(
-                    f"of {first} and {second}, one side is periodic and the other is not; make both Periodic()."
+                    f"of {low_name} and {high_name}, one side is periodic and the other is not; make both Periodic()."
                 )
         plane, ends = self.around(2), (self.low, self.high)
         enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
@@ -219,9 +219,9 @@ class Sides:
             InvalidDesign: a wall, an inflow or a mirror would travel.
         """
         for number, name in enumerate(NAMES[: 2 * axes]):
-            side, across = getattr(self, name), travels[number // 2]
+            side, travels_across = getattr(self, name), travels[number // 2]
             may_across, may_along = side.travels
-            if (across and not may_across) or (any(travels) and not may_along):
+            if (travels_across and not may_across) or (any(travels) and not may_along):
                 raise InvalidDesign(
                     f"the grid is to follow {body!r} and would take its {name} side along; the place of a side of the "
                     f"kind {type(side).__name__} is fixed: make it a Stream(), or leave follow None in a domain that "
@@ -244,9 +244,9 @@ class Sides:
 
     def unbounded(self, axes: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
-        every = self.around(axes)
-        open_sides = [isinstance(s, Stream) and s.unbounded for s in every]
-        return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, every, strict=True))
+        sides = self.around(axes)
+        open_sides = [isinstance(s, Stream) and s.unbounded for s in sides]
+        return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, sides, strict=True))
 
     def repeats(self, axes: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""

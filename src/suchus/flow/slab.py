@@ -39,24 +39,24 @@ def inner_strides(cells: tuple[int, ...]) -> Strides:
 
 
 @part
-def strides_like(inner, wide):
+def strides_like(inner, row_cells):
     """Return the strides within a slab of rows that are ``wide`` cells long, as many as ``inner`` has."""
-    return tuple_setitem(inner, len(inner) - 1, wide if len(inner) > 1 else UNIT)
+    return tuple_setitem(inner, len(inner) - 1, row_cells if len(inner) > 1 else UNIT)
 
 
 @part
-def block_of(inner, count, least):
+def block_of(inner, count, min_planes):
     """Return how many of ``count`` slabs a thread takes at a time: in space an even number of such blocks, if it can.
 
     Args:
         inner: strides within a slab.
         count: slabs, those of one run of the loop.
-        least: planes of a block in space, at least.
+        min_planes: planes of a block in space, at least.
     """
     if len(inner) == 1:
         return BLOCK
     blocks = 2 * ((count + 2 * PLANES - 1) // (2 * PLANES))
-    return max((count + blocks - 1) // blocks, least)
+    return max((count + blocks - 1) // blocks, min_planes)
 
 
 @part
@@ -102,15 +102,15 @@ def window_columns(place, inner):
 
 
 @part
-def near_strides(near, inner):
+def near_strides(near_layout, inner):
     """Return the strides within a slab of the arrays of a window."""
     w = 3 * len(inner) + 2
-    return strides_like(inner, unsigned(near[w + 1] - near[w] + 1))
+    return strides_like(inner, unsigned(near_layout[w + 1] - near_layout[w] + 1))
 
 
 @part
-def near_shift(near, inner, row, wide):
+def near_shift(near_layout, inner, row, row_cells):
     """Return by how much cells of a row come later in a slab than in one of the arrays of a window."""
-    w, first = 3 * len(inner) + 2, unsigned(near[len(inner) + 4]) if len(inner) > 1 else NONE
-    columns = unsigned(near[w + 1] - near[w] + 1)
-    return row * wide + unsigned(near[w]) - (row - first) * columns
+    w, first_row = 3 * len(inner) + 2, unsigned(near_layout[len(inner) + 4]) if len(inner) > 1 else NONE
+    columns = unsigned(near_layout[w + 1] - near_layout[w] + 1)
+    return row * row_cells + unsigned(near_layout[w]) - (row - first_row) * columns

@@ -16,13 +16,13 @@ from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 
-_FEWEST = 16
+_MIN_RINGS = 16
 """Rings of points on a skin, at least [-]."""
 
 _RIM = 96
 """Corners of the ellipse in the middle of a thin ellipsoid [-]."""
 
-_BLUNT = 2.0
+_MAX_BLUNT_RATIO = 2.0
 """Longest over shortest axis of a body up to which its drag on a grid is off as a sphere's is [-]."""
 
 _ROUND = 1e-3
@@ -111,7 +111,7 @@ class SpaceShape(ABC):
 
 def is_blunt(axes: np.ndarray) -> bool:
     """Return whether a body of these axes is about as long along each."""
-    return float(axes.max()) <= _BLUNT * float(axes.min())
+    return float(axes.max()) <= _MAX_BLUNT_RATIO * float(axes.min())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,25 +136,25 @@ class Ellipsoid(SpaceShape):
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Return which points of its own frame lie inside, shape (3, ...) [m]."""
-        x, y, z = (part / half for part, half in zip(points, self.half, strict=True))
+        x, y, z = (coordinate / half for coordinate, half in zip(points, self.half, strict=True))
         return np.asarray(x * x + y * y + z * z < 1 - INSIDE)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return the field on the points of a window."""
         place = pose.along(3)
-        out = np.zeros((8, z.size, y.size, x.size))
-        out[7] = np.inf
+        fields = np.zeros((8, z.size, y.size, x.size))
+        fields[7] = np.inf
         cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_ellipsoid(
-            out, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
+            fields, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
             place.spins, self.half, float(reach), cell,
         )  # fmt: skip
-        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), out[7])
+        return SpaceField(fields[0], (fields[1], fields[2], fields[3]), (fields[4], fields[5], fields[6]), fields[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
-        place, rings = pose.along(3), max(_FEWEST, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
+        place, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
         sin = np.sqrt(1 - cos * cos)[:, None]
@@ -173,18 +173,18 @@ class Ellipsoid(SpaceShape):
         """Return the box around the ellipsoid."""
         place = pose.along(3)
         reach = np.sqrt(((place.matrix * self.half) ** 2).sum(axis=1)).tolist()
-        return tuple(p + way * r for p, r in zip(place.position, reach, strict=True) for way in (-1.0, 1.0))
+        return tuple(p + sign * r for p, r in zip(place.position, reach, strict=True) for sign in (-1.0, 1.0))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return an ellipse across the smallest axis, as far as its own axes are longer; a long one has none."""
-        thin, *longer = np.argsort(self.half)
-        excess = self.half**2 - self.half[thin] ** 2
-        across = self.half * excess / (self.half**2 + self.half[thin] ** 2)
-        if across[longer].min() <= _ROUND * self.half[thin]:
+        thin_axis, *long_axes = np.argsort(self.half)
+        excess = self.half**2 - self.half[thin_axis] ** 2
+        rim_half_axes = self.half * excess / (self.half**2 + self.half[thin_axis] ** 2)
+        if rim_half_axes[long_axes].min() <= _ROUND * self.half[thin_axis]:
             return None
         turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
         rim = np.zeros((3, turn.size))
-        rim[longer] = across[longer, None] * np.stack([np.cos(turn), np.sin(turn)])
+        rim[long_axes] = rim_half_axes[long_axes, None] * np.stack([np.cos(turn), np.sin(turn)])
         rim, middle = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
         return np.stack([np.broadcast_to(middle[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
@@ -203,9 +203,9 @@ class Ellipsoid(SpaceShape):
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume and moments; the centre is the origin."""
-        volume, none = self.volume(time), (0.0, 0.0, 0.0)
+        volume, zero = self.volume(time), (0.0, 0.0, 0.0)
         moments = tensor(np.diag(volume * self.half**2 / 5))
-        return SpaceMass(volume=volume, centre=none, centre_rate=none, moments=moments, swirl=none)
+        return SpaceMass(volume=volume, centre=zero, centre_rate=zero, moments=moments, swirl=zero)
 
 
 class Sphere(Ellipsoid):

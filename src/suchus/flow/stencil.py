@@ -30,25 +30,25 @@ def weights(inner, real):
 @part
 def seal_slab(a, slab, inner, repeats):
     """Fill the cells beside the domain that the stencil reads along the axes of a slab."""
-    j, wide = unsigned(slab), row_length(inner, a.shape[1])
+    j, row_cells = unsigned(slab), row_length(inner, a.shape[1])
     for row in range(row_count(inner, a.shape[1])):
-        first = EDGE + (EDGE + row) * wide if len(inner) > 1 else EDGE
-        last = first + wide - EDGE - EDGE - UNIT
+        first_cell = EDGE + (EDGE + row) * row_cells if len(inner) > 1 else EDGE
+        last_cell = first_cell + row_cells - EDGE - EDGE - UNIT
         if repeats[0]:
-            a[j, first - UNIT] = a[j, last]
-            a[j, last + UNIT] = a[j, first]
+            a[j, first_cell - UNIT] = a[j, last_cell]
+            a[j, last_cell + UNIT] = a[j, first_cell]
         else:
-            a[j, first - UNIT] = a[j, first]
-            a[j, last + UNIT] = a[j, last]
+            a[j, first_cell - UNIT] = a[j, first_cell]
+            a[j, last_cell + UNIT] = a[j, last_cell]
     if len(inner) > 1:
-        first, last = EDGE * wide, unsigned(a.shape[1]) - (EDGE + UNIT) * wide
-        for k in range(wide):
-            a[j, first - wide + k] = a[j, last + k] if repeats[1] else a[j, first + k]
-            a[j, last + wide + k] = a[j, first + k] if repeats[1] else a[j, last + k]
+        first_cell, last_cell = EDGE * row_cells, unsigned(a.shape[1]) - (EDGE + UNIT) * row_cells
+        for k in range(row_cells):
+            a[j, first_cell - row_cells + k] = a[j, last_cell + k] if repeats[1] else a[j, first_cell + k]
+            a[j, last_cell + row_cells + k] = a[j, first_cell + k] if repeats[1] else a[j, last_cell + k]
 
 
 @part
-def copy_slab(to, o, x, slab):
+def copy_slab(target, o, x, slab):
     """Copy slab ``slab`` of ``x`` to slab ``o`` of ``to``.
 
     Written out: an assignment of slices brings along numba's message for slices that do not fit, which takes longer to
@@ -56,7 +56,7 @@ def copy_slab(to, o, x, slab):
     """
     o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(x.shape[1])):
-        to[o, k] = x[j, k]
+        target[o, k] = x[j, k]
 
 
 @part
@@ -70,120 +70,127 @@ def seal_ends(x, periodic):
 @part
 def largest_size(a, slab, inner, top):
     """Return the largest absolute value of a slab inside the domain; ``top`` is room for ``LANES`` numbers."""
-    j, wide, lanes = unsigned(slab), row_length(inner, a.shape[1]), unsigned(LANES)
+    j, row_cells, lanes = unsigned(slab), row_length(inner, a.shape[1]), unsigned(LANES)
     for k in range(lanes):
         top[k] = 0
     for row in range(row_count(inner, a.shape[1])):
-        s = EDGE + (EDGE + row) * wide if len(inner) > 1 else EDGE
-        e = s + wide - EDGE - EDGE
-        whole = s + (e - s) // lanes * lanes
-        for i in range(s, whole, lanes):
+        s = EDGE + (EDGE + row) * row_cells if len(inner) > 1 else EDGE
+        e = s + row_cells - EDGE - EDGE
+        lane_end = s + (e - s) // lanes * lanes
+        for i in range(s, lane_end, lanes):
             for k in range(lanes):
                 size = abs(a[j, i + k])
                 top[k] = size if size > top[k] else top[k]
-        for i in range(whole, e):
+        for i in range(lane_end, e):
             size = abs(a[j, i])
             top[0] = size if size > top[0] else top[0]
-    largest = top[0]
+    maximum = top[0]
     for k in range(UNIT, lanes):
-        largest = top[k] if top[k] > largest else largest
-    return largest
+        maximum = top[k] if top[k] > maximum else maximum
+    return maximum
 
 
 @part
 def summed_size(a, slab, inner):
     """Return the summed absolute values of a slab inside the domain."""
-    j, wide, whole = unsigned(slab), row_length(inner, a.shape[1]), 0.0
+    j, row_cells, slab_sum = unsigned(slab), row_length(inner, a.shape[1]), 0.0
     for row in range(row_count(inner, a.shape[1])):
-        s = EDGE + (EDGE + row) * wide if len(inner) > 1 else EDGE
-        total = a.dtype.type(0)
-        for k in range(s, s + wide - EDGE - EDGE):
-            total += abs(a[j, k])
-        whole += total
-    return whole
+        s = EDGE + (EDGE + row) * row_cells if len(inner) > 1 else EDGE
+        row_sum = a.dtype.type(0)
+        for k in range(s, s + row_cells - EDGE - EDGE):
+            row_sum += abs(a[j, k])
+        slab_sum += row_sum
+    return slab_sum
 
 
 @part
-def _apply_body(x, low, mid, high, faces, j, k, inner):
-    m, up, total = x[mid, k], unsigned(len(inner)), x.dtype.type(0)
+def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
+    m, slab_axis, total = x[mid, k], unsigned(len(inner)), x.dtype.type(0)
     for d in range(len(inner)):
         s = inner[d]
         total += faces[d, j, k] * (m - x[mid, k - s]) + faces[d, j, k + s] * (m - x[mid, k + s])
-    return total + (faces[up, j, k] * (m - x[low, k]) + faces[up, j + UNIT, k] * (m - x[high, k]))
+    lower, upper = faces[slab_axis, j, k], faces[slab_axis, j + UNIT, k]
+    return total + (lower * (m - x[lower_slab, k]) + upper * (m - x[upper_slab, k]))
 
 
 @part
-def apply_slabs(out, o, x, low, mid, high, faces, place, slab, inner):
+def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, inner):
     """Write the operator times slab ``slab`` of the level, which is ``mid`` in ``x``, to slab ``o`` of ``out``."""
-    o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(slab)
-    all_around = out.dtype.type(2 * len(inner) + 2)
-    first, end = run_of(inner, x.shape[1])
-    for k in range(first, end):
-        around = x.dtype.type(0)
+    o, j = unsigned(o), unsigned(slab)
+    lower_slab, mid, upper_slab = unsigned(lower_slab), unsigned(mid), unsigned(upper_slab)
+    diagonal = output.dtype.type(2 * len(inner) + 2)
+    run_start, run_end = run_of(inner, x.shape[1])
+    for k in range(run_start, run_end):
+        neighbour_sum = x.dtype.type(0)
         for d in range(len(inner)):
-            around += x[mid, k - inner[d]] + x[mid, k + inner[d]]
-        out[o, k] = all_around * x[mid, k] - (around + (x[low, k] + x[high, k]))
+            neighbour_sum += x[mid, k - inner[d]] + x[mid, k + inner[d]]
+        output[o, k] = diagonal * x[mid, k] - (neighbour_sum + (x[lower_slab, k] + x[upper_slab, k]))
     if meets(place, inner, slab):
-        wide, (r0, r1), (s, e) = row_length(inner, x.shape[1]), window_rows(place, inner), window_columns(place, inner)
+        row_cells = row_length(inner, x.shape[1])
+        (r0, r1), (s, e) = window_rows(place, inner), window_columns(place, inner)
         for row in range(r0, r1):
-            for k in range(row * wide + s, row * wide + e):
-                out[o, k] = _apply_body(x, low, mid, high, faces, j, k, inner)
+            for k in range(row * row_cells + s, row * row_cells + e):
+                output[o, k] = _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner)
 
 
 @ordered_part
-def first_steps(out, o, shift, b, slab, inner, start, stop):
+def first_steps(output, o, shift, b, slab, inner, start, stop):
     """Write two smoothing steps that start from nothing, where all coefficients are 1; ``b`` is the right side.
 
     Cells ``start`` to ``stop`` of slab ``slab`` go to slab ``o`` of ``out``, ``shift`` cells further left.
     """
-    o, j, real = unsigned(o), unsigned(slab), out.dtype.type
+    o, j, real = unsigned(o), unsigned(slab), output.dtype.type
     w1, w2 = weights(inner, real)
-    share = real(0.5 / (len(inner) + 1))
-    once = share * w1
-    own = once + w2 * share - w2 * once
-    near = w2 * share * once
+    inverse_diagonal = real(0.5 / (len(inner) + 1))
+    first_weight = inverse_diagonal * w1
+    centre_weight = first_weight + w2 * inverse_diagonal - w2 * first_weight
+    neighbour_weight = w2 * inverse_diagonal * first_weight
     for k in range(start, stop):
-        around = real(0)
+        neighbour_sum = real(0)
         for d in range(len(inner)):
-            around = around + b[j, k - inner[d]] + b[j, k + inner[d]]
-        out[o, k - shift] = own * b[j, k] + near * (around + b[j - UNIT, k] + b[j + UNIT, k])
+            neighbour_sum = neighbour_sum + b[j, k - inner[d]] + b[j, k + inner[d]]
+        neighbour_sum = neighbour_sum + b[j - UNIT, k] + b[j + UNIT, k]
+        output[o, k - shift] = centre_weight * b[j, k] + neighbour_weight * neighbour_sum
 
 
 @ordered_part
-def _relax_plain(out, o, x, low, mid, high, b, j, weight, inner):
-    share = weight * out.dtype.type(0.5 / (len(inner) + 1))
-    stay = out.dtype.type(1.0) - weight
-    first, end = run_of(inner, x.shape[1])
-    for k in range(first, end):
-        around = x.dtype.type(0)
+def _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner):
+    neighbour_weight = weight * output.dtype.type(0.5 / (len(inner) + 1))
+    centre_weight = output.dtype.type(1.0) - weight
+    run_start, run_end = run_of(inner, x.shape[1])
+    for k in range(run_start, run_end):
+        neighbour_sum = x.dtype.type(0)
         for d in range(len(inner)):
-            around = around + x[mid, k - inner[d]] + x[mid, k + inner[d]]
-        out[o, k] = share * (around + x[low, k] + x[high, k] + b[j, k]) + stay * x[mid, k]
+            neighbour_sum = neighbour_sum + x[mid, k - inner[d]] + x[mid, k + inner[d]]
+        neighbour_sum = neighbour_sum + x[lower_slab, k] + x[upper_slab, k]
+        output[o, k] = neighbour_weight * (neighbour_sum + b[j, k]) + centre_weight * x[mid, k]
 
 
 @part
-def relax_slabs(out, o, x, low, mid, high, b, faces, dinv, place, slab, weight, inner, repeats):
+def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place, slab, weight, inner, repeats):
     """Write one Jacobi step of slab ``slab`` of the level, which is ``mid`` in ``x``, to slab ``o`` of ``out``."""
-    o, low, mid, high, j = unsigned(o), unsigned(low), unsigned(mid), unsigned(high), unsigned(slab)
-    _relax_plain(out, o, x, low, mid, high, b, j, weight, inner)
+    o, j = unsigned(o), unsigned(slab)
+    lower_slab, mid, upper_slab = unsigned(lower_slab), unsigned(mid), unsigned(upper_slab)
+    _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
     if meets(place, inner, slab):
-        wide, (r0, r1), (s, e) = row_length(inner, x.shape[1]), window_rows(place, inner), window_columns(place, inner)
+        row_cells = row_length(inner, x.shape[1])
+        (r0, r1), (s, e) = window_rows(place, inner), window_columns(place, inner)
         for row in range(r0, r1):
-            for k in range(row * wide + s, row * wide + e):
-                rest = b[j, k] - _apply_body(x, low, mid, high, faces, j, k, inner)
-                out[o, k] = x[mid, k] + weight * dinv[j, k] * rest
-    seal_slab(out, o, inner, repeats)
+            for k in range(row * row_cells + s, row * row_cells + e):
+                residual = b[j, k] - _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner)
+                output[o, k] = x[mid, k] + weight * dinv[j, k] * residual
+    seal_slab(output, o, inner, repeats)
 
 
 @part
-def smooth(out, x, b, faces, dinv, place, weight, inner, repeats):
+def smooth(output, x, b, faces, dinv, place, weight, inner, repeats):
     """Write one Jacobi step from ``x`` to ``out``."""
     for j in range(PAD, x.shape[0] - PAD):
-        relax_slabs(out, j, x, j - 1, j, j + 1, b, faces, dinv, place, j, weight, inner, repeats)
+        relax_slabs(output, j, x, j - 1, j, j + 1, b, faces, dinv, place, j, weight, inner, repeats)
 
 
 @part
-def relax_patch(out, x, b, faces, at, dinv, strides, weight):
+def relax_patch(output, x, b, faces, offset, dinv, strides, weight):
     """Write one Jacobi step from ``x`` to ``out`` on a small array whose cells lie end to end.
 
     ``strides`` are those along all axes; the patch begins at cell ``at`` of ``faces``. The first and the last slab stay
@@ -194,5 +201,5 @@ def relax_patch(out, x, b, faces, at, dinv, strides, weight):
         m, ax = x[k], x.dtype.type(0)
         for d in range(len(strides)):
             s = strides[d]
-            ax += faces[d, at + k] * (m - x[k - s]) + faces[d, at + k + s] * (m - x[k + s])
-        out[k] = m + weight * dinv[k] * (b[k] - ax)
+            ax += faces[d, offset + k] * (m - x[k - s]) + faces[d, offset + k + s] * (m - x[k + s])
+        output[k] = m + weight * dinv[k] * (b[k] - ax)

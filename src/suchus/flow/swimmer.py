@@ -25,17 +25,17 @@ from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, turned
 
 
-def spread(given: Sequence[float], axes: int) -> np.ndarray:
+def spread(values: Sequence[float], axes: int) -> np.ndarray:
     """Return values for every degree of freedom: of three in space, those along z and about x and y are 0."""
-    if axes == 2 or len(given) == 6:
-        return np.array(given)
-    x, y, turn = given
+    if axes == 2 or len(values) == 6:
+        return np.array(values)
+    x, y, turn = values
     return np.array([x, y, 0 * x, 0 * x, 0 * x, turn])
 
 
-def _lengthened(given: Sequence[float], axes: int) -> list[float]:
+def _lengthened(vector: Sequence[float], axes: int) -> list[float]:
     """Return a vector with as many components as there are axes."""
-    return [*given, *(0.0,) * (axes - len(given))]
+    return [*vector, *(0.0,) * (axes - len(vector))]
 
 
 def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
@@ -52,9 +52,9 @@ def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
     Source: Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (146).
     """
     angle = float(np.linalg.norm(vector))
-    share = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
+    curvature = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
     twist = np.cross(vector, slope)
-    torque: np.ndarray = -(slope + 0.5 * twist + share * np.cross(vector, twist))
+    torque: np.ndarray = -(slope + 0.5 * twist + curvature * np.cross(vector, twist))
     return torque
 
 
@@ -67,7 +67,7 @@ MOST_ROUNDS = 40
 """Rounds in which attitude and angular velocity at a step's end come to terms, at most [-]: each makes the error
 smaller by about the angle that the body turns in a step."""
 
-_SETTLED = 1e-14
+_RATE_TOLERANCE = 1e-14
 """Change of the rates, over their size, at which they have [-]."""
 
 
@@ -148,9 +148,9 @@ class Swimmer:
         if isinstance(mass, SpaceMass):
             matrix = self._matrix(self.place)
             spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
-            away, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
-            place = np.concatenate([self.place[:3] - away, self.place[3:]])
-            return self._pose(place, self.rate[:3] - drift - np.cross(spins, away), spins)
+            offset, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
+            place = np.concatenate([self.place[:3] - offset, self.place[3:]])
+            return self._pose(place, self.rate[:3] - drift - np.cross(spins, offset), spins)
         angle = self.place[2]
         c, s = np.cos(angle), np.sin(angle)
         spin = self.rate[2] - mass.swirl / mass.moment if self.go[2] else self.rate[2]
@@ -178,11 +178,12 @@ class Swimmer:
         Raises:
             Diverged: it is not finite in one that is free.
         """
-        own = mass[np.ix_(self.go, self.go)]
-        if not np.isfinite(own).all():
+        free_mass = mass[np.ix_(self.go, self.go)]
+        if not np.isfinite(free_mass).all():
+            entry = free_mass[~np.isfinite(free_mass)][0]
             raise Diverged(
-                f"at t = {time:.4g} s the added mass of {self.body.name} is {own[~np.isfinite(own)][0]} in a degree of "
-                f"freedom in which it may move; take a finer grid around it, precision='double', or lock that degree.",
+                f"at t = {time:.4g} s the added mass of {self.body.name} is {entry} in a degree of freedom in which it "
+                f"may move; take a finer grid around it, precision='double', or lock that degree.",
                 time=time,
             )
         self.added = np.nan_to_num(mass)
@@ -213,30 +214,31 @@ class Swimmer:
         """
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
-        now, then = shape.mass(time), shape.mass(time + dt)
+        start_mass, end_mass = shape.mass(time), shape.mass(time + dt)
         matrix = self._matrix(self.place)
-        before, slip = now.inertia(matrix), self._slip(now, matrix)
-        momentum = (density * before) @ self.rate
+        start_inertia, slip = start_mass.inertia(matrix), self._slip(start_mass, matrix)
+        momentum = (density * start_inertia) @ self.rate
         guess = self._foreseen(momentum, dt)
         self.momentum, self.span = momentum, dt
-        recoil = slip + self._slip(then, matrix)
-        outer, yielding = self._outer(time, dt, (density - water_density) * now.size, recoil)
+        recoil = slip + self._slip(end_mass, matrix)
+        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.size, recoil)
         if contact is not None:
             outer = outer + contact
         rate = self.rate
         for count in range(MOST_ROUNDS):  # in the plane the first is the last; in space it takes the attitude for fixed
-            after = then.inertia(matrix)
-            grown = after - before
-            grown[: self._axes] = 0
-            force = guess - (density * grown / dt) @ self.rate + outer
-            whole = density * after + self.added + np.diag(yielding)
-            push = self._accelerated(whole, force if self.steps else force - guess - outer)
-            last, rate = rate, self.rate + dt * push
+            end_inertia = end_mass.inertia(matrix)
+            inertia_change = end_inertia - start_inertia
+            inertia_change[: self._axes] = 0
+            force = guess - (density * inertia_change / dt) @ self.rate + outer
+            total_inertia = density * end_inertia + self.added + np.diag(yielding)
+            push = self._accelerated(total_inertia, force if self.steps else force - guess - outer)
+            previous_rate, rate = rate, self.rate + dt * push
             place = self._moved(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
-            if self._axes == 2 or (count and np.abs(rate - last).max() <= _SETTLED * np.abs(rate).max()):
+            rate_change = np.abs(rate - previous_rate).max()
+            if self._axes == 2 or (count and rate_change <= _RATE_TOLERANCE * np.abs(rate).max()):
                 break
             matrix = self._matrix(place)
-            recoil = slip + self._slip(then, matrix)
+            recoil = slip + self._slip(end_mass, matrix)
         self.applied = outer - yielding * push
         self.place, self.rate, self.push = place, rate, push
         self.steps += 1
@@ -258,17 +260,17 @@ class Swimmer:
             guess = guess + REPAID * self.owed / dt
         return guess
 
-    def _accelerated(self, whole: np.ndarray, force: np.ndarray) -> np.ndarray:
+    def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
         """Return the acceleration in the degrees of freedom that are free, 0 in the others.
 
         Args:
-            whole: mass of the body and added mass, with what springs and dampers add, a square matrix.
+            total_inertia: mass of the body and added mass, with what springs and dampers add, a square matrix.
             force: that acts on a body that does not accelerate; in the first step neither the water's force nor the
                 added mass is known, so that it is what a change of the inertia asks for.
         """
         push = np.zeros(self.place.size)
         if self.steps or self._axes == 3:
-            push[self.go] = np.linalg.solve(whole[np.ix_(self.go, self.go)], force[self.go])
+            push[self.go] = np.linalg.solve(total_inertia[np.ix_(self.go, self.go)], force[self.go])
         return push
 
     def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
@@ -305,15 +307,15 @@ class Swimmer:
         outer = weight * np.array([*pull, *np.zeros(middle.size - axes)]) - self._held(middle, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
-            given = body.force(time + 0.5 * dt, self._state(middle))
+            force = body.force(time + 0.5 * dt, self._state(middle))
             sizes = [(3,)] if axes == 2 else [(3,), (6,)]
-            if np.shape(given) not in sizes or not np.isfinite(np.asarray(given, float)).all():
+            if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(
-                    f"the force of {body.name} at t = {time:.4g} s is {show(given)}; give three finite numbers, the "
+                    f"the force of {body.name} at t = {time:.4g} s is {show(force)}; give three finite numbers, the "
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
                 )
-            outer = outer + spread(np.asarray(given, float).tolist(), axes)
+            outer = outer + spread(np.asarray(force, float).tolist(), axes)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
     def _held(self, middle: np.ndarray, stiff: np.ndarray) -> np.ndarray:
@@ -327,12 +329,12 @@ class Swimmer:
         else:
             x, y, z, yaw, pitch, roll = self._anchor(body.anchor)
             slack = np.array([x, y, z, *_attitude(yaw, pitch, roll)])
-        away = stiff * (middle - slack)
+        spring_force = stiff * (middle - slack)
         if stiff[3:].any():
             turn = rotation.multiply(rotation.from_vector(middle[3:]), rotation.from_vector(-slack[3:]))
             vector = rotation.to_vector(turn, middle[3:] - slack[3:])
-            away[3:] = -_unwinding(vector, stiff[3:] * vector)
-        return np.asarray(away)
+            spring_force[3:] = -_unwinding(vector, stiff[3:] * vector)
+        return np.asarray(spring_force)
 
     def _anchor(self, anchor: Sequence[float]) -> list[float]:
         """Return the anchor as six numbers; of three, the others are those of the start."""

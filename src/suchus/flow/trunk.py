@@ -15,7 +15,7 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import SpaceField, SpaceShape
 
-_FEWEST = 12
+_MIN_POINTS = 12
 """Points around a section, at least [-]."""
 
 
@@ -72,8 +72,8 @@ class Trunk(SpaceShape):
         spine, place = self._spine(time), pose.along(3)
         if not place.in_plane:
             return spine, place
-        up, rate = place.position[2], place.velocity[2]
-        return spine.placed(pose), Pose(position=(0.0, 0.0, up), velocity=(0.0, 0.0, rate))
+        height, rate = place.position[2], place.velocity[2]
+        return spine.placed(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> MidlineState:
         spine = self.spine(time)
@@ -88,21 +88,22 @@ class Trunk(SpaceShape):
         """Return the field on the points of a window."""
         spine, frame = self.placed(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
-        out = np.zeros((PAINTED, z.size, y.size, x.size))
-        out[0], out[6] = reach, np.inf
+        fields = np.zeros((PAINTED, z.size, y.size, x.size))
+        fields[0], fields[6] = reach, np.inf
         rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
-        given = out, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
-        part = out[7] if self.cuts else None
+        arguments = fields, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
+        part_index = fields[7] if self.cuts else None
         if pose.in_plane:
-            paint_sections(*given, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
-            lift = np.full(out[0].shape, frame.velocity[2])
-            return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
+            paint_sections(*arguments, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
+            lift = np.full(fields[0].shape, frame.velocity[2])
+            normal, velocity = (fields[1], fields[2], fields[3]), (fields[4], fields[5], lift)
+            return SpaceField(fields[0], normal, velocity, fields[6], part_index)
         matrix = np.ascontiguousarray(frame.matrix)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        paint_turned_sections(*given, px, py, pz, matrix, np.array(frame.position), float(reach))
+        paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
         rigid = frame.rates((x, y[:, None], z[:, None, None]))
-        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (out[4], out[5], 0 * out[5])), strict=True))
-        return SpaceField(out[0], turned(matrix, out[1:4]), (u, v, w), out[6], part)
+        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True))
+        return SpaceField(fields[0], turned(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of patches between stations, as many around as the widest section needs."""
@@ -111,35 +112,38 @@ class Trunk(SpaceShape):
 
     def _skin(self, spine: MidlineState, spacing: float) -> Markers:
         """Return the same in the frame of a midline."""
-        wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
+        half_widths, half_heights = (
+            np.concatenate([[0.0], half_axis, [0.0]]) for half_axis in (spine.half_width, self.half_height)
+        )
         station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
-        largest = float(np.hypot(spine.half_width, self.half_height).max())
-        angle = np.linspace(0.0, 2 * np.pi, max(_FEWEST, int(np.ceil(2 * np.pi * largest / spacing))) + 1)
-        aside = np.outer(wide, np.cos(angle))
+        max_radius = float(np.hypot(spine.half_width, self.half_height).max())
+        angle = np.linspace(0.0, 2 * np.pi, max(_MIN_POINTS, int(np.ceil(2 * np.pi * max_radius / spacing))) + 1)
+        lateral_offset = np.outer(half_widths, np.cos(angle))
         nx, ny = -np.sin(spine.heading)[station, None], np.cos(spine.heading)[station, None]
         corner = np.stack([
-            spine.x[station, None] + aside * nx, spine.y[station, None] + aside * ny,
-            np.outer(high, np.sin(angle)),
+            spine.x[station, None] + lateral_offset * nx, spine.y[station, None] + lateral_offset * ny,
+            np.outer(half_heights, np.sin(angle)),
         ])  # fmt: skip
         turn = spine.heading_rate[station, None]
         swell = np.outer(np.concatenate([[0.0], spine.swell, [0.0]]), np.cos(angle))
         rate = np.stack([
-            spine.x_rate[station, None] + swell * nx - turn * aside * ny,
-            spine.y_rate[station, None] + swell * ny + turn * aside * nx,
-            np.zeros(aside.shape),
+            spine.x_rate[station, None] + swell * nx - turn * lateral_offset * ny,
+            spine.y_rate[station, None] + swell * ny + turn * lateral_offset * nx,
+            np.zeros(lateral_offset.shape),
         ])  # fmt: skip
-        first, second = corner[:, 1:, 1:] - corner[:, :-1, :-1], corner[:, 1:, :-1] - corner[:, :-1, 1:]
-        square = np.cross(first, second, axis=0)
+        first_diagonal = corner[:, 1:, 1:] - corner[:, :-1, :-1]
+        second_diagonal = corner[:, 1:, :-1] - corner[:, :-1, 1:]
+        square = np.cross(first_diagonal, second_diagonal, axis=0)
         size = np.sqrt((square**2).sum(axis=0))
-        arc = np.broadcast_to(spine.arc[station, None], aside.shape)
-        at = _middles(arc[None])[0]
-        part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
+        arc = np.broadcast_to(spine.arc[station, None], lateral_offset.shape)
+        arc_centres = _middles(arc[None])[0]
+        part_index = np.searchsorted(self.cuts, arc_centres.ravel(), side="right") if self.cuts else None
         spins = np.zeros(square.shape)
-        spins[2] = _middles(np.broadcast_to(turn, aside.shape)[None])[0]
+        spins[2] = _middles(np.broadcast_to(turn, lateral_offset.shape)[None])[0]
         return Markers(
             points=_middles(corner).reshape(3, -1), share=0.5 * size.ravel(),
             velocities=_middles(rate).reshape(3, -1),
-            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part,
+            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part_index,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
@@ -148,14 +152,15 @@ class Trunk(SpaceShape):
         if pose.in_plane:
             outline, middle = ring(spine.rows), frame.position[2]
             ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
-            high = float(self.half_height.max())
-            return (*ends, middle - high, middle + high)
+            half_height = float(self.half_height.max())
+            return (*ends, middle - half_height, middle + half_height)
         middles, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
-        aside = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
-        across, up = spine.half_width * (matrix[:, :2] @ aside), np.outer(matrix[:, 2], self.half_height)
-        far = np.hypot(across, up)  # how far each section reaches along the world's axes
-        low, top = (middles - far).min(axis=1).tolist(), (middles + far).max(axis=1).tolist()
-        return tuple(end for pair in zip(low, top, strict=True) for end in pair)
+        lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
+        lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
+        vertical_extent = np.outer(matrix[:, 2], self.half_height)
+        extent = np.hypot(lateral_extent, vertical_extent)  # how far each section reaches along the world's axes
+        lower_bounds, upper_bounds = (middles - extent).min(axis=1).tolist(), (middles + extent).max(axis=1).tolist()
+        return tuple(end for pair in zip(lower_bounds, upper_bounds, strict=True) for end in pair)
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the longer axes of the sections, as far as a section is less wide than the way to its tip is long.
@@ -163,19 +168,22 @@ class Trunk(SpaceShape):
         Round sections have none, nor have the body's round ends.
         """
         spine, frame = self.placed(time, pose)
-        wide, high, arc = spine.half_width, self.half_height, spine.arc
-        slim = np.minimum(wide, high) < np.minimum(arc, arc[-1] - arc)
-        square = np.maximum(wide**2 + high**2, np.finfo(float).tiny)
-        excess = np.where(slim, (high**2 - wide**2) / square, 0.0)
-        up, aside = high * np.maximum(excess, 0.0), wide * np.maximum(-excess, 0.0)
-        across = np.stack([-aside * np.sin(spine.heading), aside * np.cos(spine.heading), up])
+        half_width, half_height, arc = spine.half_width, self.half_height, spine.arc
+        is_slim = np.minimum(half_width, half_height) < np.minimum(arc, arc[-1] - arc)
+        square = np.maximum(half_width**2 + half_height**2, np.finfo(float).tiny)
+        excess = np.where(is_slim, (half_height**2 - half_width**2) / square, 0.0)
+        vertical, lateral = half_height * np.maximum(excess, 0.0), half_width * np.maximum(-excess, 0.0)
+        rim_offset = np.stack([-lateral * np.sin(spine.heading), lateral * np.cos(spine.heading), vertical])
         middle = np.stack([spine.x, spine.y, 0 * spine.x])
-        both = ((up[1:] > 0) & (up[:-1] > 0)) | ((aside[1:] > 0) & (aside[:-1] > 0))
-        if not both.any():
+        has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
+        if not has_surface.any():
             return None
-        low, top = (np.array(frame.place(middle + way * across)) for way in (-1.0, 1.0))
-        pairs = [(low[:, :-1], low[:, 1:], top[:, :-1]), (low[:, 1:], top[:, 1:], top[:, :-1])]
-        return np.ascontiguousarray(np.concatenate([np.stack(pair)[:, :, both] for pair in pairs], axis=2))
+        lower_rim, upper_rim = (np.array(frame.place(middle + sign * rim_offset)) for sign in (-1.0, 1.0))
+        pairs = [
+            (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
+            (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
+        ]
+        return np.ascontiguousarray(np.concatenate([np.stack(pair)[:, :, has_surface] for pair in pairs], axis=2))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length and the smaller axis of the section at the stations."""

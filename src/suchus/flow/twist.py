@@ -34,14 +34,14 @@ class Twists:
     angular: np.ndarray
     """Angular velocities, about z in the plane and about x, y and z in space, shape (part, 1) or (part, 3) [rad/s]."""
 
-    def at(self, part: np.ndarray, points: np.ndarray) -> np.ndarray:
+    def at(self, part_index: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Return the velocities of points, shape (axis, point), of parts, shape (point,): the same shape [m/s]."""
-        out = self.linear.T[:, part].astype(float)
-        off = points - self.about.T[:, part]
+        velocities = self.linear.T[:, part_index].astype(float)
+        lever = points - self.about.T[:, part_index]
         for turn, (a, b) in zip(self.angular.T, TURNS[len(points)], strict=True):
-            out[a] -= off[b] * turn[part]
-            out[b] += off[a] * turn[part]
-        return out
+            velocities[a] -= lever[b] * turn[part_index]
+            velocities[b] += lever[a] * turn[part_index]
+        return velocities
 
     def at_origin(self) -> np.ndarray:
         """Return the velocities that the parts have at the origin of the frame, shape (part, axis) [m/s]."""
@@ -60,11 +60,12 @@ def none(rows: int, axes: int) -> Twists:
     )  # fmt: skip
 
 
-def joined(each: Sequence[Twists]) -> Twists:
+def joined(twists: Sequence[Twists]) -> Twists:
     """Return the motions of several bodies, one after the other."""
     return Twists(
-        about=np.concatenate([one.about for one in each]), linear=np.concatenate([one.linear for one in each]),
-        angular=np.concatenate([one.angular for one in each]),
+        about=np.concatenate([twist.about for twist in twists]),
+        linear=np.concatenate([twist.linear for twist in twists]),
+        angular=np.concatenate([twist.angular for twist in twists]),
     )  # fmt: skip
 
 
@@ -85,26 +86,26 @@ class HeldFaces(NamedTuple):
 
 def held_faces(water: Fluid) -> list[HeldFaces]:
     """Return the faces that the placed bodies hold, axis by axis; those beyond mirrors are left out."""
-    here, axes, grid, found = water.here, water.axes, water.grid, []
-    inside = np.ones([s.stop - s.start for s in here], bool)
-    for cut in water.cut:
-        leave_images(inside, cut)
-    ends = [(s.start, s.stop) for s in reversed(here)]
+    window, axes, grid, faces = water.here, water.axes, water.grid, []
+    is_inside = np.ones([s.stop - s.start for s in window], bool)
+    for mirror_cuts in water.cut:
+        leave_images(is_inside, mirror_cuts)
+    ends = [(s.start, s.stop) for s in reversed(window)]
     for c in range(axes):
-        held, closed = (1 - share[c][here].astype(np.float64) for share in (water.mu0, water.passage))
-        index = np.flatnonzero(((held > 0) | (closed > 0)) & inside)
+        body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
+        index = np.flatnonzero(((body_fraction > 0) | (closed > 0)) & is_inside)
         lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(axes)]
-        places = np.unravel_index(index, held.shape)
+        places = np.unravel_index(index, body_fraction.shape)
         points = np.stack([lines[d][places[axes - 1 - d]] for d in range(axes)])
         row = water.owners[c].ravel()[index].astype(np.intp)
-        found.append(HeldFaces(index, row, points, held.ravel()[index], closed.ravel()[index]))
-    return found
+        faces.append(HeldFaces(index, row, points, body_fraction.ravel()[index], closed.ravel()[index]))
+    return faces
 
 
-def leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
+def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
     """Set to nothing what lies beyond the mirrors that cut a body."""
-    for k, is_cut in enumerate(cut):
-        lines = np.moveaxis(share, share.ndim - 1 - k // 2, 0)
+    for k, is_cut in enumerate(mirror_cuts):
+        lines = np.moveaxis(values, values.ndim - 1 - k // 2, 0)
         if is_cut and k % 2 == 0:
             lines[0] = 0
         elif is_cut:
@@ -113,17 +114,19 @@ def leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
 
 def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
     """Return how much a field at the cells rises across faces, shape (face,)."""
-    low = [s.start for s in water.here]
-    behind = [place + first for place, first in zip(np.unravel_index(faces.place, _shape(water)), low, strict=True)]
-    before = [place - (n == water.axes - 1 - axis) for n, place in enumerate(behind)]
-    return x[tuple(behind)].astype(np.float64) - x[tuple(before)]
+    low_corner = [s.start for s in water.here]
+    cell_behind = [
+        place + start for place, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
+    ]
+    cell_before = [place - (n == water.axes - 1 - axis) for n, place in enumerate(cell_behind)]
+    return x[tuple(cell_behind)].astype(np.float64) - x[tuple(cell_before)]
 
 
 def _shape(water: Fluid) -> tuple[int, ...]:
     return tuple(s.stop - s.start for s in water.here)
 
 
-def accelerate(water: Fluid, more: Twists, dt: float) -> None:
+def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     """Let the bodies' velocities at the end of the last step be others, and the water have followed all through it.
 
     On return velocity and pressure, the bodies' velocity and what the immersion gave are those of a step to whose end
@@ -131,42 +134,42 @@ def accelerate(water: Fluid, more: Twists, dt: float) -> None:
 
     Args:
         water: after a step.
-        more: what is added to the velocity of each part; of all parts of all bodies.
+        twists: what is added to the velocity of each part; of all parts of all bodies.
         dt: length of the step [s].
 
     Raises:
         NotConverged: the pressure solver got stuck.
     """
     axes, h, faces = water.axes, water.grid.cell, held_faces(water)
-    changes = [more.at(part.row, part.points)[c] for c, part in enumerate(faces)]
-    largest = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
-    if largest == 0.0:
+    changes = [twists.at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
+    max_change = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
+    if max_change == 0.0:
         return
     shape, count = _shape(water), len(water.given)
-    given = np.zeros((axes, *shape))
-    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
-        given[c].ravel()[part.place] = part.held * change
-    x = water.press(given, dt, SOLVED * largest)
+    velocity_change = np.zeros((axes, *shape))
+    for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
+        velocity_change[c].ravel()[axis_faces.place] = axis_faces.held * change
+    x = water.press(velocity_change, dt, SOLVED * max_change)
     energy, turns = axes + len(TURNS[axes]), TURNS[axes]
     sums = np.zeros_like(water.given)
     corner = np.array(water.grid.origin)
-    lever = replace(more, about=more.about - corner)
+    lever = replace(twists, about=twists.about - corner)
     # half of the step's mean velocity is new, of all that was given before
-    before, spin = water.given, h * more.angular
-    sums[:, energy] += 0.5 * (lever.at_origin() * before[:, :axes]).sum(axis=1)
-    sums[:, energy] += 0.5 * (spin * before[:, axes:energy]).sum(axis=1)
-    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
-        gained = part.held * change + part.closed * rise(water, x, part, c)
-        sums[:, c] += np.bincount(part.row, gained, count)
+    previous_sums, spin = water.given, h * twists.angular
+    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
+    sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)
+    for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
+        gained = axis_faces.held * change + axis_faces.closed * rise(water, x, axis_faces, c)
+        sums[:, c] += np.bincount(axis_faces.row, gained, count)
         for n, (a, b) in enumerate(turns):
             if c in (a, b):
-                off = (part.points[b if c == a else a] - corner[b if c == a else a]) / h
-                sums[:, axes + n] += np.bincount(part.row, (-off if c == a else off) * gained, count)
-        mean = water.mean[c].ravel()[part.place].astype(np.float64)
-        sums[:, energy] += np.bincount(part.row, (mean + 0.5 * change) * gained, count)
-        moved = water.b[c].ravel()
-        moved[part.place] += change.astype(water.dtype)
-        water.mean[c].ravel()[part.place] += (0.5 * change).astype(water.dtype)
+                offset = (axis_faces.points[b if c == a else a] - corner[b if c == a else a]) / h
+                sums[:, axes + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
+        mean = water.mean[c].ravel()[axis_faces.place].astype(np.float64)
+        sums[:, energy] += np.bincount(axis_faces.row, (mean + 0.5 * change) * gained, count)
+        body_velocity = water.b[c].ravel()
+        body_velocity[axis_faces.place] += change.astype(water.dtype)
+        water.mean[c].ravel()[axis_faces.place] += (0.5 * change).astype(water.dtype)
     if len(water.given) > len(water.rows):
         water.pressed += water.pressures(x, 1.0)
     water.spread(sums, x, 1.0)
@@ -180,9 +183,9 @@ def part_of(outline: Markers) -> np.ndarray:
     return outline.part.astype(np.intp)
 
 
-def moved_on(outline: Markers, more: Twists) -> Markers:
+def moved_on(outline: Markers, twists: Twists) -> Markers:
     """Return the skin of one body whose parts move faster, by twists of this body's parts alone."""
     row = part_of(outline)
-    velocities = outline.velocities + more.at(row, outline.points)
-    spins = outline.spins + more.angular[row].T
+    velocities = outline.velocities + twists.at(row, outline.points)
+    spins = outline.spins + twists.angular[row].T
     return replace(outline, velocities=velocities, spins=spins)

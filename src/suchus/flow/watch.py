@@ -29,13 +29,13 @@ def vorticity_size(velocity: np.ndarray) -> np.ndarray:
 
     The shape is one less than the cells along each axis of the grid, the last axis first.
     """
-    axes, here = len(velocity), slice(PAD + 1, -PAD)
+    axes, interior = len(velocity), slice(PAD + 1, -PAD)
 
-    def shifted(part: np.ndarray, axis: int) -> np.ndarray:
+    def shifted(component: np.ndarray, axis: int) -> np.ndarray:
         """Return the values one cell lower along an axis."""
-        return part[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else here for n in range(axes))]
+        return component[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else interior for n in range(axes))]
 
-    inner = (here,) * axes
+    inner = (interior,) * axes
     total: np.ndarray = np.zeros(velocity[0][inner].shape, velocity.dtype)
     for d in range(axes):
         for e in range(d):
@@ -52,7 +52,7 @@ class Watch:
     """Set-up of the simulation."""
     errors: list[float] = field(default_factory=list)
     """Estimated error of each body's force now [-]."""
-    _said: set[str] = field(default_factory=set)
+    _issued_keys: set[str] = field(default_factory=set)
 
     def layers(self, errors: list[float]) -> None:
         """Note the estimated errors of all bodies' forces; warn of a body whose error is large."""
@@ -67,9 +67,9 @@ class Watch:
         depth, pair = water.overlap
         if depth <= SHARED * water.grid.cell:
             return None
-        one, other = (self.setup.bodies[k].name for k in pair)
+        first_name, second_name = (self.setup.bodies[k].name for k in pair)
         return (
-            f"at t = {time:.4g} s {one} and {other} lie {depth:.3g} m deep in each other, "
+            f"at t = {time:.4g} s {first_name} and {second_name} lie {depth:.3g} m deep in each other, "
             f"{depth / water.grid.cell:.2g} cells: the water meets the nearer surface alone, so that neither's force "
             f"is its own. Move them apart, keep free bodies apart by a BodyContact, or make one shape of them (union, "
             f"difference)."
@@ -84,29 +84,31 @@ class Watch:
     def sides(self, water: Fluid, time: float) -> None:
         """Warn of vortices at a side that is held to the far stream, which they should move."""
         water = water.layers[-1]
-        held = [
+        fixed_edges = [
             edge for edge in water.border.edges
             if isinstance(edge.side, Stream) and not edge.unbounded and edge.leaves < 0.5
         ]  # fmt: skip
-        if not held:
+        if not fixed_edges:
             return
         inner = (slice(PAD + 1, -PAD),) * water.axes
         spin = vorticity_size(water.velocity)
-        largest, fastest = float(spin.max()), max(float(np.abs(part[inner]).max()) for part in water.velocity)
-        for edge in held:
+        max_vorticity = float(spin.max())
+        fastest = max(float(np.abs(component[inner]).max()) for component in water.velocity)
+        for edge in fixed_edges:
             lines = edge.across(spin)
-            near = lines[:2] if edge.low else lines[-2:]
-            at = float(near.max())
-            if at > STRONG * largest and at > FELT * fastest:
+            outer_lines = lines[:2] if edge.low else lines[-2:]
+            side_vorticity = float(outer_lines.max())
+            if side_vorticity > STRONG * max_vorticity and side_vorticity > FELT * fastest:
+                percent = 100 * side_vorticity / max_vorticity
                 self._say(
                     f"side {edge.name}",
                     f"at t = {time:.4g} s there is a vortex at the {edge.name} side of the domain "
-                    f"({100 * at / largest:.0f} % of the largest vorticity), which is held to the far stream and turns "
-                    f"it back. Enlarge the domain there, or leave all four sides Stream(), which then move as in an "
-                    f"unbounded domain.",
+                    f"({percent:.0f} % of the largest vorticity), which is held to the far stream and turns it back. "
+                    f"Enlarge the domain there, or leave all four sides Stream(), which then move as in an unbounded "
+                    f"domain.",
                 )
 
-    def _say(self, key: str, what: str | Doubtful) -> None:
-        if key not in self._said:
-            self._said.add(key)
-            warn(what if isinstance(what, Doubtful) else Doubtful(what), stacklevel=5)
+    def _say(self, key: str, message: str | Doubtful) -> None:
+        if key not in self._issued_keys:
+            self._issued_keys.add(key)
+            warn(message if isinstance(message, Doubtful) else Doubtful(message), stacklevel=5)
