@@ -1,12 +1,12 @@
-"""A patch of fine cells around the bodies, nested in a coarser grid that reaches as far as the domain does.
+"""A patch of fine cells around the bodies, nested in a coarser grid that covers the whole domain.
 
-Both grids lie still to each other and take the same steps. In each stage of a step the fine cells advance first, before
-the pressure; what they come to is put in the place of the coarse velocities inside the patch, and the coarse pressure
-is solved for on the whole domain. Its velocities on the patch's sides, spread over the fine faces so that each coarse
-face passes the same flux, are what the fine pressure is solved with; velocity and pressure of the fine cells then
-replace the coarse ones inside. So neither grid loses water to the other, the pressure of both fits at the patch's
-sides up to what the coarse pressure gets wrong of a stage's change, and of the bodies the coarse cells know only where
-no pressure acts.
+The two grids do not move relative to each other, and they take the same time steps. Each stage of a step has four
+parts. First, the fine cells advance without the pressure. Their velocities then replace the coarse velocities inside
+the patch, and the coarse pressure is solved on the whole domain. The coarse velocities on the sides of the patch are
+spread over the fine faces, so that each coarse face passes the same flux, and the fine pressure is solved with them.
+Finally, velocity and pressure of the fine cells replace the coarse ones inside the patch. So neither grid loses water
+to the other. The two pressures agree at the sides of the patch, up to the error of the coarse pressure in the change
+of one stage. The coarse cells see the bodies only as cells on which no pressure acts.
 
 Source: the composite projection of Almgren, Bell, Colella, Howell and Welcome 1998, J. Comput. Phys. 142, 1-46, with
 one cycle a stage of McCormick's fast adaptive composite grids (1989).
@@ -59,7 +59,14 @@ class Beyond(Side):
 
 
 def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
-    """Return how many fine cells lie along a coarse one, and the coarse cell in the patch's low corner, x first.
+    """Return the refinement ratio of a patch and the coarse cell in its low corner, x first.
+
+    Args:
+        grid: the fine cells of the patch.
+        coarse_grid: the coarse cells of the whole domain.
+
+    Returns:
+        fine cells along a coarse cell, and the index of the coarse cell along each axis [-].
 
     Raises:
         InvalidDesign: the cells of both do not fit, or the patch reaches out of the domain.
@@ -92,10 +99,15 @@ def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
 
 
 def sides_of(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
-    """Return the sides of a patch: those of the domain where it reaches them, else where coarser cells go on.
+    """Return the sides of a patch: the side of the domain where it reaches one, else the border to the coarse cells.
+
+    Args:
+        grid: the fine cells of the patch.
+        coarse_grid: the coarse cells of the whole domain.
+        sides: sides of the domain.
 
     Raises:
-        InvalidDesign: it comes near a side of the domain and does not reach it, or reaches one that is open.
+        InvalidDesign: the patch comes near a side of the domain without reaching it, or reaches a side that is open.
     """
     ratio, corner = place_of(grid, coarse_grid)
     patch_sides: dict[str, Side] = {}
@@ -115,12 +127,12 @@ def sides_of(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
 
 
 def least_cycles(side_cells: int) -> int:
-    """Return how many cycles the coarse pressure takes at least, lest errors at a patch's sides grow from step to step.
+    """Return the fewest pressure cycles with which errors at the sides of a patch do not grow from step to step.
 
-    After a stage the coarse pressure inside the patch is that of the fine cells, which differs a little from the one
-    outside. That jump is there along a single coarse cell, and the next stage has to take its gradient back. Of what is
-    left of it the fine pressure, which takes the flux through the sides as given, makes a smooth one that is up to
-    ``side_cells / pi`` times as large, which differs again.
+    After a stage, the coarse pressure inside the patch is the pressure of the fine cells. It differs slightly from the
+    pressure outside. This jump lies along a single coarse cell, and the next stage has to remove its gradient. The fine
+    pressure takes the flux through the sides as given: it turns what is left of the jump into a smooth error that is up
+    to ``side_cells / pi`` times as large.
 
     Args:
         side_cells: coarse cells along the longest side of the patch [-].
@@ -129,10 +141,10 @@ def least_cycles(side_cells: int) -> int:
 
 
 def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return from which coarse places values of a patch are taken along one axis, and by which weights.
+    """Return the coarse cells from which values of a patch are interpolated along one axis, and the weights.
 
-    On faces along their own axis a cubic goes through four coarse values; else a parabola over three, whose mean over
-    the fine values in a coarse cell is the coarse value.
+    On faces across this axis, a cubic goes through four coarse values. Otherwise a parabola goes through three values,
+    and the mean of the fine values in a coarse cell is the coarse value.
 
     Args:
         index: of the fine values, padded [-].
@@ -159,7 +171,15 @@ def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarr
 
 @compiled
 def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
-    """Write means of boxes of ``spans`` values, which begin at ``starts`` and every ``steps`` on; three axes each."""
+    """Write the mean of a box of fine values to each coarse value; all vectors have three axes, the last axis first.
+
+    Args:
+        fine: padded fine values.
+        coarse: the means, which are written.
+        starts: first fine value of the first box, along each axis [-].
+        steps: distance of consecutive boxes, along each axis [fine values].
+        spans: length of a box, along each axis [fine values].
+    """
     fraction = fine.dtype.type(1.0 / (spans[0] * spans[1] * spans[2]))
     for k in range(coarse.shape[0]):
         for j in range(coarse.shape[1]):
@@ -175,15 +195,17 @@ def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
 
 @compiled
 def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ignore[no-untyped-def]
-    """Write values around a patch, each a weighted sum over a box of coarse ones; three axes each, the last one first.
+    """Write values around a patch, each a weighted sum over a box of coarse values.
+
+    All vectors have three axes, the last axis first.
 
     Args:
         coarse: padded values, shape (slab, row, cell).
-        runs: values of one slab and one row of the patch, one after the other, with consecutive numbers along the row:
-            slab, row, number of the first and end, and which value is the first, shape (run, 5).
-        first_cells: first coarse place of a box, by axis and number in the patch.
-        weights: of the coarse places along an axis, by axis, number in the patch, and place.
-        taps: coarse places of a box along each axis.
+        runs: consecutive values along one row of the patch: slab, row, first and end index along the row, and the index
+            in ``values`` of the first one, shape (run, 5).
+        first_cells: first coarse index of a box, by axis and index in the patch.
+        weights: of the coarse values along an axis, by axis, index in the patch, and position in the box.
+        taps: coarse values of a box along each axis.
         values: the values, shape (value,).
     """
     line = np.empty(coarse.shape[2], values.dtype)
@@ -220,7 +242,12 @@ class Around(NamedTuple):
 
 
 def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the runs along the rows of flat places, which rise, in an array of three axes, shape (run, 5)."""
+    """Return the runs of consecutive cells along the rows, shape (run, 5); see ``_interpolate``.
+
+    Args:
+        places: flat indices of the cells, rising.
+        shape: padded shape of the patch, three axes.
+    """
     slab, row, number = np.unravel_index(places, shape)
     begins = np.flatnonzero(np.diff(places, prepend=-2) - 1 + (np.diff(row, prepend=-1) != 0))
     ends = np.append(begins[1:], places.size) - 1
@@ -231,6 +258,14 @@ class Rim:
     """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
 
     def __init__(self, patch: Grid, coarse_grid: Grid, sides: Sides, dtype: type) -> None:
+        """Prepare the interpolation stencil of each velocity component.
+
+        Args:
+            patch: the fine cells.
+            coarse_grid: the coarse cells of the whole domain.
+            sides: sides of the patch.
+            dtype: precision of the fields.
+        """
         self._dtype = dtype
         ratio, corner = place_of(patch, coarse_grid)
         axes = patch.axes
@@ -254,7 +289,15 @@ class Rim:
     def _component(
         self, c: int, places: np.ndarray, shape: tuple[int, ...], ratio: int, corner: tuple[int, ...]
     ) -> Around:
-        """Return what the component along an axis is read by at flat places of a patch of a padded shape."""
+        """Return the interpolation stencil of one velocity component.
+
+        Args:
+            c: axis of the component.
+            places: flat indices of the values in the padded patch.
+            shape: padded shape of the patch.
+            ratio: fine cells along a coarse cell [-].
+            corner: coarse cell in the low corner of the patch, x first [-].
+        """
         axes = len(shape)
         flat = 3 - axes  # of a plane the first of three axes is a single place
         first_cells, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
@@ -269,7 +312,11 @@ class Rim:
         return Around(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
 
     def read(self, coarse: np.ndarray) -> list[np.ndarray]:
-        """Return what the velocity around the patch is, component by component, by that on the coarse faces."""
+        """Return the velocity around the patch, interpolated from the coarse faces, one array for each component [m/s].
+
+        Args:
+            coarse: padded velocity of the coarse grid, shape (axis, ...) [m/s].
+        """
         values = []
         for component, stencil in zip(coarse, self._stencils, strict=True):
             rim_values: np.ndarray = np.empty(stencil.places.size, self._dtype)
@@ -279,7 +326,7 @@ class Rim:
         return values
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
-        """Write what was read to the padded velocity of the patch."""
+        """Write interpolated values, see ``read``, to the padded velocity of the patch."""
         for component, stencil, rim_values in zip(velocity, self._stencils, values, strict=True):
             component.reshape(-1)[stencil.places] = rim_values
 
@@ -295,6 +342,17 @@ class Nested(Fluid):
         self, grid: Grid, coarse_grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme,
         integrator: Integrator,
     ) -> None:  # fmt: skip
+        """Set up the patch and the coarse water around it.
+
+        Args:
+            grid: the fine cells of the patch.
+            coarse_grid: the coarse cells of the whole domain.
+            sides: sides of the domain.
+            viscosity: kinematic viscosity [m^2/s].
+            dtype: precision of the fields.
+            scheme: advection scheme.
+            integrator: time integrator.
+        """
         patch_sides = sides_of(grid, coarse_grid, sides)
         super().__init__(grid, patch_sides, viscosity, dtype, scheme, integrator)
         self.coarse = Fluid(coarse_grid, sides, viscosity, dtype, scheme, integrator)
@@ -428,6 +486,7 @@ class Nested(Fluid):
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
+        """Prepare the sides of both grids for a step; see ``Fluid``."""
         self._previous_values, self.coarse.solves = [], []
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
         return super()._begin(dt, stream, push, time)
@@ -437,6 +496,7 @@ class Nested(Fluid):
         return [stage._replace(beyond=coarse_stage) for stage, coarse_stage in pairs]
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
+        """Take one stage on both grids: fine advance, coarse advance and pressure, then the fine pressure."""
         coarse, coarse_stage = self.coarse, stage.beyond
         self._advance(stage, push)
         coarse._advance(coarse_stage, self._push)
@@ -455,6 +515,7 @@ class Nested(Fluid):
         return True
 
     def _is_first_step_converged(self, last_stage: PlannedStage, limits: tuple[float, float]) -> bool:
+        """Return whether far water and velocity around the patch stayed the same in this round of the first step."""
         side_change = self._hear(last_stage)
         previous_values, self._previous_values = self._previous_values, self._values
         if not previous_values:
@@ -463,7 +524,7 @@ class Nested(Fluid):
         return max(side_change, change) <= limits[1]
 
     def _reset_first_step(self, start: np.ndarray) -> None:
-        """Go on from the pressure that was found: both grids come to agree on it round by round."""
+        """Keep the current pressure: the two grids converge to a common pressure round by round."""
 
     def _swap(self) -> None:
         super()._swap()
@@ -472,7 +533,7 @@ class Nested(Fluid):
     # --- what bodies that are accelerated meet -----------------------------------------------------------------
 
     def _coarsened(self, face_values: np.ndarray) -> np.ndarray:
-        """Return what is given on the faces of the fine window on those of the coarse one."""
+        """Return values on the faces of the fine window, averaged onto those of the coarse window, (axis, ...)."""
         fine, coarse = np.zeros(self.velocity.shape), np.zeros(self.coarse.velocity.shape)
         fine[:, *self.here] = face_values
         self._give(fine, coarse)
@@ -485,10 +546,15 @@ class Nested(Fluid):
         return self._answering(acceleration, self._side_velocity(self._coarse_acceleration), limit)
 
     def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
-        """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``.
+        """Add a velocity change to the water on both grids, with the pressure that it causes; see ``Fluid``.
 
-        What is solved for on both grids is the change alone: with what the step itself has left over of divergence in
-        it, a change ten thousand times smaller than the velocity drowns.
+        Only the change is solved for on both grids. The step leaves a divergence; beside it, a change ten thousand
+        times smaller than the velocity would be lost.
+
+        Args:
+            velocity_change: on the faces of the fine window, shape (axis, ...) [m/s].
+            dt: length of the step [s].
+            limit: mean divergence that may be left [m/s per cell].
         """
         span = self.dtype(dt / self.grid.cell)
         self.coarse.press(self._coarsened(velocity_change), dt, TIGHTER * limit)
@@ -499,9 +565,10 @@ class Nested(Fluid):
         return x + (self._give_pressure() * span - self._level_of(x))  # as it was added to the pressure
 
     def _side_velocity(self, acceleration: np.ndarray) -> np.ndarray:
-        """Return what the coarse ``potential``'s last answer moves on the sides of the patch, a velocity of all of it.
+        """Return the velocity that the last coarse ``potential`` induces on the sides of the patch.
 
-        ``given`` is what that answers, on the faces of the coarse window.
+        Args:
+            acceleration: argument of that ``potential``, on the faces of the coarse window, shape (axis, ...).
         """
         velocity = np.zeros(self.velocity.shape)
         self._rim.write(velocity, self._rim.read(self.coarse._gained(acceleration)))

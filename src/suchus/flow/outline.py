@@ -33,6 +33,7 @@ class Polygon(Solid):
     """Corners in order around it, either way, the first not repeated, shape (corner, 2) [m]."""
 
     def __post_init__(self) -> None:
+        """Check the corners and store them counter-clockwise, without repetitions."""
         corners = np.array(self.corners, dtype=np.float64)
         if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
             raise InvalidDesign(f"the corners have shape {corners.shape}; give rows of two finite numbers, x and y.")
@@ -48,7 +49,7 @@ class Polygon(Solid):
         object.__setattr__(self, "corners", corners if _area(corners) > 0 else corners[::-1].copy())
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal."""
+        """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m]."""
         px, py = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         fields = np.empty((3, px.size))
         measure_outline(fields, px.ravel(), py.ravel(), self._outline_points, self._flat)
@@ -56,7 +57,7 @@ class Polygon(Solid):
         return d, nx, ny
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
-        """Return the field on the points of a window, as far as ``reach``."""
+        """Return distance, normal and velocity on the points of a window; see ``Shape.measure``."""
         h = float(x[-1] - x[0]) / (x.size - 1)
         outline = np.stack(pose.to_world(*self._outline_points))
         d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
@@ -72,7 +73,7 @@ class Polygon(Solid):
         return 1e-9 * float(np.ptp(self.corners))
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the corners, and points between them about evenly spaced."""
+        """Return the corners and points between them, about ``count`` in all and about evenly spaced [m]."""
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         length = np.hypot(*edges.T)
         parts = np.maximum(1, np.round(count * length / length.sum())).astype(int)
@@ -112,10 +113,14 @@ def from_outline(points: np.ndarray | Path | str) -> Polygon:
 
 
 def _numbers(rows: list[list[str]], path: Path) -> list[list[float]]:
-    """Return the numbers of an outline's rows.
+    """Return the numbers in the rows of an outline file.
+
+    Args:
+        rows: words of each row.
+        path: name of the file, for the error message.
 
     Raises:
-        UnreadableFile: there are none, or words that are no numbers.
+        UnreadableFile: there is no row, or a word is not a number.
     """
     if not rows:
         raise UnreadableFile(f"the outline {path} is not two columns of numbers, x and y: it holds no row.")
@@ -130,10 +135,17 @@ def _numbers(rows: list[list[str]], path: Path) -> list[list[float]]:
 
 
 def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
-    """Return the corners of an outline that may begin with how many there are, or how many above and below a chord.
+    """Return the corners of an outline, without the counts that its first row may hold.
+
+    One count is the number of corners. Two counts are the numbers of corners on the upper and on the lower surface; the
+    two surfaces are then joined to one outline.
+
+    Args:
+        rows: numbers of each row.
+        path: name of the file, for the error message.
 
     Raises:
-        UnreadableFile: a row is not two numbers, or the count is another.
+        UnreadableFile: a row does not hold two numbers, or the counts do not match the rows.
     """
     counts, corners = rows[0], rows[1:]
     is_count = all(count == int(count) and count > 1 for count in counts if abs(count) < 1e9) and bool(counts)
@@ -155,6 +167,7 @@ def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
 
 
 def _is_heading(rows: list[list[str]]) -> bool:
+    """Return whether the first row holds words that are not numbers."""
     try:
         [float(word) for word in (rows or [[]])[0]]
     except ValueError:
@@ -189,12 +202,15 @@ class Implicit(Solid):
         return 1e-6 * _size(self.box)
 
     def _rises(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return by how much the function rises over two steps along x and along y."""
+        """Return the differences of the function over two steps along x and along y."""
         step = self._step
         return self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal, the normal by differences."""
+        """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m].
+
+        The normal is a central difference.
+        """
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
@@ -205,7 +221,7 @@ class Implicit(Solid):
         return value, np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the body, evenly spaced."""
+        """Return ``count`` points around the body, evenly spaced [m]."""
         closed = np.concatenate([self._ring, self._ring[:1]])
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
         arc_positions = np.linspace(0, arc[-1], count, endpoint=False)
@@ -255,7 +271,11 @@ def difference(shape: Solid, other_shape: Solid) -> Implicit:
 
 
 def scaled(shape: Solid, factor: float) -> Implicit:
-    """Return a shape ``factor`` times as large about the origin of its frame.
+    """Return a shape enlarged about the origin of its frame.
+
+    Args:
+        shape: the shape.
+        factor: ratio of the new size to the old one [-].
 
     Raises:
         InvalidDesign: the factor is not positive.
@@ -286,7 +306,11 @@ def _area(corners: np.ndarray) -> float:
 
 
 def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
-    """Return two edges that cross or touch and are not neighbours, if there are any."""
+    """Return the indices of two edges that cross or touch and are not neighbours; None if there are none.
+
+    Args:
+        corners: of a polygon, shape (corner, 2) [m].
+    """
     a, b = corners, np.roll(corners, -1, axis=0)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -309,7 +333,7 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
 
 
 def _widest(shape: Solid) -> float:
-    """Return the diameter of the largest circle inside the outline of a shape."""
+    """Return the diameter of the largest circle inside the outline of a shape [m]."""
     x, y = shape.outline(512)
     gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))
     fields = np.empty((3, gx.size))
@@ -320,12 +344,17 @@ def _widest(shape: Solid) -> float:
 def _trace_outline(
     sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]
 ) -> np.ndarray:
-    """Return the outline of where a function is negative, counter-clockwise, shape (point, 2) [m].
+    """Return the outline of the region in which a function is negative, counter-clockwise, shape (point, 2) [m].
 
-    It is walked along: a step ahead at right angles to the gradient, then back to zero by Newton's method.
+    The outline is traced point by point: each step goes at right angles to the gradient, and Newton's method then
+    returns the point to the zero of the function.
+
+    Args:
+        sdf: signed distance at points (x, y) [m].
+        box: rectangle around the body, x0, x1, y0, y1 [m].
 
     Raises:
-        InvalidDesign: there is no such place in the box, or it reaches the box's rim.
+        InvalidDesign: the function is nowhere negative in the box, or the region reaches the edge of the box.
     """
     x0, x1, y0, y1 = box
     gx, gy = np.meshgrid(np.linspace(x0, x1, 257), np.linspace(y0, y1, 257))
@@ -365,7 +394,12 @@ def _trace_outline(
 
 
 def _refine_ring(ring: np.ndarray, project: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Return a ring of points, shape (2, point), with ``_BETWEEN`` times as many, all put onto the outline."""
+    """Return a ring with ``_SUBDIVISIONS`` times as many points, shape (2, point) [m].
+
+    Args:
+        ring: points around the body, shape (2, point) [m].
+        project: function that moves points onto the outline.
+    """
     fraction = np.arange(_SUBDIVISIONS) / _SUBDIVISIONS
     next_points = np.roll(ring, -1, axis=1)
     return project((ring[:, :, None] * (1 - fraction) + next_points[:, :, None] * fraction).reshape(2, -1))

@@ -28,10 +28,13 @@ _NAMES = {
 
 
 def snapshot(sim: Fields) -> xr.Dataset:
-    """Return the fields at the cell centres now, dimensions (``z``,) ``y`` and ``x`` [m].
+    """Return the fields at the cell centres at the present time, dimensions (``z``,) ``y`` and ``x`` [m].
 
-    The velocity has the dimension ``component`` as well, and so has the vorticity in space.
-    The coordinates are those of the world: those of a grid that follows a body travel.
+    The velocity also has the dimension ``component``, and so has the vorticity in space. Coordinates and velocities are
+    those of the world frame, also for a grid that follows a body.
+
+    Args:
+        sim: the simulation whose fields are read.
     """
     grid, (position, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
@@ -55,7 +58,11 @@ def snapshot(sim: Fields) -> xr.Dataset:
 
 
 def save_vti(sim: Fields, path: Path | str) -> None:
-    """Write the fields now as a VTK ImageData file, which ParaView and VisIt open.
+    """Write the present fields to a VTK ImageData file, which ParaView and VisIt open.
+
+    Args:
+        sim: the simulation whose fields are written.
+        path: name of the file.
 
     Raises:
         Unwritable: naming the place.
@@ -64,6 +71,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 
 def _vti(sim: Fields) -> bytes:
+    """Return the content of a VTK ImageData file with all fields, the numbers as raw little-endian floats."""
     data, grid, frame = snapshot(sim), sim.water.grid, sim.frame[0]
     flat, h = grid.axes == 2, float(grid.cell)
     x, y, z = (*(float(value) for value in np.array(grid.origin) + frame), 0)[:3]
@@ -116,6 +124,7 @@ class FieldSeries:
     _last_time: float = field(default=-np.inf, init=False)
 
     def __post_init__(self) -> None:
+        """Check the file name and the times."""
         self.path, self.times = Path(self.path), tuple(float(time) for time in self.times)
         if self.path.suffix not in (".nc", ".pvd"):
             raise InvalidDesign(f"fields are to be written to {self.path}; give a name that ends with .nc or .pvd.")
@@ -123,7 +132,10 @@ class FieldSeries:
             raise InvalidDesign(f"the times of the fields are {self.times} s; give finite times that rise.")
 
     def __call__(self, sim: Fields) -> None:
-        """Write the fields, if it is time.
+        """Write the fields if a chosen time has been reached.
+
+        Args:
+            sim: the simulation after a step.
 
         Raises:
             Unwritable: naming the place.
@@ -142,6 +154,11 @@ class FieldSeries:
 
 
 def _add_to_netcdf(sim: Fields, path: Path) -> None:
+    """Append the present fields to a NetCDF file; entries at or after the present time are replaced.
+
+    Raises:
+        UnreadableFile: the file holds something else.
+    """
     new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
         travelled = dict(zip("xyz", sim.frame[0], strict=False))
@@ -165,6 +182,13 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
 
 
 def _add_to_collection(sim: Fields, path: Path) -> None:
+    """Write the present fields to a new .vti file and add it to a ParaView collection (.pvd).
+
+    Entries at or after the present time are replaced.
+
+    Raises:
+        UnreadableFile: the collection cannot be read.
+    """
     entries: list[tuple[float, str]] = []
     if path.exists():
         try:

@@ -1,10 +1,11 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision)
-"""Distance, normal and velocity of a body given by its midline, or by its outline alone, painted onto a window.
+"""Distance, normal and velocity of a body in the plane, computed at the points of a window.
 
-Every edge of the outline paints the points near it; winding numbers along the rows tell inside from outside; and
-each point moves with the cross-section of the midline that it lies on, which is continuous across the body's
-middle. (The velocity of the nearest outline point is not, and the force then jumps from step to step.)
+The body is given by its midline or by its outline. Each edge of the outline updates the points near it. Winding
+numbers along the rows distinguish inside from outside. Each point moves with the cross-section of the midline that it
+lies on: this velocity is continuous across the middle of the body. The velocity of the nearest outline point is not
+continuous there, and the force would jump from step to step.
 """
 
 import numpy as np
@@ -18,7 +19,16 @@ ROWS = 16
 
 @compiled
 def distance_to_edge(px, py, start_x, start_y, end_x, end_y):
-    """Return the squared distance of a point to an edge and where along it the nearest point lies, 0 to 1."""
+    """Return the squared distance from a point to an edge, and the position of the nearest point on the edge, 0 to 1.
+
+    Args:
+        px: point.
+        py: point.
+        start_x: start of the edge.
+        start_y: start of the edge.
+        end_x: end of the edge.
+        end_y: end of the edge.
+    """
     ex, ey = end_x - start_x, end_y - start_y
     dx, dy = px - start_x, py - start_y
     size = ex * ex + ey * ey
@@ -31,7 +41,23 @@ def distance_to_edge(px, py, start_x, start_y, end_x, end_y):
 
 @part
 def _paint_edge(square, edge, fraction, rows, k, start_x, start_y, end_x, end_y, x0, y0, h, reach):
-    """Keep edge ``k`` at the points of the rows (first, end) that no other edge is nearer to."""
+    """Store edge ``k`` at all points of some rows to which no earlier edge is nearer.
+
+    Args:
+        square: squared distance to the nearest edge so far, shape (y, x).
+        edge: index of that edge, shape (y, x).
+        fraction: position of the nearest point on it, 0 to 1, shape (y, x).
+        rows: first row and end.
+        k: index of the edge.
+        start_x: start of the edge.
+        start_y: start of the edge.
+        end_x: end of the edge.
+        end_y: end of the edge.
+        x0: first point of the window.
+        y0: first point of the window.
+        h: distance of the points.
+        reach: distance up to which points are updated.
+    """
     j0 = max(int(np.ceil((min(start_y, end_y) - reach - y0) / h)), rows[0])
     j1 = min(int(np.floor((max(start_y, end_y) + reach - y0) / h)), rows[1] - 1)
     if j1 < j0:
@@ -49,7 +75,18 @@ def _paint_edge(square, edge, fraction, rows, k, start_x, start_y, end_x, end_y,
 
 @part
 def _wind_edge(winding, start_x, start_y, end_x, end_y, x0, y0, h):
-    """Note on every row that the edge crosses, at the first point right of it, which way it crosses."""
+    """Add the crossings of an edge with the rows to ``winding``, each at the first point right of the crossing.
+
+    Args:
+        winding: change of the winding number from the point on the left to this one, shape (y, x).
+        start_x: start of the edge.
+        start_y: start of the edge.
+        end_x: end of the edge.
+        end_y: end of the edge.
+        x0: first point of the window.
+        y0: first point of the window.
+        h: distance of the points.
+    """
     ny, nx = winding.shape
     lower_end, upper_end, direction = (start_y, end_y, 1) if start_y < end_y else (end_y, start_y, -1)
     j0 = max(int(np.ceil((lower_end - y0) / h)), 0)
@@ -64,7 +101,17 @@ def _wind_edge(winding, start_x, start_y, end_x, end_y, x0, y0, h):
 
 @part
 def find_section(px, py, start, sx, sy, tx, ty):
-    """Return the segment of the midline whose cross-section holds the point, and where along it, 0 to 1."""
+    """Return the segment of the midline whose cross-section holds a point, and the position along the segment, 0 to 1.
+
+    Args:
+        px: point.
+        py: point.
+        start: segment at which the search begins.
+        sx: stations of the midline.
+        sy: stations of the midline.
+        tx: tangent at the stations.
+        ty: tangent at the stations.
+    """
     last_segment = sx.size - 2
     k = min(start, last_segment)
     offset = (px - sx[k]) * tx[k] + (py - sy[k]) * ty[k]
@@ -83,9 +130,15 @@ def find_section(px, py, start, sx, sy, tx, ty):
 
 @part
 def section_velocity(px, py, k, f, spine, width_rate):
-    """Return the velocity that the cross-section carries to a point.
+    """Return the velocity (x, y) with which a cross-section moves a point.
 
-    ``spine`` rows: x, y, heading, half-width, and the rates of x, y and heading.
+    Args:
+        px: point.
+        py: point.
+        k: segment of the midline.
+        f: position along the segment, 0 to 1.
+        spine: stations, rows x, y, heading, half-width, and the rates of x, y and heading.
+        width_rate: rate of the half-width at the stations.
     """
     g = 1.0 - f
     dx = px - (g * spine[0, k] + f * spine[0, k + 1])
@@ -103,7 +156,13 @@ def section_velocity(px, py, k, f, spine, width_rate):
 
 @compiled
 def ring(spine):
-    """Return the outline counter-clockwise: up the right side and back along the left, shape (2, 2 n)."""
+    """Return the outline of a midline counter-clockwise: along the right side, then back along the left.
+
+    The shape is (2, 2 n) for n stations.
+
+    Args:
+        spine: stations, rows x, y, heading and half-width (and more), shape (row, n).
+    """
     n = spine.shape[1]
     outline = np.empty((2, 2 * n))
     for k in range(n):
@@ -115,7 +174,7 @@ def ring(spine):
 
 @part
 def _wind(winding, outline, x0, y0, h):
-    """Note all edges of an outline on the rows that they cross."""
+    """Add the crossings of all edges of an outline with the rows to ``winding``; see ``_wind_edge``."""
     count = outline.shape[1]
     for k in range(count):
         m = (k + 1) % count
@@ -125,7 +184,7 @@ def _wind(winding, outline, x0, y0, h):
 
 @part
 def _paint_edges(square, edge, fraction, rows, outline, x0, y0, h, reach):
-    """Keep at the points of the rows (first, end) the edge of an outline that is nearest."""
+    """Store the nearest edge of an outline at each point of some rows; see ``_paint_edge`` for the arguments."""
     count = outline.shape[1]
     for k in range(count):
         m = (k + 1) % count
@@ -136,7 +195,18 @@ def _paint_edges(square, edge, fraction, rows, outline, x0, y0, h, reach):
 
 @part
 def _normal_to_edge(outline, k, fraction, px, py, distance, sign, flat):
-    """Return the outward normal at a point whose nearest edge is known, its own if that is nearer than ``flat``."""
+    """Return the outward normal (x, y) at a point whose nearest edge is ``k``.
+
+    Args:
+        outline: corners, shape (2, corner).
+        k: index of the edge.
+        fraction: position of the nearest point on the edge, 0 to 1.
+        px: point.
+        py: point.
+        distance: unsigned distance to the edge.
+        sign: -1 inside and 1 outside.
+        flat: distance below which the normal of the edge itself is taken.
+    """
     m = (k + 1) % outline.shape[1]
     ex, ey = outline[0, m] - outline[0, k], outline[1, m] - outline[1, k]
     if distance > flat:
@@ -149,7 +219,24 @@ def _normal_to_edge(outline, k, fraction, px, py, distance, sign, flat):
 
 @part
 def _paint_row(fields, j, square, edge, fraction, winding, outline, spine, width_rate, tx, ty, x0, y0, h):
-    """Write what ``paint`` returns for one row of points, whose nearest edges are known."""
+    """Write the fields of ``paint`` for row ``j``, whose nearest edges are known.
+
+    Args:
+        fields: distance, normal (x, y), velocity (x, y) and thickness, shape (6, y, x).
+        j: the row.
+        square: squared distance to the nearest edge, shape (y, x).
+        edge: index of that edge, -1 beyond the reach, shape (y, x).
+        fraction: position of the nearest point on it, 0 to 1, shape (y, x).
+        winding: change of the winding number at each point, shape (y, x).
+        outline: corners, shape (2, corner).
+        spine: stations of the midline; see ``section_velocity``.
+        width_rate: rate of the half-width at the stations.
+        tx: tangent at the stations.
+        ty: tangent at the stations.
+        x0: first point of the window.
+        y0: first point of the window.
+        h: distance of the points.
+    """
     count, n = outline.shape[1], spine.shape[1]
     winding_number, k = 0, 0
     for i in range(square.shape[1]):
@@ -181,7 +268,7 @@ def _paint_row(fields, j, square, edge, fraction, winding, outline, spine, width
 
 @threaded
 def _paint(fields, square, edge, fraction, winding, outline, spine, width_rate, tx, ty, x0, y0, h, reach):
-    """Paint ``out``, row by row; the other arrays of its shape are room."""
+    """Write all rows of ``fields``; see ``_paint_row`` for the arguments."""
     ny = square.shape[0]
     _wind(winding, outline, x0, y0, h)
     for n in prange((ny + ROWS - 1) // ROWS):
@@ -195,10 +282,20 @@ def _paint(fields, square, edge, fraction, winding, outline, spine, width_rate, 
 def paint(
     spine: np.ndarray, width_rate: np.ndarray, x0: float, y0: float, h: float, nx: int, ny: int, reach: float
 ) -> np.ndarray:
-    """Return distance, normal (x, y), velocity (x, y) and thickness on the window, shape (6, ny, nx).
+    """Return distance, normal (x, y), velocity (x, y) and thickness on a window, shape (6, ny, nx).
 
-    The thickness is that of the cross-section one cell inside the nearest point of the outline: near the blunt
-    nose it is large, along a tail it is the tail's.
+    The thickness is that of the cross-section one cell inside the nearest point of the outline. It is large near a
+    blunt nose, and small along a tail.
+
+    Args:
+        spine: stations of the midline; see ``section_velocity`` [m, rad, m/s, rad/s].
+        width_rate: rate of the half-width at the stations [m/s].
+        x0: first point of the window [m].
+        y0: first point of the window [m].
+        h: distance of the points [m].
+        nx: points along x [-].
+        ny: points along y [-].
+        reach: distance up to which the fields are computed [m].
     """
     outline, headings = ring(spine), spine[2]
     square, edge = np.full((ny, nx), reach * reach), np.full((ny, nx), -1, np.int32)
@@ -212,7 +309,10 @@ def paint(
 
 @threaded
 def _paint_outline(fields, square, edge, fraction, winding, outline, x0, y0, h, reach, flat):
-    """Paint ``out``, row by row; the other arrays of its shape are room."""
+    """Write distance and normal of a polygon to ``fields``, shape (3, y, x); see ``_paint_row`` for the arguments.
+
+    ``flat`` is the distance below which a point has the normal of its edge.
+    """
     ny = square.shape[0]
     _wind(winding, outline, x0, y0, h)
     for n in prange((ny + ROWS - 1) // ROWS):
@@ -255,10 +355,10 @@ def paint_outline(
 
 @threaded
 def measure_outline(fields, px, py, outline, flat):
-    """Write distance and normal of a polygon at any points, however far, to ``out``, shape (3, point).
+    """Write distance and normal of a polygon at any points, however far.
 
     Args:
-        fields: where to.
+        fields: distance and normal (x, y), shape (3, point).
         px: points, shape (point,).
         py: points, shape (point,).
         outline: corners, counter-clockwise, shape (2, corner).
@@ -285,7 +385,14 @@ def measure_outline(fields, px, py, outline, flat):
 
 @compiled
 def sections(point, guess, spine, width_rate):
-    """Return velocity (x, y) and turning rate of the cross-sections that hold the points, shape (3, point)."""
+    """Return velocity (x, y) and turning rate of the cross-sections that hold some points, shape (3, point).
+
+    Args:
+        point: the points, shape (2, point).
+        guess: segment of the midline at which the search of each point begins, shape (point,).
+        spine: stations of the midline; see ``section_velocity``.
+        width_rate: rate of the half-width at the stations.
+    """
     n = spine.shape[1]
     tx, ty = np.empty(n), np.empty(n)
     for k in range(n):

@@ -1,11 +1,12 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision and number of dimensions)
-"""The windows of all levels by themselves: small arrays on which extra smoothing steps cost next to nothing.
+"""Multigrid smoothing on the windows alone: small arrays on which extra smoothing steps cost almost nothing.
 
-A level's patch is its window and ``RIM`` cells around it, as far as they lie in the domain. Its cells lie end to end,
-so that a smoothing step is one long loop; the cells at the rim keep their value, because their inverse diagonal counts
-as 0. A row of ``rects`` is a patch: where it starts in the room, its padded cell indices, first and end along each
-axis, the last axis first, and how many pairs of smoothing steps it gets before and after.
+The patch of a level is its window and ``RIM`` cells around it, as far as they lie in the domain. The cells of a patch
+lie contiguously in memory, so that a smoothing step is one long loop. Cells at the edge of a patch keep their value,
+because their inverse diagonal is 0. A row of ``rects`` describes a patch: its offset in the buffer, its padded cell
+indices (first and end along each axis, the last axis first), and the number of pairs of smoothing steps before and
+after the coarse-grid correction.
 """
 
 from math import prod
@@ -55,7 +56,12 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
 
 
 def room_for(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
-    """Return a room in which the patches have place, the old one if it will do."""
+    """Return a buffer that holds all patches: the old one if it is large enough, else a new one.
+
+    Args:
+        buffer: the old buffer, shape (kind, cell).
+        patches: see ``rects``.
+    """
     ends = patches[-1, 1:-1].reshape(-1, 2)
     size = int(patches[-1, 0] + np.prod(ends[:, 1] - ends[:, 0]))
     return buffer if size <= buffer.shape[1] else np.zeros((FACES + len(ends), size + size // 4), buffer.dtype)
@@ -63,7 +69,7 @@ def room_for(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
 
 @part
 def _sizes(rect, inner):
-    """Return how many slabs a patch has, and how many cells a slab of it and a row of it."""
+    """Return the number of slabs of a patch, the cells of one of its slabs, and the cells of one of its rows."""
     slab_count, column_index = rect[2] - rect[1], 2 * len(inner) + 1
     row_cells = rect[column_index + 1] - rect[column_index]
     return slab_count, row_cells * (rect[4] - rect[3]) if len(inner) > 1 else row_cells, row_cells
@@ -71,7 +77,7 @@ def _sizes(rect, inner):
 
 @part
 def patch(buffer, rect, inner, kind):
-    """Return what the room holds of one kind for one patch, shape (slab, cell)."""
+    """Return the values of one kind and one patch, a view of the buffer, shape (slab, cell)."""
     slab_count, length, _ = _sizes(rect, inner)
     return buffer[kind, rect[0] : rect[0] + slab_count * length].reshape(slab_count, length)
 
@@ -86,7 +92,14 @@ def _rows(rect, inner):
 
 @part
 def _take(target, rect, a, inner):
-    """Copy a patch from an array of its level to the room."""
+    """Copy a patch from an array of its level.
+
+    Args:
+        target: values of the patch, shape (slab, cell).
+        rect: row of ``rects``.
+        a: array of the level.
+        inner: strides within a slab.
+    """
     row_cells, (r0, r1, s, e) = row_length(inner, a.shape[1]), _rows(rect, inner)
     for j in range(unsigned(target.shape[0])):
         for row in range(r0, r1):
@@ -98,7 +111,14 @@ def _take(target, rect, a, inner):
 
 @part
 def _close_sides(buffer, rect, place, inner):
-    """Close the faces on the sides of the domain that a patch in space reaches beyond."""
+    """Set the coefficients to 0 on the faces where a patch in space extends beyond a side of the domain.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        place: row of the layout for the level; see ``slab``.
+        inner: strides within a slab.
+    """
     _, length, row_cells = _sizes(rect, inner)
     for d in range(len(inner) + 1):
         face, r = patch(buffer, rect, inner, FACES + d), 5 - 2 * d
@@ -116,7 +136,16 @@ def _close_sides(buffer, rect, place, inner):
 
 @part
 def take_coefficients(buffer, rect, place, faces, dinv, inner):
-    """Copy the coefficients of a patch from its level, whose place is given, to the room."""
+    """Copy the coefficients of a patch from its level to the buffer.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        place: row of the layout for the level; see ``slab``.
+        faces: face coefficients of the level along each axis.
+        dinv: inverse diagonal of the level.
+        inner: strides within a slab.
+    """
     for d in range(len(inner) + 1):
         _take(patch(buffer, rect, inner, FACES + d), rect, faces[d], inner)
     if len(inner) > 1:
@@ -136,6 +165,15 @@ def take_coefficients(buffer, rect, place, faces, dinv, inner):
 
 @part
 def _relax(buffer, rect, inner, first_weight, second_weight):
+    """Smooth the solution of a patch by pairs of Jacobi steps with two weights.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``; its last number is the number of pairs.
+        inner: strides within a slab.
+        first_weight: Jacobi weight of the first step of a pair [-].
+        second_weight: Jacobi weight of the second step [-].
+    """
     x, y = patch(buffer, rect, inner, ONE), patch(buffer, rect, inner, TWO)
     _, length, row_cells = _sizes(rect, inner)
     strides = strides_like(inner, unsigned(row_cells)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
@@ -151,7 +189,14 @@ def _relax(buffer, rect, inner, first_weight, second_weight):
 
 @part
 def start(buffer, rect, b, inner):
-    """Write the first smoothing steps on a patch to the room; at its rim they are those without a body."""
+    """Write the first smoothing steps on a patch to the buffer; at the edge of the patch they are those without a body.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        b: right side of the level.
+        inner: strides within a slab.
+    """
     _take(patch(buffer, rect, inner, RIGHT), rect, b, inner)
     x = patch(buffer, rect, inner, ONE)
     row_cells, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
@@ -165,7 +210,14 @@ def start(buffer, rect, b, inner):
 
 @part
 def end(buffer, rect, x, inner):
-    """Smooth ``x`` on a patch."""
+    """Smooth the solution of a level on a patch.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        x: solution of the level, which is changed.
+        inner: strides within a slab.
+    """
     solution = patch(buffer, rect, inner, ONE)
     _take(solution, rect, x, inner)
     first_weight, second_weight = weights(inner, buffer.dtype.type)
@@ -176,7 +228,18 @@ def end(buffer, rect, x, inner):
 
 @part
 def give_slab(output, o, solution, rect, slab, inner):
-    """Copy a slab of a patch's solution, but for its rim, to slab ``o`` of ``out``; it may not have that slab."""
+    """Copy one slab of a patch's solution, except the edge of the patch, to a slab of another array.
+
+    Nothing happens if the patch does not contain the slab.
+
+    Args:
+        output: the other array.
+        o: slab of ``output``.
+        solution: solution of the patch, shape (slab, cell).
+        rect: row of ``rects``.
+        slab: slab of the level.
+        inner: strides within a slab.
+    """
     if rect[1] < slab < rect[2] - 1:
         o, j = unsigned(o), unsigned(slab - rect[1])
         row_cells, (r0, r1, s, e) = row_length(inner, output.shape[1]), _rows(rect, inner)

@@ -2,10 +2,10 @@
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """The pressure equation: conjugate gradients, preconditioned by one multigrid cycle.
 
-Solves ``-div(c grad x) = b`` from nothing; the caller has already applied the last pressure, which is the warm
-start. Stops when both the mean and the largest residual are small. The multigrid cycle is not symmetric, so each
-new direction is made orthogonal to the last one explicitly (flexible conjugate gradients, Notay 2000, SIAM J.
-Sci. Comput. 22, 1444-1460).
+Solves ``-div(c grad x) = b`` from a zero initial value; the caller has already applied the last pressure, which is the
+warm start. The iteration stops when both the mean and the largest residual are small. The multigrid cycle is not
+symmetric. Each new direction is therefore made orthogonal to the last one explicitly (flexible conjugate gradients,
+Notay 2000, SIAM J. Sci. Comput. 22, 1444-1460).
 """
 
 from dataclasses import dataclass
@@ -36,7 +36,18 @@ PATIENCE = 15
 
 @part
 def _dots(z, az, r, d, slab, inner):
-    """Return (z, A z), (d, A z), (r, z) and (r, d) of a slab; the last is nearly nothing, so r's sums are double."""
+    """Return the products (z, A z), (d, A z), (r, z) and (r, d) of one slab.
+
+    (r, d) nearly cancels, so the sums with r are in double precision.
+
+    Args:
+        z: preconditioned residual, shape (slab, cell).
+        az: A z of this slab, shape (1, cell).
+        r: residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        slab: the slab.
+        inner: strides within a slab.
+    """
     j, row_cells = unsigned(slab), row_length(inner, z.shape[1])
     z_az, d_az, r_z, r_d = 0.0, 0.0, 0.0, 0.0
     for n in range(row_count(inner, z.shape[1])):
@@ -54,7 +65,17 @@ def _dots(z, az, r, d, slab, inner):
 
 @threaded_part
 def _measure(z, r, d, faces, place, inner, sums):
-    """Write each slab's sums of (z, A z), (d, A z), (r, z) and (r, d)."""
+    """Write the products (z, A z), (d, A z), (r, z) and (r, d) of each slab to ``sums``; see ``_dots``.
+
+    Args:
+        z: preconditioned residual, shape (slab, cell).
+        r: residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        place: row of the layout for that level; see ``slab``.
+        inner: strides within a slab.
+        sums: the products, shape (slab, 4).
+    """
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
@@ -81,7 +102,15 @@ def _rise(x, e, slab, alpha):
 
 @part
 def _subtract_scaled(r, slab, q, alpha, inner):
-    """Subtract ``alpha`` times the one slab of ``q`` from a slab of ``r``; return its summed size."""
+    """Subtract ``alpha q`` from a slab of ``r`` and return the sum of its absolute values.
+
+    Args:
+        r: residual, shape (slab, cell).
+        slab: the slab.
+        q: values to subtract, shape (1, cell).
+        alpha: step length.
+        inner: strides within a slab.
+    """
     slab_sum, j, row_cells = 0.0, unsigned(slab), row_length(inner, r.shape[1])
     for n in range(row_count(inner, r.shape[1])):
         s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
@@ -95,7 +124,18 @@ def _subtract_scaled(r, slab, q, alpha, inner):
 
 @threaded_part
 def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
-    """Write ``r -= alpha A z`` and each slab's sum of |r| and largest |r|."""
+    """Write ``r -= alpha A z``, and the sum and the maximum of |r| of each slab.
+
+    Args:
+        r: residual, shape (slab, cell).
+        z: direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        place: row of the layout for that level; see ``slab``.
+        alpha: step length.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: sum and maximum of each slab, shape (slab, 4).
+    """
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
@@ -110,7 +150,20 @@ def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
 
 @threaded_part
 def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
-    """Write ``r -= alpha A (z + beta d)`` and each slab's sum of |r| and largest |r|."""
+    """Write ``r -= alpha A (z + beta d)``, and the sum and the maximum of |r| of each slab.
+
+    Args:
+        r: residual, shape (slab, cell).
+        z: preconditioned residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        place: row of the layout for that level; see ``slab``.
+        alpha: step length.
+        beta: share of the last direction in the new one.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: sum and maximum of each slab, shape (slab, 4).
+    """
     end, unity = z.shape[0] - PAD, z.dtype.type(1.0)
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
@@ -131,7 +184,20 @@ def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
 
 @threaded_part
 def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
-    """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
+    """Write the new direction ``e = z + beta d`` and the solution ``x = alpha e + previous_alpha d``.
+
+    If ``previous_alpha`` is 0, the solution is ``x += alpha e``.
+
+    Args:
+        x: solution, shape (slab, cell).
+        e: new direction, shape (slab, cell).
+        z: preconditioned residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        alpha: step length along ``e``.
+        beta: share of the last direction in the new one.
+        previous_alpha: step length along ``d`` that is not yet in ``x``.
+        inner: strides within a slab.
+    """
     unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
     for n in prange((x.shape[0] + block - 1) // block):
         block_start = signed(n) * block
@@ -161,13 +227,28 @@ def _max_of_column(sums, column):
 
 @compiled
 def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limit, max_limit, min_cycles, max_cycles):
-    """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
+    """Solve for the right side ``B`` of level 0; on return ``B`` is the residual.
 
-    One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it. It takes at
-    least ``least`` of them and at most ``most``.
+    A step of the flow takes one or two iterations, so the caller adds up their directions.
+
+    Args:
+        x: work array, shape (slab, cell).
+        d: direction, shape (slab, cell).
+        q: work array, shape (slab, cell).
+        store: values of all multigrid levels.
+        layout: of the levels; see ``slab``.
+        buffer: values of the patches; see ``patch``.
+        rects: the patches; see ``patch``.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: work array, shape (slab, 4).
+        mean_limit: mean residual at which the iteration stops.
+        max_limit: largest residual at which the iteration stops.
+        min_cycles: fewest iterations.
+        max_cycles: most iterations.
 
     Returns:
-        iterations, mean residual, largest residual, and the numbers ``a`` and ``b`` with which the solution is
+        iterations, mean residual, largest residual, and the factors ``a`` and ``b`` with which the solution is
         ``a d + b X``, where ``X`` is that of level 0.
     """
     r, z = level(store, layout, inner, B, 0), level(store, layout, inner, X, 0)
@@ -251,7 +332,12 @@ def levels(cells: tuple[int, ...]) -> np.ndarray:
 
 
 def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
-    """Return the store of a layout with all coefficients 1."""
+    """Return the store of a layout, in which all coefficients are 1 as in water without bodies.
+
+    Args:
+        layout: of the levels; see ``levels``.
+        dtype: precision of the fields.
+    """
     axes = layout.shape[1] // 3
     sizes = (layout[:, 1 : 1 + axes] + 2 * PAD).prod(axis=1)
     store = np.zeros(layout[-1, 0] + (FACES + axes) * sizes[-1], dtype)
@@ -262,7 +348,12 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
 
 
 def place_window(layout: np.ndarray, window: Window) -> None:
-    """Write the window (first and end along each axis, the last axis first, padded) and its coarser images."""
+    """Write a window and its coarser images to the layout of all levels.
+
+    Args:
+        layout: of the levels; see ``slab``.
+        window: padded indices, first and end along each axis, the last axis first.
+    """
     axes = layout.shape[1] // 3
     start, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
     for row in layout:

@@ -19,13 +19,13 @@ TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 def cross(
     first_vector: Sequence[float] | np.ndarray, second_vector: Sequence[float] | np.ndarray
 ) -> tuple[Any, Any, Any]:
-    """Return the vector product of vectors of shape (3, ...), component by component."""
+    """Return the vector product of two vectors of shape (3, ...), component by component."""
     (a, b, c), (x, y, z) = first_vector, second_vector
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def turned(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-    """Return vectors of shape (3, ...) turned by a rotation matrix, component by component."""
+    """Return vectors of shape (3, ...), rotated by a matrix of shape (3, 3), component by component."""
     x, y, z = vectors
     rotated_x, rotated_y, rotated_z = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
     return rotated_x, rotated_y, rotated_z
@@ -69,10 +69,13 @@ class Pose:
     """In space, angular velocity about y [rad/s]."""
 
     def along(self, axes: int) -> "Pose":
-        """Return the same pose with as many numbers in position and velocity as there are axes.
+        """Return the same pose with position and velocity of a domain with 2 or 3 axes; a missing z is 0.
+
+        Args:
+            axes: number of axes of the domain, 2 or 3.
 
         Raises:
-            InvalidDesign: it has other than two or three, one that is not finite, or what only space has in the plane.
+            InvalidDesign: another number of components, an infinite number, or pitch or roll in the plane.
         """
         turns = self.angle + self.spin + self.pitch + self.roll + self.spin_x + self.spin_y
         if not isfinite(sum(self.position) + sum(self.velocity) + turns):
@@ -124,7 +127,11 @@ class Pose:
         return np.array([self.spin_x, self.spin_y, self.spin])
 
     def place(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the body's frame in the world, in space, component by component [m]."""
+        """Return points of the body's frame in the world frame, in space, component by component [m].
+
+        Args:
+            points: x, y and z in the body's frame, shape (3, ...) [m].
+        """
         x, y, z = (
             coordinate + origin
             for coordinate, origin in zip(turned(self.matrix, points), self.along(3).position, strict=True)
@@ -132,12 +139,16 @@ class Pose:
         return x, y, z
 
     def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the world in the body's frame, in space, component by component [m]."""
+        """Return points of the world frame in the body's frame, in space, component by component [m]."""
         relative = [coordinate - origin for coordinate, origin in zip(points, self.along(3).position, strict=True)]
         return turned(self.matrix.T, relative)
 
     def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return the velocity that the rigid motion gives to points of the world, in space [m/s]."""
+        """Return the velocity of the rigid motion at points in space, component by component [m/s].
+
+        Args:
+            points: x, y and z in the world frame, shape (3, ...) [m].
+        """
         pose = self.along(3)
         relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
         x, y, z = (
@@ -157,12 +168,17 @@ class Pose:
         return c * dx + s * dy, c * dy - s * dx
 
     def turn(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return directions of the body's frame in the world."""
+        """Return directions of the body's frame in the world frame, in the plane."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return c * x - s * y, s * x + c * y
 
     def carry(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the velocity that the rigid motion gives to points of the world [m/s]."""
+        """Return the velocity of the rigid motion at points in the plane [m/s].
+
+        Args:
+            x: points in the world frame [m].
+            y: points in the world frame [m].
+        """
         return (
             self.velocity[0] - self.spin * (y - self.position[1]),
             self.velocity[1] + self.spin * (x - self.position[0]),

@@ -14,6 +14,14 @@ class Bar:
     """Shows a run's progress on the error stream, once it has lasted two seconds."""
 
     def __init__(self, start: float, end_time: float, cells: int, *, show: bool) -> None:
+        """Prepare the progress bar.
+
+        Args:
+            start: time at the start of the run [s].
+            end_time: time at its end [s].
+            cells: cells of the grid [-].
+            show: whether the bar is shown at all.
+        """
         self._start, self._end_time, self._cells, self._show = start, end_time, cells, show
         self._opened, self._began, self._steps = monotonic(), 0.0, -1
         self._progress: Progress | None = None
@@ -26,12 +34,12 @@ class Bar:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave the last line standing."""
+        """Stop the progress bar and leave its last line on the screen."""
         if self._progress is not None:
             self._progress.stop()
 
     def move(self, time: float) -> None:
-        """Tell that a step has ended at a time [s]."""
+        """Update the progress bar after a step that ended at a time [s]."""
         self._steps += 1
         if self._steps == 0:  # the first step may have had kernels compiled
             self._began = monotonic()

@@ -23,7 +23,15 @@ from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
 
 @part
 def _divergence_slab(r, velocity, slab, mean, inner):
-    """Write ``-div u - mean`` along a slab."""
+    """Write ``-div u - mean`` to a slab of ``r``.
+
+    Args:
+        r: residual, shape (slab, cell).
+        velocity: shape (axis, slab, cell).
+        slab: the slab.
+        mean: mean over the domain, which is subtracted.
+        inner: strides within a slab.
+    """
     j, slab_axis = unsigned(slab), unsigned(len(inner))
     run_start, run_end = run_of(inner, r.shape[1])
     for k in range(run_start, run_end):
@@ -35,9 +43,21 @@ def _divergence_slab(r, velocity, slab, mean, inner):
 
 @threaded
 def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats, sums):
-    """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, slab by slab.
+    """Write the residual ``source - div u - mean`` of the pressure equation, and its sum and maximum slab by slab.
 
-    Cells that lie wholly inside the body get 0: no pressure acts there. ``source`` is an array of the window ``near``.
+    Cells that lie wholly inside the body get 0: no pressure acts there.
+
+    Args:
+        r: residual, shape (slab, cell).
+        velocity: shape (axis, slab, cell).
+        source: divergence of the bodies' own motion, an array of the window ``near_layout``.
+        dinv: inverse diagonal of the pressure equation, 0 inside the body.
+        place: row of the layout for the finest level; see ``slab``.
+        near_layout: the window around the bodies; see ``slab``.
+        mean: see ``mean_residual``.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: summed and largest absolute value, shape (slab, 4).
     """
     end = r.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
@@ -60,6 +80,7 @@ def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats
 
 @part
 def _mean_of_plane(u, v, source, place, near_layout):
+    """Return the mean of ``source - div u`` in the plane; see ``mean_residual``."""
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
     total = 0.0
     for j in range(s, t):
@@ -74,6 +95,7 @@ def _mean_of_plane(u, v, source, place, near_layout):
 
 @part
 def _mean_in_space(velocity, source, place, near_layout, inner):
+    """Return the mean of ``source - div u`` in space; see ``mean_residual``."""
     end, row_cells, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
     rows, columns = signed(row_count(inner, velocity.shape[2])), row_cells - 2 * PAD
     for row in range(PAD, rows + PAD):
@@ -95,7 +117,15 @@ def _mean_in_space(velocity, source, place, near_layout, inner):
 
 @compiled
 def mean_residual(velocity, source, place, near_layout, inner):
-    """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
+    """Return the mean of ``source - div u``: the inflow through the sides and the volume that the bodies displace.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        source: divergence of the bodies' own motion, an array of the window ``near_layout``.
+        place: row of the layout for the finest level; see ``slab``.
+        near_layout: the window around the bodies; see ``slab``.
+        inner: strides within a slab.
+    """
     if len(inner) == 1:
         return _mean_of_plane(velocity[0], velocity[1], source, place, near_layout)
     return _mean_in_space(velocity, source, place, near_layout, inner)
@@ -103,6 +133,7 @@ def mean_residual(velocity, source, place, near_layout, inner):
 
 @part
 def _add(output, o, d, z, slab, a, b):
+    """Write ``a d + b z`` of one slab to slab ``o`` of ``output``."""
     o, j = unsigned(o), unsigned(slab)
     if b == 0:
         for k in range(unsigned(d.shape[1])):
@@ -114,6 +145,21 @@ def _add(output, o, d, z, slab, a, b):
 
 @part
 def _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, start, stop, inner):
+    """Correct velocity and pressure of cells ``start`` to ``stop`` of a slab, outside the window.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        p: pressure, shape (slab, cell).
+        slab: the slab.
+        x: pressure change of two slabs, shape (2, cell).
+        lower_slab: row of ``x`` for the slab below.
+        mid: row of ``x`` for the slab itself.
+        level: mean of ``x`` along the sides of the domain.
+        gain: factor from ``x`` to the pressure.
+        start: first cell.
+        stop: end of the cells.
+        inner: strides within a slab.
+    """
     j, lower_slab, mid, slab_axis = unsigned(slab), unsigned(lower_slab), unsigned(mid), unsigned(len(inner))
     for k in range(start, stop):
         m = x[mid, k]
@@ -125,6 +171,10 @@ def _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, start, st
 
 @part
 def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, start, stop, inner):
+    """Correct cells inside the window, where ``passage`` is the share of each face on which the pressure acts.
+
+    The other arguments are those of ``_correct_plain``.
+    """
     j, lower_slab, mid, slab_axis = unsigned(slab), unsigned(lower_slab), unsigned(mid), unsigned(len(inner))
     for k in range(start, stop):
         m = x[mid, k]
@@ -136,6 +186,7 @@ def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, s
 
 @part
 def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, place, level, gain, inner):
+    """Correct velocity and pressure of one slab, inside and outside the window; see ``correct``."""
     row_cells = row_length(inner, p.shape[1])
     (r0, r1), (w0, w1) = window_rows(place, inner), window_columns(place, inner)
     meets_window = meets(place, inner, slab)
@@ -154,7 +205,10 @@ def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, place, level, 
 
 @part
 def _along_sides(x, inner):
-    """Return the mean of the outermost cells of the domain; one in a corner counts for each of its sides."""
+    """Return the mean of ``x`` over the outermost cells of the domain.
+
+    A corner cell counts once for each of its sides.
+    """
     n, row_cells, total = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1])), 0.0
     m = row_cells - PAD - 1
     if len(inner) == 1:
@@ -181,9 +235,21 @@ def _along_sides(x, inner):
 def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
     """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
-    The pressure is pinned: the mean of what is added is zero along the sides. Without that it drifts, and single
-    precision has less and less room for what matters. Values on the domain's edges are corrected with a mirrored ``x``,
-    that is, left as they are.
+    The mean of the added pressure along the sides is zero. Without this condition the pressure drifts and single
+    precision resolves its differences less and less. Values on the edges of the domain are corrected with a mirrored
+    ``x``, which leaves them unchanged.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        p: pressure, shape (slab, cell).
+        d: first part of the pressure change, shape (slab, cell).
+        z: second part of it, shape (slab, cell).
+        a: factor of ``d``.
+        b: factor of ``z``.
+        passage: share of the pressure gradient that acts on each face, shape (axis, slab, cell).
+        place: row of the layout for the finest level; see ``slab``.
+        inner: strides within a slab.
+        gain: factor from ``x`` to the pressure.
     """
     end = p.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
@@ -201,6 +267,7 @@ def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
 
 @part
 def _speeds(output, velocity, slab, inner):
+    """Write the sum of the absolute velocity components of each cell of a slab to ``output``, shape (1, cell)."""
     j, slab_axis = unsigned(slab), unsigned(len(inner))
     run_start, run_end = run_of(inner, velocity.shape[2])
     for k in range(run_start, run_end):
@@ -214,7 +281,7 @@ def _speeds(output, velocity, slab, inner):
 
 @threaded
 def fastest(velocity, inner, sums):
-    """Write the largest sum of the components' sizes of every slab to ``sums[:, 0]``."""
+    """Write the largest sum of absolute velocity components in each slab to ``sums[:, 0]``."""
     end = velocity.shape[1] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):

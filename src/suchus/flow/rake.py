@@ -1,4 +1,4 @@
-"""Values at chosen points: at one instant, and along a line or rake over time."""
+"""Velocity and pressure at chosen points: at one instant, or during a run along a line or rake."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -36,13 +36,13 @@ def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.nda
 
 
 def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
-    """Return velocity and pressure at points, linear between the nodes.
+    """Return velocity and pressure at points by linear interpolation between the nodes.
 
-    Inside a body and within a cell of its surface they are the body's as much as the water's.
+    Inside a body and within a cell of its surface, they are a mixture of the body's and the water's values.
 
     Args:
         water: the fields.
-        points: where, shape (point, axis), or one point (axis,) [m].
+        points: positions, shape (point, axis), or one point (axis,) [m].
         frame: position and velocity of the grid, shape (2, axis) [m, m/s].
         density: of the water [kg/m^3].
 
@@ -78,6 +78,17 @@ def _is_inside(grid: Grid, local: np.ndarray) -> np.ndarray:
 
 
 def _check(grid: Grid, positions: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
+    """Refuse points outside the domain.
+
+    Args:
+        grid: cells of the whole domain.
+        positions: points in the world frame, shape (point, axis) [m].
+        local: the same points in the frame of the grid, shape (point, axis) [m].
+        frame: position of the grid in the world frame, shape (axis,) [m].
+
+    Raises:
+        InvalidDesign: naming a point and the bounds of the domain.
+    """
     outside_indices = np.flatnonzero(~_is_inside(grid, local))
     if outside_indices.size:
         low_corner, high_corner = np.array(grid.origin), np.array(grid.origin) + grid.size
@@ -117,7 +128,7 @@ class Rake:
     _due: float = 0.0
 
     def __call__(self, sim: _Probed) -> None:
-        """Note the water at the points, if it is time."""
+        """Record the water at the points if the interval has passed."""
         if sim.time < self._due:
             return
         self._due = due_after(sim.time, self.every)
@@ -141,5 +152,5 @@ class Rake:
 
 
 def due_after(time: float, interval: float | None) -> float:
-    """Return the next multiple of ``every`` after a time [s]; 0, which is always past, if that is None."""
+    """Return the next multiple of an interval after a time [s]; 0, which has always passed, if the interval is None."""
     return 0.0 if interval is None else float((np.floor(time / interval * (1 + 1e-12)) + 1) * interval * (1 - 1e-12))

@@ -99,20 +99,28 @@ class Record:
         return {n: unit_by_column.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
-        """Return one of the ``columns`` of one body, by its name or number, shape (step,).
+        """Return a time series of one body, shape (step,); see ``units``.
+
+        Args:
+            name: one of ``columns``.
+            body: its name or number.
 
         Raises:
-            UnknownName: there is no such column or body; it lists those that there are.
+            UnknownName: there is no such column or body; the message lists those that there are.
         """
         if name not in self.columns:
             raise UnknownName("column", str(name), self.columns)
         return self.bodies[:, self._number(body), self.columns.index(name)]
 
     def along(self, name: str, body: str | int = 0) -> np.ndarray:
-        """Return one of ``PART_COLUMNS`` of the parts of a divided body, front to back, shape (step, part).
+        """Return a time series of each part of a divided body, front to back, shape (step, part).
+
+        Args:
+            name: one of ``PART_COLUMNS``.
+            body: its name or number.
 
         Raises:
-            UnknownName: there is no such column or body; it lists those that there are.
+            UnknownName: there is no such column or body; the message lists those that there are.
             OutsideLimits: the body is not divided.
         """
         if name not in PART_COLUMNS:
@@ -124,6 +132,11 @@ class Record:
         return self.parts[:, start : start + self.divided[number], PART_COLUMNS.index(name)]
 
     def _number(self, body: str | int) -> int:
+        """Return the index of a body by its name or number.
+
+        Raises:
+            UnknownName: there is no such body.
+        """
         if isinstance(body, str) and body in self.names:
             return self.names.index(body)
         if isinstance(body, str) or not -len(self.names) <= body < len(self.names):
@@ -131,22 +144,32 @@ class Record:
         return body
 
     def force(self, body: str | int = 0) -> np.ndarray:
-        """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, axis).
+        """Return the force of the water on a body, mean over each step, shape (step, axis).
 
-        In N/m in the plane, in N in space.
+        The unit is N/m in the plane and N in space. The force is the momentum that body and water exchange.
+
+        Args:
+            body: its name or number.
         """
         return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.axes]], axis=1)
 
     def torque(self, body: str | int = 0) -> np.ndarray:
-        """Return the torque on a body, mean over each step: about its centre of mass if it is free, else its origin.
+        """Return the torque of the water on a body, mean over each step.
 
-        In space about x, y and z, shape (step, 3) [N m], in the plane about z, shape (step, 1) [N].
+        The reference point is the centre of mass of a free body and the origin of another one. In space the torque is
+        about x, y and z, shape (step, 3) [N m]; in the plane about z, shape (step, 1) [N].
+
+        Args:
+            body: its name or number.
         """
         names = ("torque_x", "torque_y", "torque") if self.axes == 3 else ("torque",)
         return np.stack([self.column(name, body) for name in names], axis=1)
 
     def attitude(self, body: str | int = 0) -> np.ndarray:
-        """Return the attitude of a body in space at each step's end as unit quaternions wxyz, shape (step, 4) [-].
+        """Return the attitude of a body in space at the end of each step, unit quaternions wxyz, shape (step, 4) [-].
+
+        Args:
+            body: its name or number.
 
         Raises:
             OutsideLimits: in the plane.
@@ -200,16 +223,19 @@ class Record:
         )  # fmt: skip
 
     def surface_force(self, body: str | int = 0) -> np.ndarray:
-        """Return pressure and friction integrated over a body's outline at each step's end, shape (step, 2) [N/m].
+        """Return the integral of pressure and friction over the outline of a body, shape (step, 2) [N/m].
 
-        Its error is that of ``resolution.ALONG_THE_SKIN``.
+        It belongs to the end of each step. ``resolution.ALONG_THE_SKIN`` states the error.
+
+        Args:
+            body: its name or number.
         """
         return np.stack(
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )
 
     def after(self, time: float) -> "Record":
-        """Return the steps that end after a time [s]."""
+        """Return the record of the steps that end after a time [s]."""
         k = self.time > time
         return Record(
             names=self.names, time=self.time[k], step=self.step[k], cycles=self.cycles[k],

@@ -65,13 +65,20 @@ def cells_across(length: float, speed: float, viscosity: float, cell: float) -> 
 
 
 def estimate(cells: float, *, blunt: bool = False) -> float:
-    """Return the estimated error of the force over the force for a number of cells across the layer.
+    """Return the estimated relative error of the force on a body [-].
 
-    ``blunt`` is whether it is that of a blunt body in space.
+    Args:
+        cells: across the boundary layer [-].
+        blunt: whether it is a blunt body in space.
     """
     return 0.0 if cells == inf else _ERROR_AT_ONE_CELL[blunt] * cells ** -_ORDER[blunt]
 
 
 def needed(error: float, *, blunt: bool = False) -> float:
-    """Return the cells across the layer at which the estimate is ``error``; ``blunt`` as in ``estimate``."""
+    """Return the cells across the boundary layer at which the estimated error of the force has a value [-].
+
+    Args:
+        error: relative error of the force [-].
+        blunt: whether it is a blunt body in space.
+    """
     return float((_ERROR_AT_ONE_CELL[blunt] / error) ** (1 / _ORDER[blunt]))

@@ -25,7 +25,7 @@ TRIED = -1.0, 0.0, 3.0
 
 @part
 def median(a, b, c):
-    """Return the middle one of three numbers."""
+    """Return the median of three numbers."""
     smaller = a if a < b else b
     larger = a if a > b else b
     capped = larger if larger < c else c
@@ -34,7 +34,13 @@ def median(a, b, c):
 
 @part
 def limited_quick(upstream, centre, downstream):
-    """Return the face value: QUICK, kept monotone between its neighbours."""
+    """Return the velocity on a face by QUICK, limited so that it stays between its neighbours.
+
+    Args:
+        upstream: velocity at the second node upstream of the face.
+        centre: velocity at the first node upstream of the face.
+        downstream: velocity at the node downstream of the face.
+    """
     real = type(centre)
     quick_value = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
     steepest = real(10.0) * centre - real(9.0) * upstream

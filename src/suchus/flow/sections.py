@@ -1,11 +1,11 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba)
-"""Distance, normal and velocity of a trunk, a bent midline with elliptic sections, painted onto a window in space.
+"""Distance, normal and velocity of a trunk, painted onto a window in space.
 
-The midline lies in a plane, so the section that holds a point is the same for a whole column of points. In it lies the
-foot of the point on the ellipse. Along the body the outline that belongs to the foot's place on the ellipse is a line
-through the same place of the neighbouring sections, and the distance is that to this line: right at round and at flat
-ends, and exact for a straight body of round sections.
+A trunk is a bent midline with elliptic sections. The midline lies in a plane, so that one section holds a whole column
+of points. The nearest point on the ellipse of that section is the foot of a point. The feet at the same angle of the
+neighbouring sections form a line along the body, and the distance is measured to this line. This is accurate at round
+and at flat ends, and exact for a straight body with round sections.
 """
 
 import numpy as np
@@ -30,7 +30,14 @@ _MIN_HALF_AXIS = 1e-9
 
 @part
 def ellipse_foot(y, z, half_width, half_height):
-    """Return where on an ellipse the point nearest to (y, z) is, as cosine and sine of its angle."""
+    """Return the nearest point on an ellipse to (y, z), as cosine and sine of its angle.
+
+    Args:
+        y: point, along the width.
+        z: point, along the height.
+        half_width: half-axis along y.
+        half_height: half-axis along z.
+    """
     p = max(abs(y), TINY * half_width), max(abs(z), TINY * half_height)
     t = foot_parameter(p, (half_width, half_height))
     c, s = half_width * p[0] / (t + half_width * half_width), half_height * p[1] / (t + half_height * half_height)
@@ -40,7 +47,16 @@ def ellipse_foot(y, z, half_width, half_height):
 
 @part
 def _nearest_station(px, py, rows, start, end, stride):
-    """Return which of some stations is nearest to a column, and the square of its distance."""
+    """Return the station that is nearest to a column, and the square of its distance.
+
+    Args:
+        px: position of the column.
+        py: position of the column.
+        rows: the stations; see ``ARC``.
+        start: first station that is compared.
+        end: end of the stations.
+        stride: distance of consecutive stations that are compared.
+    """
     station, square = start, np.inf
     for m in range(start, end, stride):
         d2 = (px - rows[X, m]) ** 2 + (py - rows[Y, m]) ** 2
@@ -51,7 +67,19 @@ def _nearest_station(px, py, rows, start, end, stride):
 
 @part
 def _column(px, py, rows, tx, ty):
-    """Return segment and share of the section that holds a column, its offset to the side, and what it lies beyond."""
+    """Return the section that holds a column of points.
+
+    Args:
+        px: position of the column.
+        py: position of the column.
+        rows: the stations; see ``ARC``.
+        tx: cosine of their heading.
+        ty: sine of it.
+
+    Returns:
+        segment of the midline, position along it (0 to 1), lateral offset of the column, axial offset beyond an end of
+        the midline (else 0), and cosine and sine of the heading.
+    """
     coarse_station, _ = _nearest_station(px, py, rows, 0, rows.shape[1], _STRIDE)
     start, end = max(coarse_station - _STRIDE, 0), min(coarse_station + _STRIDE + 1, rows.shape[1])
     station, _ = _nearest_station(px, py, rows, start, end, 1)
@@ -68,7 +96,16 @@ def _column(px, py, rows, tx, ty):
 
 @part
 def _growth(k, arc, half_width, half_height, rows, reach):
-    """Return by how much a section within reach is wider and higher than the one at an arc length, together."""
+    """Return by how much sections within a reach are wider and higher than the one at an arc length, in sum.
+
+    Args:
+        k: segment of the midline.
+        arc: arc length in it.
+        half_width: half-width of the section there.
+        half_height: half-height of the section there.
+        rows: the stations; see ``ARC``.
+        reach: distance along the midline.
+    """
     max_half_width, max_half_height, last_station = half_width, half_height, rows.shape[1] - 1
     m = k
     while m >= 0 and arc - rows[ARC, m] <= reach:
@@ -83,9 +120,18 @@ def _growth(k, arc, half_width, half_height, rows, reach):
 
 @part
 def _to_edge(normal_offset, best, a0, r0, a1, r1):
-    """Return the nearest vector so far from an outline to the point (0, away), after one more edge of it.
+    """Return the shortest vector from an outline to a point after one more edge.
 
-    ``best`` is the vector before: along, across, the square of its length, and the edge along and across.
+    Coordinates are axial and radial; the point is at (0, ``normal_offset``).
+
+    Args:
+        normal_offset: radial coordinate of the point.
+        best: shortest vector so far: axial and radial component, squared length, and axial and radial extent of its
+            edge.
+        a0: axial start of the edge.
+        r0: radial start of the edge.
+        a1: axial end of the edge.
+        r1: radial end of the edge.
     """
     ea, er = a1 - a0, r1 - r0
     square = ea * ea + er * er
@@ -99,13 +145,39 @@ def _to_edge(normal_offset, best, a0, r0, a1, r1):
 
 @part
 def _outline_of(m, rows, c, s, ny, nz, fy, fz):
-    """Return how far out the place of an angle lies in a section, from its place in the point's own section."""
+    """Return the radial offset of the point at an angle of section ``m`` from the foot in the point's own section.
+
+    Args:
+        m: station.
+        rows: the stations; see ``ARC``.
+        c: cosine of the angle.
+        s: sine of the angle.
+        ny: normal at the foot, along the width.
+        nz: normal at the foot, along the height.
+        fy: foot, along the width.
+        fz: foot, along the height.
+    """
     return ny * (rows[WIDE, m] * c - fy) + nz * (rows[HIGH, m] * s - fz)
 
 
 @part
 def _nearest_outline(k, arc, normal_offset, stretch, rows, c, s, ny, nz, fy, fz, reach):
-    """Return the vector from the outline through the sections to the point, as ``_to_edge`` does."""
+    """Return the shortest vector from the outline through the sections to a point; see ``_to_edge`` for its components.
+
+    Args:
+        k: segment of the midline.
+        arc: arc length of the point.
+        normal_offset: signed distance of the point from its own section.
+        stretch: length along the body at the foot over that along the midline [-].
+        rows: the stations; see ``ARC``.
+        c: cosine of the angle of the foot.
+        s: sine of it.
+        ny: normal at the foot, along the width.
+        nz: normal at the foot, along the height.
+        fy: foot, along the width.
+        fz: foot, along the height.
+        reach: distance up to which it is exact.
+    """
     last_station = rows.shape[1] - 1
     best, farthest = (0.0, 0.0, np.inf, 1.0, 0.0), reach * reach
     for direction in (1, -1):
@@ -128,7 +200,18 @@ def _nearest_outline(k, arc, normal_offset, stretch, rows, c, s, ny, nz, fy, fz,
 
 @part
 def _chord(arc, k, rows, c, s, ny, nz, depth):
-    """Return the smaller chord through the point so far inside a place of the section at an arc length."""
+    """Return the shorter chord of a section, along width or height, through a point at a depth below its outline.
+
+    Args:
+        arc: arc length of the section.
+        k: segment of the midline at which the search for it begins.
+        rows: the stations; see ``ARC``.
+        c: cosine of the angle on the section.
+        s: sine of it.
+        ny: normal at that angle, along the width.
+        nz: normal at that angle, along the height.
+        depth: distance of the point from the outline.
+    """
     last_segment = rows.shape[1] - 2
     while k > 0 and rows[ARC, k] > arc:
         k -= 1
@@ -147,7 +230,19 @@ def _chord(arc, k, rows, c, s, ny, nz, depth):
 
 @part
 def _paint_point(fields, indices, px, py, z, column, section, rows, h):
-    """Write what ``paint_sections`` paints for one point whose column and section are known."""
+    """Write the fields of ``paint_sections`` at one point.
+
+    Args:
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x).
+        indices: indices of the point, z, y, x.
+        px: position of the column.
+        py: position of the column.
+        z: height of the point above the plane of the midline.
+        column: see ``_column``.
+        section: see ``_section``.
+        rows: the stations; see ``ARC``.
+        h: distance of the points.
+    """
     (q, j, i), (k, f, y, end_offset, cos, sin) = indices, column
     arc, part_index, half_width, half_height, reach = section
     if np.sqrt(y * y + z * z) >= max(half_width, half_height) + reach:  # the ellipse lies in the circle around it
@@ -184,7 +279,12 @@ def _paint_point(fields, indices, px, py, z, column, section, rows, h):
 
 @part
 def _part_index(arc, cuts):
-    """Return which part of the body an arc length belongs to."""
+    """Return the index of the body's part to which an arc length belongs.
+
+    Args:
+        arc: the arc length.
+        cuts: rising arc lengths that divide the body into parts.
+    """
     part_index = 0
     while part_index < cuts.size and cuts[part_index] <= arc:
         part_index += 1
@@ -193,7 +293,18 @@ def _part_index(arc, cuts):
 
 @part
 def _section(column, rows, cuts, reach):
-    """Return a column's section: arc length, part of the body, half-axes, and from how far it may be reached."""
+    """Return the section of a column.
+
+    Args:
+        column: see ``_column``.
+        rows: the stations; see ``ARC``.
+        cuts: rising arc lengths that divide the body into parts.
+        reach: distance up to which fields are computed.
+
+    Returns:
+        arc length, index of the part, half-width, half-height, and the distance from the section beyond which no point
+        is within reach of the body.
+    """
     k, f = column[0], column[1]
     arc = (1.0 - f) * rows[ARC, k] + f * rows[ARC, k + 1] + column[3]
     half_width = (1.0 - f) * rows[WIDE, k] + f * rows[WIDE, k + 1]
@@ -204,10 +315,11 @@ def _section(column, rows, cuts, reach):
 
 @threaded
 def paint_sections(fields, rows, tx, ty, cuts, x0, y0, z0, h, reach):
-    """Paint ``out``, shape (``PAINTED``, z, y, x), which is ``reach`` far from everything beforehand.
+    """Write the fields of a trunk whose midline lies in a plane z = constant.
 
     Args:
-        fields: distance, normal, velocity, thickness, part.
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x); beforehand all distances are
+            ``reach``.
         rows: the stations; see ``ARC``.
         tx: cosine of their heading.
         ty: sine of it.
@@ -216,7 +328,7 @@ def paint_sections(fields, rows, tx, ty, cuts, x0, y0, z0, h, reach):
         y0: first point.
         z0: first point, from the plane of the midline.
         h: distance of the points.
-        reach: distance up to which it need be exact.
+        reach: distance up to which the fields are exact.
     """
     max_width = np.max(rows[WIDE]) + reach
     for n in prange(fields.shape[2]):
@@ -232,10 +344,10 @@ def paint_sections(fields, rows, tx, ty, cuts, x0, y0, z0, h, reach):
 
 @threaded
 def paint_turned_sections(fields, rows, tx, ty, cuts, x, y, z, turn, origin, reach):
-    """Paint ``out`` as ``paint_sections`` does, of a body in any attitude; vectors are those of the body's frame.
+    """Write the fields of a trunk in any attitude, as ``paint_sections`` does; vectors are those of the body's frame.
 
     Args:
-        fields: distance, normal, velocity, thickness, part.
+        fields: distance, normal, velocity, thickness, part, shape (``PAINTED``, z, y, x).
         rows: the stations; see ``ARC``.
         tx: cosine of their heading.
         ty: sine of it.
@@ -245,7 +357,7 @@ def paint_turned_sections(fields, rows, tx, ty, cuts, x, y, z, turn, origin, rea
         z: coordinates of the points.
         turn: rotation matrix of the body's frame.
         origin: position of the origin of that frame.
-        reach: distance up to which it need be exact.
+        reach: distance up to which the fields are exact.
     """
     h, max_width, max_height = x[1] - x[0], np.max(rows[WIDE]) + reach, np.max(rows[HIGH]) + reach
     for n in prange(fields.shape[2]):

@@ -80,6 +80,7 @@ class Setup:
     """Whether a Reynolds number that the grid cannot carry is let through, without a warning."""
 
     def __post_init__(self) -> None:
+        """Check all values and their combinations."""
         check_kinds(self)
         for name in ("viscosity", "density", "tolerance"):
             value = getattr(self, name)
@@ -127,7 +128,7 @@ class Setup:
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
-        """Refuse what is plane in a grid in space, and the reverse."""
+        """Refuse plane bodies in a grid in space, and bodies in space in a plane grid."""
         axes = self.grid.axes
         self.sides.check(axes)
         for body in self.bodies:
@@ -154,7 +155,7 @@ class Setup:
         return np.float32 if self.precision == "single" else np.float64
 
     def far(self, time: float) -> tuple[float, ...]:
-        """Return the velocity of the far water at a time, along every axis [m/s]."""
+        """Return the velocity of the far water at a time [s], along every axis [m/s]."""
         if callable(self.stream):
             stream = self.stream(time)
             self._check_stream(stream, f" at t = {time:.4g} s")
@@ -163,10 +164,14 @@ class Setup:
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
     def began(self, component: int, grid: Grid) -> np.ndarray | float:
-        """Return the water's velocity along an axis at time 0, on all faces of a grid across it [m/s].
+        """Return one component of the initial velocity of the water on all faces across its axis [m/s].
+
+        Args:
+            component: axis of the component.
+            grid: the cells whose faces are meant, with the padding.
 
         Raises:
-            InvalidDesign: ``start`` gives something that is no velocity there.
+            InvalidDesign: ``start`` returns something else than a velocity.
         """
         if self.start is None:
             return self.far(0.0)[component]
@@ -193,11 +198,11 @@ class Setup:
             raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
     def check(self) -> dict[str, float]:
-        """Return, per body, the share of its length that is too thin for the grid.
+        """Return, for each body, the fraction of its length that is too thin for the grid.
 
         Raises:
             InvalidDesign: a body outside the domain, too thin everywhere, or a Reynolds number that the grid
-                cannot carry.
+                cannot resolve.
         """
         thin_fractions = {}
         for body in self.bodies:
@@ -217,7 +222,11 @@ class Setup:
         return sides.mirrors(self.grid.axes)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
-        """Refuse a weight that would draw a body through a mirror that cuts it.
+        """Refuse gravity that would move a body through a mirror that cuts it.
+
+        Args:
+            body: the body.
+            mirror_cuts: whether the mirror at the low and the high end of each axis cuts it.
 
         Raises:
             InvalidDesign: naming the axis.
@@ -239,17 +248,19 @@ class Setup:
         *,
         slack: float = 1.0,
     ) -> float:
-        """Return the estimated error of a body's force by the cells across its boundary layer; see ``resolution``.
+        """Return the relative error of a body's force, estimated by the cells across its boundary layer [-].
+
+        See ``resolution``.
 
         Args:
             body: the body.
             markers: its outline or skin at that time.
             stream: velocity of the far water, in the frame of the markers [m/s].
-            time: when [s].
-            slack: factor on the speed that is let through [-].
+            time: at which it is estimated [s].
+            slack: factor by which the speed may exceed what the grid resolves [-].
 
         Raises:
-            InvalidDesign: the estimate is above ``REFUSED``, naming the cell that would carry it.
+            InvalidDesign: the estimate is above ``REFUSED``; the message names a sufficient cell.
         """
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
@@ -269,7 +280,12 @@ class Setup:
         return error
 
     def layer_warning(self, body: Body | FreeBody, error: float) -> Doubtful | None:
-        """Return what is to be said of an estimated error of a body's force, if anything is."""
+        """Return a warning about the estimated error of a body's force, or None if the error is small.
+
+        Args:
+            body: the body.
+            error: relative error of its force; see ``layer_error`` [-].
+        """
         if self.coarse or error <= DOUBTED:
             return None
         cells, better = (needed(target_error, blunt=_has_blunt_shape(body)) for target_error in (error, DOUBTED))

@@ -78,9 +78,13 @@ class Shape(ABC):
         """Return area, centre and moments in the body's own frame."""
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the line in the middle of a thin body, which no water passes, shape (2, point) [m].
+        """Return the line in the middle of a thin body, through which no water passes, shape (2, point) [m].
 
         None for a body that is never thin.
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
         """
         return None
 
@@ -96,6 +100,10 @@ _COARSE_POINTS, _MIN_POINTS = 256, 32
 
 def positive(name: str, value: float) -> None:
     """Refuse a length that is not a positive number.
+
+    Args:
+        name: of the length, for the message.
+        value: the length [m].
 
     Raises:
         InvalidDesign: naming the value.
@@ -116,14 +124,14 @@ class Solid(Shape):
         """Return ``count`` points around the outline, counter-clockwise, about evenly spaced [m]."""
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
-        """Return the field on the points of a window."""
+        """Return distance, normal and velocity on the points of a window; see ``Shape``."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
         vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
         return Field(d, *pose.turn(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of the outline's edges."""
+        """Return markers at the centres of the outline's edges; see ``Shape``."""
         middle, normal, length = _edges(self, spacing)
         points = np.stack(pose.to_world(*middle))
         return Markers(
@@ -143,7 +151,10 @@ class Solid(Shape):
 
 
 def _ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return ``count`` points around the outline, which is rigid: they are kept, where the shape can be a key."""
+    """Return ``count`` points around the outline in the body's frame [m].
+
+    The outline is rigid. The points are cached if the shape is hashable.
+    """
     try:
         return _cached_ring(shape, count)
     except TypeError:
@@ -158,7 +169,12 @@ def _cached_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _edges(shape: Solid, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return middles, outward normals and lengths of the outline's edges in the body's frame, about evenly spaced."""
+    """Return centres, outward normals and lengths of about evenly spaced edges of the outline, in the body's frame.
+
+    Args:
+        shape: the shape.
+        spacing: length of an edge [m].
+    """
     coarse_ring = np.stack(_ring(shape, _COARSE_POINTS))
     perimeter = float(np.hypot(*(np.roll(coarse_ring, -1, axis=1) - coarse_ring)).sum())
     corners = np.stack(_ring(shape, max(_MIN_POINTS, int(np.ceil(perimeter / spacing)))))
@@ -207,7 +223,7 @@ class Ellipse(Solid):
         positive("width", self.width)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal, by Newton's method on the foot point."""
+        """Return signed distance [m] and outward normal [-], by Newton's method for the nearest point."""
         px, py = (np.ascontiguousarray(coordinate, float) for coordinate in np.broadcast_arrays(x, y))
         fields = np.empty((3, px.size))
         measure_ellipse(fields, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
@@ -215,7 +231,7 @@ class Ellipse(Solid):
         return d, nx, ny
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the ellipse, evenly spaced along it."""
+        """Return ``count`` points around the ellipse, evenly spaced along it [m]."""
         fine = np.linspace(0, 2 * np.pi, 8 * count + 1)
         x, y = self.length / 2 * np.cos(fine), self.width / 2 * np.sin(fine)
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
@@ -223,7 +239,10 @@ class Ellipse(Solid):
         return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray:
-        """Return the longer axis as far as the ellipse is less wide there than the way to its tip is long."""
+        """Return the part of the longer axis at which the ellipse is narrower than it is far from its tip [m].
+
+        The shape is (2, 2).
+        """
         a, b = self.length / 2, self.width / 2
         reach = (a if a > b else b) * abs(a * a - b * b) / (a * a + b * b)
         tip = (reach, 0.0) if a > b else (0.0, reach)
@@ -250,7 +269,7 @@ class Plate(Solid):
             raise InvalidDesign(f"a plate {self.thick} m thick is longer than thick; give a length of at least that.")
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal."""
+        """Return signed distance [m] and outward normal [-] at points of the body's frame."""
         half = (self.length - self.thick) / 2
         dx = x - np.clip(x, -half, half)
         r = np.hypot(dx, y)
@@ -259,7 +278,7 @@ class Plate(Solid):
         return r - self.thick / 2, dx / safe, np.where(flat, 1.0, y / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the plate, evenly spaced."""
+        """Return ``count`` points around the plate, evenly spaced [m]."""
         r, half = self.thick / 2, (self.length - self.thick) / 2
         turn, flat = np.pi * r, 2 * half
         s = np.linspace(0, 2 * (turn + flat), count, endpoint=False)

@@ -1,6 +1,6 @@
-"""What happens on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic.
+"""Boundary conditions on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic.
 
-A kind of side is a subclass of ``Side`` that says what the water does there; your own is one too.
+A kind of side is a subclass of ``Side`` that defines the motion of the water there. You can write your own.
 """
 
 from collections.abc import Callable
@@ -79,7 +79,7 @@ class Stream(Side):
     travels: ClassVar[tuple[bool, bool]] = True, True
 
     def carries(self, outward: float) -> float:
-        """Return more, the more the far stream leaves here; see ``Side``."""
+        """Return the share of a step, which rises with the speed at which the far stream leaves here; see ``Side``."""
         return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
 
 
@@ -121,7 +121,7 @@ class Inflow(Side):
         return np.asarray(self.profile(*places))
 
     def along(self, time: float, axes: int) -> tuple[float, ...]:
-        """Return that the water enters straight; see ``Side``."""
+        """Return zero: the water enters at a right angle; see ``Side``."""
         del time
         return (0.0,) * (axes - 1)
 
@@ -135,7 +135,7 @@ class Outflow(Side):
     travels: ClassVar[tuple[bool, bool]] = True, True
 
     def carries(self, outward: float) -> float:
-        """Return that it always is; see ``Side``."""
+        """Return 1: the water is always carried out; see ``Side``."""
         del outward
         return 1.0
 
@@ -181,6 +181,7 @@ class Sides:
     """Side at the largest z, of a grid in space."""
 
     def __post_init__(self) -> None:
+        """Check that periodic sides face each other and that water that enters can leave."""
         check_kinds(self)
         for low_name, high_name in zip(NAMES[::2], NAMES[1::2], strict=True):
             if isinstance(getattr(self, low_name), Periodic) != isinstance(getattr(self, high_name), Periodic):
@@ -193,7 +194,10 @@ class Sides:
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
     def check(self, axes: int) -> None:
-        """Refuse sides that cannot be those of a domain with so many axes.
+        """Refuse sides that do not fit the number of axes of the domain.
+
+        Args:
+            axes: number of axes, 2 or 3.
 
         Raises:
             InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
@@ -206,9 +210,9 @@ class Sides:
                 raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
     def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
-        """Refuse sides that stand still in the world, if the grid travels and would take them along.
+        """Refuse sides with a fixed position in the world if the grid travels and would move them.
 
-        A side without friction may travel along itself, and open and periodic ones anywhere.
+        A side without friction may travel along itself. Open and periodic sides may travel in any direction.
 
         Args:
             axes: of the domain.
@@ -257,6 +261,9 @@ class Sides:
         return tuple(isinstance(side, Mirror) for side in self.around(axes))
 
     def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
-        """Return whether the place of the low and of the high side counts, along each axis: of all but open ones."""
+        """Return whether the positions of the low and the high side are fixed, along each axis.
+
+        They are fixed for all but open sides.
+        """
         fixed = [not side.opens for side in self.around(axes)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))

@@ -18,7 +18,11 @@ def rises(time: np.ndarray, value: np.ndarray) -> np.ndarray:
 
 
 def frequency(time: np.ndarray, value: np.ndarray) -> float:
-    """Return the frequency of a periodic series from its rises through the mean [Hz].
+    """Return the frequency of a periodic series, from the times at which it rises through its mean [Hz].
+
+    Args:
+        time: times [s].
+        value: the series.
 
     Raises:
         NotConverged: fewer than three periods.
@@ -32,10 +36,15 @@ def frequency(time: np.ndarray, value: np.ndarray) -> float:
 
 
 def last_periods(time: np.ndarray, value: np.ndarray, count: int) -> np.ndarray:
-    """Return which samples belong to the last ``count`` whole periods of ``value``, shape (step,).
+    """Return which samples belong to the last whole periods of a series, shape (step,).
+
+    Args:
+        time: times [s].
+        value: the series.
+        count: number of periods [-].
 
     Raises:
-        NotConverged: there are fewer.
+        NotConverged: the series has fewer periods.
     """
     crossings = rises(time, value)
     if crossings.size <= count:
@@ -73,7 +82,12 @@ def morison(
 
 
 def noise(time: np.ndarray, value: np.ndarray, *, window: float) -> float:
-    """Return the rms distance from a cubic fitted over each ``window`` [s], over the series' own rms change [-].
+    """Return the noise of a series: the rms deviation from piecewise cubic fits, over the standard deviation [-].
+
+    Args:
+        time: times [s].
+        value: the series.
+        window: duration of a fit; fits begin every half of it [s].
 
     Raises:
         NotConverged: no window holds enough samples for a cubic, or the series never changes.

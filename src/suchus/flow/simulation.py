@@ -1,4 +1,4 @@
-"""A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
+"""A running flow simulation: time steps, runs with progress and checkpoints, and access to the fields."""
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -56,7 +56,7 @@ OFFSET_CHANGE = 1e-3
 
 
 def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is not made anew for each time that a step asks for it."""
+    """Return a body whose midline, if it has one, is cached for each time within a step."""
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -90,6 +90,15 @@ class Simulation(Fields):
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
+        """Check the setup and place bodies and water at time 0.
+
+        Args:
+            setup: what is simulated.
+            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+
+        Raises:
+            InvalidDesign: bodies overlap, or see ``Setup.check``.
+        """
         self.setup = setup
         self.thin = setup.check()
         compile_ahead(setup.grid.axes, setup.dtype)
@@ -133,7 +142,10 @@ class Simulation(Fields):
         self._watched = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
 
     def _consistencies_of(self, body: AnyBody) -> list[Consistency]:
-        """Return what is to be watched of a body's rates, after a first look at all that it gives."""
+        """Return the checks that compare a body's prescribed rates with its positions during the run.
+
+        All prescribed functions are checked once at time 0. Functions that never change are not checked again.
+        """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
             pose = body.pose(0.0).along(self.axes)
@@ -165,13 +177,19 @@ class Simulation(Fields):
     # --- state -------------------------------------------------------------------------------------------------
 
     def pose(self, name: str, time: float | None = None) -> Pose:
-        """Return the pose of a body in the world, now or (unless it is free) at another time [s]."""
+        """Return the pose of a body in the world frame.
+
+        Args:
+            name: of the body.
+            time: another time than the present one, for a body that is not free [s].
+        """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
             return body.pose(self.time if time is None else time).along(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
+        """Return a pose of the world frame in the frame of the grid."""
         position, velocity = (
             tuple(a - b for a, b in zip(vector, frame, strict=True))
             for vector, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
@@ -179,12 +197,14 @@ class Simulation(Fields):
         return replace(pose, position=position, velocity=velocity)
 
     def _stream(self, time: float) -> tuple[float, ...]:
+        """Return the velocity of the far water in the frame of the grid [m/s]."""
         return tuple(
             float(component - frame_component)
             for component, frame_component in zip(self.setup.far(time), self.frame[1], strict=True)
         )
 
     def _frame_velocity_at(self, time: float) -> None:
+        """Set the velocity of the grid to that of the body that it follows, at a time [s]."""
         if self.setup.follow is None:
             return
         name = self.setup.follow
@@ -212,14 +232,18 @@ class Simulation(Fields):
         return self.setup.step
 
     def _limit(self, fastest: float) -> float:
+        """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
         return self.setup.grid.cell / (fastest + 2 * self.axes * float(self.water.nu))
 
     def advance(self, dt: float | None = None) -> None:
-        """Advance by one step [s].
+        """Advance by one step.
+
+        Args:
+            dt: length of the step; None takes ``next_step`` [s].
 
         Raises:
-            Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
-            InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates are not those of its places.
+            Diverged: the fields are not finite or far too fast; the record's fields are those of the last valid step.
+            InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates do not match its positions.
             OutsideLimits: ``dt`` is not positive.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
@@ -269,7 +293,11 @@ class Simulation(Fields):
         self._log.control(self.water, dt, push)
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
-        """Return the force and torque by contact on each body, in the middle of the next step [N/m, N]."""
+        """Return the contact force and torque on each body in the middle of the next step, by name [N/m, N].
+
+        Args:
+            dt: length of that step [s].
+        """
         setup = self.setup
         if setup.contact is None or not self.swimmers:
             return {}
@@ -284,12 +312,17 @@ class Simulation(Fields):
         return dict(zip([b.name for b in self._bodies], contact_forces, strict=True))
 
     def _torque_point(self, name: str, pose: Pose) -> tuple[float, ...]:
-        """Return the point that a body's torque is about, in the frame of the grid [m]."""
+        """Return the reference point of a body's torque in the frame of the grid [m]."""
         if name not in self.swimmers:
             return pose.position
         return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
     def _note(self, step: "_LatestStep") -> None:
+        """Compute the forces of a step, give them to the free bodies, and append a row to the record.
+
+        Args:
+            step: the step, whose fields are those of the water now.
+        """
         water, setup, dt, poses, outlines = self.water, self.setup, step.dt, step.poses, self._outlines
         fastest = self._fastest = water.fastest()
         torque_points = [self._torque_point(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
@@ -328,7 +361,10 @@ class Simulation(Fields):
             self._watch.sides(water, self.time)
 
     def last(self, name: str) -> FlowLoads:
-        """Return what the water did to a body, and to each of its parts, in the last step.
+        """Return the force of the water on a body and on each of its parts in the last step.
+
+        Args:
+            name: of the body.
 
         Raises:
             UnknownName: there is no such body.
@@ -344,14 +380,17 @@ class Simulation(Fields):
         return np.zeros(self.axes) if self._latest_step is None else self._latest_step.drift
 
     def accelerate(self, twists: Mapping[str, Twists]) -> None:
-        """Let bodies have moved otherwise at the end of the last step, and the water with them; see ``twist``.
+        """Change the velocities of bodies at the end of the last step, and let the water follow; see ``twist``.
 
-        ``more`` is added to the velocities of their parts. The last row of the record becomes that of the step as it
-        then was. What a ``Body`` is told from outside, its shape and motion, must from now on say the same.
+        The last row of the record is computed anew. From now on, the shape and motion of a ``Body``, which are
+        prescribed from outside, must match the new velocities.
+
+        Args:
+            twists: change of the velocity of each part, by name of the body.
 
         Raises:
             UnknownName: there is no such body.
-            InvalidDesign: a body has another number of parts than it is given motions of.
+            InvalidDesign: the number of twists is not the number of the body's parts.
             OutsideLimits: no step has been taken yet.
             Diverged: see ``advance``.
         """
@@ -375,13 +414,15 @@ class Simulation(Fields):
         self._note(self._latest_step)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
-        """Return the added mass of a body for motions of its parts, the sides held.
+        """Return the generalised added mass of a body for motions of its parts; sides and other bodies stay fixed.
 
-        See ``added.generalised_added_mass``; the other bodies stay still.
+        Args:
+            name: of the body.
+            modes: motions of its parts, one a row of the matrix; see ``added.generalised_added_mass``.
 
         Raises:
             UnknownName: there is no such body.
-            NotConverged: the pressure solver got stuck.
+            NotConverged: the pressure solver did not converge.
         """
         number = self._number(name)
         resting = [none(len(rows), self.axes) for rows in self.water.rows]
@@ -389,24 +430,33 @@ class Simulation(Fields):
         return generalised_added_mass(self.water, self._outlines, joined_modes, self.setup.density)
 
     def _number(self, name: str) -> int:
+        """Return the index of a body by its name.
+
+        Raises:
+            UnknownName: there is no such body.
+        """
         names = [b.name for b in self._bodies]
         if name not in names:
             raise UnknownName("body", name, names or ("none",))
         return names.index(name)
 
     def forget(self) -> None:
-        """Ask bodies that bend anew from now on: what they are told from outside has become another."""
+        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, Remembered):
                 spine.forget()
 
     def snapshot(self) -> Snapshot:
-        """Return all that changes, in copies, to come back to with ``restore``."""
+        """Return a copy of the whole state, for ``restore``."""
         return take(self)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot of this simulation; what follows is what followed it then, to the same bytes."""
+        """Return to a snapshot of this simulation; the next steps repeat those after the snapshot byte by byte.
+
+        Args:
+            snapshot: see ``snapshot``.
+        """
         give(self, snapshot)
         self.forget()
         self._latest_step = None
@@ -416,7 +466,7 @@ class Simulation(Fields):
             self.water.b[:] = snapshot.arrays["b"]
 
     def state(self) -> store.State:
-        """Return all that changes, for a checkpoint."""
+        """Return the whole state, for a checkpoint."""
         numbers = {key: np.array(getattr(self, key)) for key in _CHANGING}
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
@@ -426,7 +476,11 @@ class Simulation(Fields):
         }  # fmt: skip
 
     def resume(self, state: store.State) -> None:
-        """Go on from the state of a checkpoint."""
+        """Continue from the state of a checkpoint.
+
+        Args:
+            state: see ``state``.
+        """
         for key in _CHANGING:
             setattr(self, key, float(state[key]))
         self.frame = state["frame"]
@@ -500,7 +554,12 @@ class Simulation(Fields):
         return self.record
 
     def _refuse_past(self, end_time: float, subject: str, remedy: str) -> None:
-        """Refuse a time that has passed.
+        """Refuse an end time that has already passed.
+
+        Args:
+            end_time: the end time [s].
+            subject: what ends then, for the message.
+            remedy: what to give instead, for the message.
 
         Raises:
             OutsideLimits: naming both times and the remedy.
@@ -512,7 +571,10 @@ class Simulation(Fields):
             )
 
     def control(self, margin: float) -> None:
-        """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``.
+        """Record the momentum balance of a box around the bodies from now on; see ``control_forces``.
+
+        Args:
+            margin: distance of the sides of the box from the bodies' window [m].
 
         Raises:
             InvalidDesign: a mirror cuts a body, so that no box goes around it.
@@ -541,9 +603,12 @@ class Simulation(Fields):
     # --- what there is to see ----------------------------------------------------------------------------------
 
     def surface(self, name: str | None = None) -> Surface:
-        """Return pressure and friction along a body's outline or over its skin, positions in the frame of the grid.
+        """Return pressure and friction along the outline or over the skin of a body, in the frame of the grid.
 
-        Of a body that mirrors cut it is the part inside the domain.
+        Only the part of a body inside the domain counts if mirrors cut it.
+
+        Args:
+            name: of the body; None takes the first one.
 
         Raises:
             UnknownName: there is no such body, or none at all.
@@ -576,6 +641,11 @@ class _LatestStep(NamedTuple):
 
 
 def _even_step(dt: float, remaining: float) -> float:
-    """Return the step that arrives in whole steps, once the end is near [s]."""
+    """Return the length of a step that divides the remaining time evenly near the end of a run [s].
+
+    Args:
+        dt: length of the step that the fields allow [s].
+        remaining: time to the end of the run [s].
+    """
     count = np.ceil(remaining / dt * (1 - 1e-9))
     return float(remaining / count) if count <= LANDING else dt

@@ -92,9 +92,13 @@ class SpaceShape(ABC):
         return 1
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the surface in the middle of a thin body, which no water passes, in triangles.
+        """Return the surface in the middle of a thin body, through which no water passes, as triangles.
 
-        Shape (corner, axis, triangle) [m]; None for a body that is never thin.
+        The shape is (corner, axis, triangle) [m]. The surface is None for a body that is never thin.
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
         """
         return None
 
@@ -110,7 +114,11 @@ class SpaceShape(ABC):
 
 
 def is_blunt(axes: np.ndarray) -> bool:
-    """Return whether a body of these axes is about as long along each."""
+    """Return whether the longest of a body's axes is at most ``_MAX_BLUNT_RATIO`` times the shortest.
+
+    Args:
+        axes: lengths or half-axes, shape (3,) [m].
+    """
     return float(axes.max()) <= _MAX_BLUNT_RATIO * float(axes.min())
 
 
@@ -135,12 +143,12 @@ class Ellipsoid(SpaceShape):
         return 0.5 * np.array([self.length, self.width, self.height])
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """Return which points of its own frame lie inside, shape (3, ...) [m]."""
+        """Return which points of the body's frame lie inside, for points of shape (3, ...) [m]."""
         x, y, z = (coordinate / half for coordinate, half in zip(points, self.half, strict=True))
         return np.asarray(x * x + y * y + z * z < 1 - INSIDE)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
-        """Return the field on the points of a window."""
+        """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
         place = pose.along(3)
         fields = np.zeros((8, z.size, y.size, x.size))
         fields[7] = np.inf
@@ -153,7 +161,7 @@ class Ellipsoid(SpaceShape):
         return SpaceField(fields[0], (fields[1], fields[2], fields[3]), (fields[4], fields[5], fields[6]), fields[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
+        """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
         place, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
@@ -176,7 +184,11 @@ class Ellipsoid(SpaceShape):
         return tuple(p + sign * r for p, r in zip(place.position, reach, strict=True) for sign in (-1.0, 1.0))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return an ellipse across the smallest axis, as far as its own axes are longer; a long one has none."""
+        """Return an ellipse across the smallest axis, in triangles; None if that axis is not the only small one.
+
+        It is smaller than the ellipsoid's own cross-section and vanishes where the ellipsoid is round. See
+        ``SpaceShape``.
+        """
         thin_axis, *long_axes = np.argsort(self.half)
         excess = self.half**2 - self.half[thin_axis] ** 2
         rim_half_axes = self.half * excess / (self.half**2 + self.half[thin_axis] ** 2)

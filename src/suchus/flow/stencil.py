@@ -2,9 +2,10 @@
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """Slabs of the pressure equation: the operator of the cells and its smoothing steps.
 
-The coefficients differ from 1 only inside a window; everywhere else the plain stencil needs none from memory. A slab is
-named by an array and its number in it; ``low``, ``mid`` and ``high`` are the numbers of the slab below, the slab itself
-and the slab above. ``faces[d]`` are the coefficients of the faces before the cells along axis d. See ``slab``.
+The coefficients differ from 1 only inside a window. Outside it, the plain stencil reads no coefficients from memory. A
+slab is given by an array and its index in it: ``lower_slab``, ``mid`` and ``upper_slab`` are the indices of the slab
+below, of the slab itself, and of the slab above. ``faces[d]`` are the coefficients of the faces before the cells along
+axis d. See ``slab``.
 """
 
 from suchus.flow.compiled import PAD, UNIT, ordered_part, part, unsigned
@@ -20,7 +21,7 @@ LANES = 16
 
 @part
 def weights(inner, real):
-    """Return the two Jacobi weights."""
+    """Return the two Jacobi weights in the precision ``real``."""
     return (
         real(WEIGHTS[0][0] if len(inner) == 1 else WEIGHTS[1][0]),
         real(WEIGHTS[0][1] if len(inner) == 1 else WEIGHTS[1][1]),
@@ -29,7 +30,14 @@ def weights(inner, real):
 
 @part
 def seal_slab(a, slab, inner, repeats):
-    """Fill the cells beside the domain that the stencil reads along the axes of a slab."""
+    """Fill the cells beside the domain, along the axes of a slab, with mirrored or periodic values.
+
+    Args:
+        a: the field, shape (slab, cell).
+        slab: the slab.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+    """
     j, row_cells = unsigned(slab), row_length(inner, a.shape[1])
     for row in range(row_count(inner, a.shape[1])):
         first_cell = EDGE + (EDGE + row) * row_cells if len(inner) > 1 else EDGE
@@ -49,10 +57,10 @@ def seal_slab(a, slab, inner, repeats):
 
 @part
 def copy_slab(target, o, x, slab):
-    """Copy slab ``slab`` of ``x`` to slab ``o`` of ``to``.
+    """Copy slab ``slab`` of ``x`` to slab ``o`` of ``target``.
 
-    Written out: an assignment of slices brings along numba's message for slices that do not fit, which takes longer to
-    compile than the kernels.
+    The loop replaces an assignment of slices: numba's message for slices of different lengths takes longer to compile
+    than the kernels.
     """
     o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(x.shape[1])):
@@ -69,7 +77,14 @@ def seal_ends(x, periodic):
 
 @part
 def largest_size(a, slab, inner, top):
-    """Return the largest absolute value of a slab inside the domain; ``top`` is room for ``LANES`` numbers."""
+    """Return the largest absolute value of a slab inside the domain.
+
+    Args:
+        a: the field, shape (slab, cell).
+        slab: the slab.
+        inner: strides within a slab.
+        top: work array for ``LANES`` numbers.
+    """
     j, row_cells, lanes = unsigned(slab), row_length(inner, a.shape[1]), unsigned(LANES)
     for k in range(lanes):
         top[k] = 0
@@ -92,7 +107,7 @@ def largest_size(a, slab, inner, top):
 
 @part
 def summed_size(a, slab, inner):
-    """Return the summed absolute values of a slab inside the domain."""
+    """Return the sum of the absolute values of a slab inside the domain."""
     j, row_cells, slab_sum = unsigned(slab), row_length(inner, a.shape[1]), 0.0
     for row in range(row_count(inner, a.shape[1])):
         s = EDGE + (EDGE + row) * row_cells if len(inner) > 1 else EDGE
@@ -105,6 +120,7 @@ def summed_size(a, slab, inner):
 
 @part
 def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
+    """Return the operator at cell ``k`` with the coefficients ``faces``; see ``apply_slabs``."""
     m, slab_axis, total = x[mid, k], unsigned(len(inner)), x.dtype.type(0)
     for d in range(len(inner)):
         s = inner[d]
@@ -115,7 +131,20 @@ def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
 
 @part
 def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, inner):
-    """Write the operator times slab ``slab`` of the level, which is ``mid`` in ``x``, to slab ``o`` of ``out``."""
+    """Write the pressure operator applied to one slab of a level.
+
+    Args:
+        output: the result.
+        o: slab of ``output``.
+        x: the field; it holds the slab and its neighbours.
+        lower_slab: index in ``x`` of the slab below.
+        mid: index in ``x`` of the slab itself.
+        upper_slab: index in ``x`` of the slab above.
+        faces: face coefficients of the level along each axis.
+        place: row of the layout for the level; see ``slab``.
+        slab: index of the slab in the level.
+        inner: strides within a slab.
+    """
     o, j = unsigned(o), unsigned(slab)
     lower_slab, mid, upper_slab = unsigned(lower_slab), unsigned(mid), unsigned(upper_slab)
     diagonal = output.dtype.type(2 * len(inner) + 2)
@@ -135,9 +164,17 @@ def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, i
 
 @ordered_part
 def first_steps(output, o, shift, b, slab, inner, start, stop):
-    """Write two smoothing steps that start from nothing, where all coefficients are 1; ``b`` is the right side.
+    """Write the first two smoothing steps from a zero solution, where all coefficients are 1.
 
-    Cells ``start`` to ``stop`` of slab ``slab`` go to slab ``o`` of ``out``, ``shift`` cells further left.
+    Args:
+        output: the solution.
+        o: slab of ``output``.
+        shift: index of a cell in ``b`` minus its index in ``output``.
+        b: right side of the level.
+        slab: slab of ``b``.
+        inner: strides within a slab.
+        start: first cell of ``b``.
+        stop: end of the cells.
     """
     o, j, real = unsigned(o), unsigned(slab), output.dtype.type
     w1, w2 = weights(inner, real)
@@ -155,6 +192,7 @@ def first_steps(output, o, shift, b, slab, inner, start, stop):
 
 @ordered_part
 def _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner):
+    """Write one Jacobi step of a slab with all coefficients 1; see ``relax_slabs``."""
     neighbour_weight = weight * output.dtype.type(0.5 / (len(inner) + 1))
     centre_weight = output.dtype.type(1.0) - weight
     run_start, run_end = run_of(inner, x.shape[1])
@@ -168,7 +206,24 @@ def _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
 
 @part
 def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place, slab, weight, inner, repeats):
-    """Write one Jacobi step of slab ``slab`` of the level, which is ``mid`` in ``x``, to slab ``o`` of ``out``."""
+    """Write one Jacobi step of one slab of a level.
+
+    Args:
+        output: the new solution.
+        o: slab of ``output``.
+        x: the old solution; it holds the slab and its neighbours.
+        lower_slab: index in ``x`` of the slab below.
+        mid: index in ``x`` of the slab itself.
+        upper_slab: index in ``x`` of the slab above.
+        b: right side of the level.
+        faces: face coefficients of the level along each axis.
+        dinv: inverse diagonal of the level.
+        place: row of the layout for the level; see ``slab``.
+        slab: index of the slab in the level.
+        weight: Jacobi weight [-].
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+    """
     o, j = unsigned(o), unsigned(slab)
     lower_slab, mid, upper_slab = unsigned(lower_slab), unsigned(mid), unsigned(upper_slab)
     _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
@@ -184,17 +239,26 @@ def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place
 
 @part
 def smooth(output, x, b, faces, dinv, place, weight, inner, repeats):
-    """Write one Jacobi step from ``x`` to ``out``."""
+    """Write one Jacobi step of a whole level from ``x`` to ``output``; see ``relax_slabs``."""
     for j in range(PAD, x.shape[0] - PAD):
         relax_slabs(output, j, x, j - 1, j, j + 1, b, faces, dinv, place, j, weight, inner, repeats)
 
 
 @part
 def relax_patch(output, x, b, faces, offset, dinv, strides, weight):
-    """Write one Jacobi step from ``x`` to ``out`` on a small array whose cells lie end to end.
+    """Write one Jacobi step on a small array whose cells are contiguous.
 
-    ``strides`` are those along all axes; the patch begins at cell ``at`` of ``faces``. The first and the last slab stay
-    as they are, and so does each cell whose ``dinv`` is 0.
+    The first and the last slab are not changed, nor are cells whose ``dinv`` is 0.
+
+    Args:
+        output: the new solution, shape (cell,).
+        x: the old solution, shape (cell,).
+        b: right side, shape (cell,).
+        faces: face coefficients of all patches along each axis.
+        offset: first cell of the patch in ``faces``.
+        dinv: inverse diagonal, shape (cell,).
+        strides: along all axes.
+        weight: Jacobi weight [-].
     """
     margin = strides[-1]
     for k in range(margin, unsigned(x.size) - margin):

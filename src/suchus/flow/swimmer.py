@@ -1,15 +1,15 @@
-"""Free bodies under way: three degrees of freedom in the plane, six in space.
+"""Free bodies in motion: three degrees of freedom in the plane, six in space.
 
-The pressure answers a body's acceleration at once, ``F = F0 - Ma a``; the added mass ``Ma`` comes from three or six
-solves of the pressure equation itself and goes to the left side, ``(M + Ma) a = F0``. Without it the coupling
-of a light body is unstable. A body's deformation carries no momentum of its own: its frame moves so that the
-centre of mass and the angular momentum change by outer forces alone: the water's, the body's weight less its buoyancy,
-its springs and dampers, and what else it is given.
+The pressure responds at once to a body's acceleration, ``F = F0 - Ma a``. The added mass ``Ma`` comes from three or
+six solves of the pressure equation and is moved to the left side, ``(M + Ma) a = F0``. Otherwise the coupling of a
+light body is unstable. The deformation of a body has no momentum of its own: the body's frame moves so that the centre
+of mass and the angular momentum change by external forces alone. These are the forces of the water, weight minus
+buoyancy, springs and dampers, and a force that the user gives.
 
-In space the attitude is a rotation vector, so that it is a rotation whatever a step adds to it. A step turns the body
-with the mean of the angular velocities at its start and end, and both follow from the angular momentum, which changes
-by the torque times the step and by nothing else: a body without torques keeps it to rounding, its energy has no drift,
-and the error of its attitude is of second order.
+In space the attitude is a rotation vector, which remains a rotation whatever a step adds to it. A step rotates the
+body by the mean of the angular velocities at its start and end. Both follow from the angular momentum, which changes
+by the torque times the step. A body without torques therefore keeps its angular momentum to rounding, its energy does
+not drift, and the error of its attitude is of second order.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,12 @@ from suchus.flow.pose import Pose, turned
 
 
 def spread(values: Sequence[float], axes: int) -> np.ndarray:
-    """Return values for every degree of freedom: of three in space, those along z and about x and y are 0."""
+    """Return values for all degrees of freedom; of three values in space, those along z and about x and y are 0.
+
+    Args:
+        values: along x and y and about z, or all six.
+        axes: of the domain, 2 or 3.
+    """
     if axes == 2 or len(values) == 6:
         return np.array(values)
     x, y, turn = values
@@ -46,10 +51,14 @@ def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
 
 
 def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Return the torque of a potential whose slope by the rotation vector is given, shape (3,).
+    """Return the torque of a potential that depends on the attitude, shape (3,).
 
     It is ``-J^-T slope``, where the rotation vector r changes by ``J^-1 dw`` as the body turns by dw.
     Source: Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (146).
+
+    Args:
+        vector: rotation vector of the attitude [rad].
+        slope: gradient of the potential by the rotation vector.
     """
     angle = float(np.linalg.norm(vector))
     curvature = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
@@ -107,7 +116,7 @@ class Swimmer:
 
     @classmethod
     def of(cls, body: FreeBody) -> "Swimmer":
-        """Return the body at its start."""
+        """Return a free body in its initial state."""
         axes = body.shape.axes
         if axes == 2:
             place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
@@ -129,14 +138,24 @@ class Swimmer:
         return rotation.angles(rotation.from_vector(place[3:])) if x or y else (z, 0.0, 0.0)
 
     def _matrix(self, place: np.ndarray) -> np.ndarray:
-        """Return the rotation matrix of the frame, in space; see ``Pose.matrix``."""
+        """Return the rotation matrix of the body's frame, shape (3, 3); see ``Pose.matrix``.
+
+        Args:
+            place: centre of mass and rotation vector [m, rad].
+        """
         if self._axes == 2:
             return np.eye(3)  # the plane's mass matrix does not depend on it
         x, y, z = place[3:].tolist()
         return rotation.turn(place[3:]) if x or y else Pose(angle=z).matrix
 
     def _pose(self, place: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> Pose:
-        """Return the pose in space with an attitude, the origin in the place."""
+        """Return the pose in space whose origin is the centre of mass.
+
+        Args:
+            place: centre of mass and rotation vector [m, rad].
+            velocity: of the centre of mass [m/s].
+            spins: angular velocity about x, y and z [rad/s].
+        """
         yaw, pitch, roll = self._angles(place)
         (x, y, z), (u, v, w), (p, q, r) = place[:3].tolist(), velocity.tolist(), spins.tolist()
         return Pose(
@@ -144,7 +163,11 @@ class Swimmer:
         )
 
     def pose(self, mass: Mass | SpaceMass) -> Pose:
-        """Return the pose of the body's frame, whose deformation it has taken out of the motion."""
+        """Return the pose of the body's frame, which recoils from the deformation of the body.
+
+        Args:
+            mass: mass properties of the present shape in the body's frame.
+        """
         if isinstance(mass, SpaceMass):
             matrix = self._matrix(self.place)
             spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
@@ -173,10 +196,14 @@ class Swimmer:
         return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
 
     def take_added(self, mass: np.ndarray, time: float) -> None:
-        """Take the added mass of a time [s]; NaN, in degrees of freedom that are not free alone, is nothing.
+        """Set the added mass.
+
+        Args:
+            mass: square matrix; NaN is allowed in locked degrees of freedom and counts as 0.
+            time: time of its computation, for the message [s].
 
         Raises:
-            Diverged: it is not finite in one that is free.
+            Diverged: it is not finite in a free degree of freedom.
         """
         free_mass = mass[np.ix_(self.go, self.go)]
         if not np.isfinite(free_mass).all():
@@ -198,10 +225,10 @@ class Swimmer:
             setattr(self, key, state[key] if state[key].ndim else state[key].item())
 
     def advance(self, time: float, dt: float, water_density: float, contact: np.ndarray | None = None) -> None:
-        """Advance by ``dt`` [s] under the water's forces of the last step and the other forces of this one.
+        """Advance by one step under the water's forces of the last step and the other forces of this one.
 
-        Springs and dampers act at the mean of the step's start and end, the other forces at a middle foreseen from
-        its start: neither adds energy.
+        Springs and dampers act at the mean of the step's start and end, the other forces at a midpoint extrapolated
+        from the start. Neither adds energy.
 
         Args:
             time: start of the step [s].
@@ -244,7 +271,7 @@ class Swimmer:
         self.steps += 1
 
     def _foreseen(self, momentum: np.ndarray, dt: float) -> np.ndarray:
-        """Return the water's force that is expected of a step, were the body not to accelerate, and note what is owed.
+        """Return the water's force expected in a step without acceleration, and update the momentum still owed.
 
         Args:
             momentum: of the body now [kg/s, kg m/s; in space kg m/s, kg m^2/s].
@@ -261,12 +288,12 @@ class Swimmer:
         return guess
 
     def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
-        """Return the acceleration in the degrees of freedom that are free, 0 in the others.
+        """Return the acceleration in the free degrees of freedom, and 0 in the others.
 
         Args:
-            total_inertia: mass of the body and added mass, with what springs and dampers add, a square matrix.
-            force: that acts on a body that does not accelerate; in the first step neither the water's force nor the
-                added mass is known, so that it is what a change of the inertia asks for.
+            total_inertia: mass of the body and added mass, with the terms of springs and dampers, a square matrix.
+            force: on a body that does not accelerate. In the first step, water force and added mass are not known: the
+                force is then that of the change of inertia.
         """
         push = np.zeros(self.place.size)
         if self.steps or self._axes == 3:
@@ -279,7 +306,11 @@ class Swimmer:
         return slip
 
     def _moved(self, step: np.ndarray) -> np.ndarray:
-        """Return the place after a step, in space a turn by a rotation vector."""
+        """Return the place after a displacement; in space the rotations are composed.
+
+        Args:
+            step: displacement and rotation vector [m, rad].
+        """
         place = self.place + step
         if step[3:5].any() or (self.place[3:5].any() and step[3:].any()):  # else about z alone
             turn = rotation.multiply(rotation.from_vector(step[3:]), rotation.from_vector(self.place[3:]))
@@ -287,15 +318,16 @@ class Swimmer:
         return place
 
     def _outer(self, time: float, dt: float, weight: float, recoil: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean over a step of all forces but the water's, and by how much an acceleration lessens them.
+        """Return the mean of all external forces except the water's over a step, and their decrease per acceleration.
 
-        The first is that of a body that does not accelerate [N/m, N], [kg/m, kg m].
+        The force is that on a body that does not accelerate [N/m, N]; the decrease is the diagonal of a matrix [kg/m,
+        kg m].
 
         Args:
             time: start of the step [s].
             dt: length of the step [s].
-            weight: mass of the body less that of the water it displaces [kg/m].
-            recoil: velocity of the frame at start and end that the deformation takes away, summed [m/s, rad/s].
+            weight: mass of the body minus that of the displaced water [kg/m].
+            recoil: velocity of the frame due to the deformation, sum of start and end [m/s, rad/s].
 
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
@@ -319,7 +351,12 @@ class Swimmer:
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
     def _held(self, middle: np.ndarray, stiff: np.ndarray) -> np.ndarray:
-        """Return what the springs pull back with in a place."""
+        """Return the elastic force of the springs, positive along the displacement [N/m, N].
+
+        Args:
+            middle: place of the body [m, rad].
+            stiff: stiffness of each degree of freedom.
+        """
         body = self.body
         if self._axes == 2:
             slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
@@ -337,7 +374,11 @@ class Swimmer:
         return np.asarray(spring_force)
 
     def _anchor(self, anchor: Sequence[float]) -> list[float]:
-        """Return the anchor as six numbers; of three, the others are those of the start."""
+        """Return the anchor of the springs as six numbers; of three, the others are those of the start.
+
+        Args:
+            anchor: x, y and yaw, or x, y, z, yaw, pitch and roll [m, rad].
+        """
         if len(anchor) == 6:
             return list(anchor)
         x, y, turn = anchor

@@ -1,4 +1,4 @@
-"""A body in space given by its midline and elliptic sections along it: fish, robots, fins."""
+"""A body in space that is defined by its midline and the elliptic sections along it: fish, robots, fins."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -43,6 +43,7 @@ class Trunk(SpaceShape):
     """Whether the midline changes with time; False saves work."""
 
     def __post_init__(self) -> None:
+        """Check the half-heights and the cuts."""
         heights = self.half_height
         if heights.ndim != 1 or not np.isfinite(heights).all() or (heights < 0).any():
             raise InvalidDesign(
@@ -62,12 +63,16 @@ class Trunk(SpaceShape):
         return len(self.cuts) + 1
 
     def placed(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
-        """Return the midline at a time [s] in the plane z = 0 of a frame, and the frame's pose in the world.
+        """Return the midline at a time in the plane z = 0 of a frame, and the pose of that frame in the world.
 
         The frame of a body that turns about z alone has the axes of the world.
 
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+
         Raises:
-            InvalidDesign: it has other stations than the half-heights.
+            InvalidDesign: the midline has another number of stations than the half-heights.
         """
         spine, place = self._spine(time), pose.along(3)
         if not place.in_plane:
@@ -76,6 +81,11 @@ class Trunk(SpaceShape):
         return spine.placed(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> MidlineState:
+        """Return the midline at a time [s].
+
+        Raises:
+            InvalidDesign: it has another number of stations than the half-heights.
+        """
         spine = self.spine(time)
         if spine.x.size != self.half_height.size:
             raise InvalidDesign(
@@ -85,7 +95,7 @@ class Trunk(SpaceShape):
         return spine
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
-        """Return the field on the points of a window."""
+        """Return distance, normal, velocity and part on the points of a window; see ``SpaceShape``."""
         spine, frame = self.placed(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
         fields = np.zeros((PAINTED, z.size, y.size, x.size))
@@ -106,12 +116,20 @@ class Trunk(SpaceShape):
         return SpaceField(fields[0], turned(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of patches between stations, as many around as the widest section needs."""
+        """Return markers at the centres of patches between the stations.
+
+        The widest section determines the number of patches around the body.
+        """
         spine, frame = self.placed(time, pose)
         return in_world(self._skin(spine, spacing), frame)
 
     def _skin(self, spine: MidlineState, spacing: float) -> Markers:
-        """Return the same in the frame of a midline."""
+        """Return the markers of ``markers`` in the frame of a midline.
+
+        Args:
+            spine: the midline.
+            spacing: about the distance of the markers [m].
+        """
         half_widths, half_heights = (
             np.concatenate([[0.0], half_axis, [0.0]]) for half_axis in (spine.half_width, self.half_height)
         )
@@ -147,7 +165,7 @@ class Trunk(SpaceShape):
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
-        """Return the box around the body."""
+        """Return the smallest box around the body: x0, x1, y0, y1, z0, z1 [m]."""
         spine, frame = self.placed(time, pose)
         if pose.in_plane:
             outline, middle = ring(spine.rows), frame.position[2]
@@ -163,9 +181,9 @@ class Trunk(SpaceShape):
         return tuple(end for pair in zip(lower_bounds, upper_bounds, strict=True) for end in pair)
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the longer axes of the sections, as far as a section is less wide than the way to its tip is long.
+        """Return the longer axes of the sections, where a section is narrower than it is far from the ends of the body.
 
-        Round sections have none, nor have the body's round ends.
+        Round sections have no such surface. See ``SpaceShape``.
         """
         spine, frame = self.placed(time, pose)
         half_width, half_height, arc = spine.half_width, self.half_height, spine.arc
@@ -199,14 +217,25 @@ class Trunk(SpaceShape):
         return of_trunk(self._spine(time).rows, self.half_height)
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return where the midline is at arc lengths [m], in the world, shape (point, 3) [m]."""
+        """Return points of the midline in the world frame, shape (point, 3) [m].
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+            arc: arc lengths of the points [m].
+        """
         spine, frame = self.placed(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
         return np.column_stack(frame.place((x, y, 0 * x)))
 
 
 def in_world(skin: Markers, frame: Pose) -> Markers:
-    """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
+    """Return markers in the world frame, with the velocity of the moving frame added.
+
+    Args:
+        skin: markers in a frame.
+        frame: pose of that frame.
+    """
     points = np.array(frame.place(skin.points))
     velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
     return Markers(

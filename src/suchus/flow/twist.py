@@ -1,9 +1,9 @@
-"""Rigid motions of bodies and of their parts, and what the water does when they are accelerated within a step.
+"""Rigid motions of bodies and of their parts, and the response of the water to a velocity change within a step.
 
-A step of the flow sees a motion that was foreseen. When forces say that the bodies were accelerated otherwise, the
-water need not go through the step again: to first order in the step it is given the potential flow of the difference,
-which takes one solve of the pressure equation. The immersion holds the share ``1 - mu0`` of each face with the body in
-both stages of a step, so that this is what a step with the other acceleration would have done.
+A step of the flow takes an extrapolated motion of the bodies. If the forces then require another acceleration, the
+step is not repeated: to first order in the step, the water gets the potential flow of the difference, which takes one
+solve of the pressure equation. The immersion fixes the fraction ``1 - mu0`` of each face to the body in both stages of
+a step. The result is therefore that of a step with the other acceleration.
 """
 
 from collections.abc import Sequence
@@ -35,7 +35,12 @@ class Twists:
     """Angular velocities, about z in the plane and about x, y and z in space, shape (part, 1) or (part, 3) [rad/s]."""
 
     def at(self, part_index: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Return the velocities of points, shape (axis, point), of parts, shape (point,): the same shape [m/s]."""
+        """Return the velocities of points, shape (axis, point) [m/s].
+
+        Args:
+            part_index: part that each point belongs to, shape (point,).
+            points: the points, shape (axis, point) [m].
+        """
         velocities = self.linear.T[:, part_index].astype(float)
         lever = points - self.about.T[:, part_index]
         for turn, (a, b) in zip(self.angular.T, TURNS[len(points)], strict=True):
@@ -48,12 +53,17 @@ class Twists:
         return self.at(np.arange(len(self.about)), np.zeros(self.about.T.shape)).T
 
     def __mul__(self, factor: float) -> "Twists":
-        """Return the same motions, so many times as fast."""
+        """Return the twists multiplied by a factor."""
         return replace(self, linear=factor * self.linear, angular=factor * self.angular)
 
 
 def none(rows: int, axes: int) -> Twists:
-    """Return parts that rest."""
+    """Return zero twists of parts at rest.
+
+    Args:
+        rows: number of parts.
+        axes: of the domain, 2 or 3.
+    """
     turns = len(TURNS[axes])
     return Twists(
         about=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
@@ -61,7 +71,7 @@ def none(rows: int, axes: int) -> Twists:
 
 
 def joined(twists: Sequence[Twists]) -> Twists:
-    """Return the motions of several bodies, one after the other."""
+    """Return the twists of several bodies in one object, body after body."""
     return Twists(
         about=np.concatenate([twist.about for twist in twists]),
         linear=np.concatenate([twist.linear for twist in twists]),
@@ -85,7 +95,10 @@ class HeldFaces(NamedTuple):
 
 
 def held_faces(water: Fluid) -> list[HeldFaces]:
-    """Return the faces that the placed bodies hold, axis by axis; those beyond mirrors are left out."""
+    """Return the faces that belong to the bodies at least in part, one entry for each axis.
+
+    Faces beyond mirrors are left out.
+    """
     window, axes, grid, faces = water.here, water.axes, water.grid, []
     is_inside = np.ones([s.stop - s.start for s in window], bool)
     for mirror_cuts in water.cut:
@@ -103,7 +116,12 @@ def held_faces(water: Fluid) -> list[HeldFaces]:
 
 
 def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
-    """Set to nothing what lies beyond the mirrors that cut a body."""
+    """Set values beyond the mirrors that cut a body to 0.
+
+    Args:
+        values: on the faces of a window, the last axis first.
+        mirror_cuts: whether the mirror at the low and the high end of each axis cuts the body.
+    """
     for k, is_cut in enumerate(mirror_cuts):
         lines = np.moveaxis(values, values.ndim - 1 - k // 2, 0)
         if is_cut and k % 2 == 0:
@@ -113,7 +131,14 @@ def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
 
 
 def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
-    """Return how much a field at the cells rises across faces, shape (face,)."""
+    """Return the difference of a field between the cells behind and before faces, shape (face,).
+
+    Args:
+        water: the water, for its window.
+        x: field at the cells of the padded grid.
+        faces: the faces across an axis.
+        axis: that axis.
+    """
     low_corner = [s.start for s in water.here]
     cell_behind = [
         place + start for place, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
@@ -127,18 +152,18 @@ def _shape(water: Fluid) -> tuple[int, ...]:
 
 
 def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
-    """Let the bodies' velocities at the end of the last step be others, and the water have followed all through it.
+    """Change the velocities of the bodies at the end of the last step, with the response of the water in that step.
 
-    On return velocity and pressure, the bodies' velocity and what the immersion gave are those of a step to whose end
-    the bodies came with velocities that are ``more``. The sides stay as they are.
+    On return, the fields are those of a step in which the bodies reached the changed velocities: velocity and pressure,
+    the bodies' velocity, and the sums of the immersion. The sides are not changed.
 
     Args:
         water: after a step.
-        twists: what is added to the velocity of each part; of all parts of all bodies.
+        twists: change of the velocity of each part, for all parts of all bodies.
         dt: length of the step [s].
 
     Raises:
-        NotConverged: the pressure solver got stuck.
+        NotConverged: the pressure solver did not converge.
     """
     axes, h, faces = water.axes, water.grid.cell, held_faces(water)
     changes = [twists.at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
@@ -184,7 +209,12 @@ def part_of(outline: Markers) -> np.ndarray:
 
 
 def moved_on(outline: Markers, twists: Twists) -> Markers:
-    """Return the skin of one body whose parts move faster, by twists of this body's parts alone."""
+    """Return the markers of one body with the velocity change of its parts added.
+
+    Args:
+        outline: the markers.
+        twists: change of the velocity of each part of this body.
+    """
     row = part_of(outline)
     velocities = outline.velocities + twists.at(row, outline.points)
     spins = outline.spins + twists.angular[row].T

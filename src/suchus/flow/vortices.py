@@ -1,4 +1,4 @@
-"""Where a flow in space turns: the second invariant of the velocity's gradient, and lambda 2."""
+"""Vortices of a flow in space: the second invariant of the velocity gradient, and lambda 2."""
 
 import numpy as np
 

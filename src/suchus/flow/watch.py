@@ -1,4 +1,4 @@
-"""What a simulation warns of, once each: thin layers, bodies in each other, and vortices at a side that cannot move."""
+"""Warnings of a simulation, once each: thin boundary layers, overlapping bodies, and vortices at fixed sides."""
 
 from dataclasses import dataclass, field
 from warnings import warn
@@ -25,9 +25,12 @@ FELT = 0.02
 
 
 def vorticity_size(velocity: np.ndarray) -> np.ndarray:
-    """Return the summed sizes of the vorticity's components beside the low corners of the cells [m/s per cell].
+    """Return the sum of the absolute vorticity components at the low corners of the cells [m/s per cell].
 
     The shape is one less than the cells along each axis of the grid, the last axis first.
+
+    Args:
+        velocity: padded velocity, shape (axis, ...) [m/s].
     """
     axes, interior = len(velocity), slice(PAD + 1, -PAD)
 
@@ -55,7 +58,11 @@ class Watch:
     _issued_keys: set[str] = field(default_factory=set)
 
     def layers(self, errors: list[float]) -> None:
-        """Note the estimated errors of all bodies' forces; warn of a body whose error is large."""
+        """Store the estimated errors of all bodies' forces and warn of those that are large.
+
+        Args:
+            errors: relative error for each body; see ``Setup.layer_error`` [-].
+        """
         self.errors = errors
         for body, error in zip(self.setup.bodies, errors, strict=True):
             warning = self.setup.layer_warning(body, error)
@@ -63,7 +70,12 @@ class Watch:
                 self._say(f"layer {body.name}", warning)
 
     def shared(self, water: Fluid, time: float) -> str | None:
-        """Return what is to be said of two bodies that lie in each other at a time [s], if any do."""
+        """Return a message about two bodies that overlap, or None.
+
+        Args:
+            water: the water with the placed bodies.
+            time: time, for the message [s].
+        """
         depth, pair = water.overlap
         if depth <= SHARED * water.grid.cell:
             return None
@@ -82,7 +94,12 @@ class Watch:
             self._say(f"overlap {water.overlap.bodies}", text)
 
     def sides(self, water: Fluid, time: float) -> None:
-        """Warn of vortices at a side that is held to the far stream, which they should move."""
+        """Warn of vortices at a side that is fixed to the far stream although the vortices should move it.
+
+        Args:
+            water: the water after a step.
+            time: time, for the message [s].
+        """
         water = water.layers[-1]
         fixed_edges = [
             edge for edge in water.border.edges
@@ -109,6 +126,7 @@ class Watch:
                 )
 
     def _say(self, key: str, message: str | Doubtful) -> None:
+        """Issue a warning once for each key."""
         if key not in self._issued_keys:
             self._issued_keys.add(key)
             warn(message if isinstance(message, Doubtful) else Doubtful(message), stacklevel=5)

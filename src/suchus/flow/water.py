@@ -44,7 +44,12 @@ STUCK = 1000.0
 
 
 def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
-    """Return what flows into the cells of a window through their faces across an axis, that axis first."""
+    """Return the inflow into the cells of a window through their faces across an axis, that axis first.
+
+    Args:
+        velocity: on the faces of the window.
+        axis: index of the axis in the array.
+    """
     faces = np.moveaxis(velocity, axis, 0)
     return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (velocity.ndim - 1)]
 
@@ -102,6 +107,16 @@ class Fluid:
         self, grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme = QUICK,
         integrator: Integrator = HEUN,
     ) -> None:  # fmt: skip
+        """Allocate the fields of water at rest without bodies.
+
+        Args:
+            grid: the cells.
+            sides: sides of the domain.
+            viscosity: kinematic viscosity [m^2/s].
+            dtype: precision of the fields.
+            scheme: advection scheme.
+            integrator: time integrator.
+        """
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
         self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
@@ -167,7 +182,13 @@ class Fluid:
         return a.reshape(*a.shape[: component_axes + 1], -1)
 
     def _look_at(self, window: Window) -> None:
-        """Make room for what counts around the bodies only: kernel moments, velocity, divergence and bare update."""
+        """Set the window around the bodies and allocate its arrays.
+
+        These are kernel moments, body velocity, source and bare update.
+
+        Args:
+            window: padded indices, first and end along each axis, the last axis first.
+        """
         self.window: Window = window
         self._near[1 + self.axes :] = window
         shape = tuple(end - start + 1 for start, end in zip(window[::2], window[1::2], strict=True))
@@ -177,7 +198,12 @@ class Fluid:
         self.source: np.ndarray = np.zeros(shape, self.dtype)
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
-        """Return values of another window, shape (axis, ...), in the present one, 0 where that one does not reach."""
+        """Return values of another window in the present one, shape (axis, ...), 0 outside the other window.
+
+        Args:
+            values: on the faces of the other window, shape (axis, ...).
+            window: the other window.
+        """
         result = np.zeros_like(self.b)
         overlaps = [
             (max(a, c), min(b, d) + 1)
@@ -252,7 +278,12 @@ class Fluid:
         return sum(a.size for a in fields) / self.p.size
 
     def place(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
-        """Write the bodies into the equations as they are at a time [s].
+        """Write the bodies at a time into the equations of the water.
+
+        Args:
+            bodies: the bodies.
+            poses: their poses in the frame of the grid.
+            time: time [s].
 
         Raises:
             InvalidDesign: a body reaches out of the domain.
@@ -290,7 +321,7 @@ class Fluid:
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
 
     def _widening(self, bodies: list[AnyBody]) -> None:
-        """Write what ``source`` is for the mean of the step's start and end; bodies that do not bend have none."""
+        """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
         self.widening = np.zeros_like(self.source)
         self._widens = not all(body.shape.rigid for body in bodies)
         if self._widens:
@@ -298,11 +329,19 @@ class Fluid:
             fill_source(widening, mean, mu0, self._layout[0], self._near, self.inner)
 
     def _clear(self, window: Window) -> None:
+        """Set the coefficients of a window to those of water without bodies."""
         slices = self._here(window)
         for fraction in (self.mu0, self.passage):
             fraction[:, *slices] = 1
 
     def _measure(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
+        """Compute the kernel moments, the velocity and the source of the bodies in the window.
+
+        Args:
+            bodies: the bodies.
+            poses: their poses in the frame of the grid.
+            time: time [s].
+        """
         h, grid, slices = self.grid.cell, self.grid, self._here(self.window)
         self.overlap = Overlap(0.0, (0, 0))
         ends = [(s.start, s.stop) for s in reversed(slices)]
@@ -324,7 +363,14 @@ class Fluid:
         fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
 
     def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first_centre: list[float]) -> None:
-        """Let no pressure act through the middle of a thin body; ``first`` is the middle of the window's first cell."""
+        """Set the pressure to act on no face through the middle of a thin body.
+
+        Args:
+            shape: shape of the body.
+            pose: its pose in the frame of the grid.
+            time: time [s].
+            first_centre: centre of the first cell of the window, x first [m].
+        """
         h, slices = self.grid.cell, self._here(self.window)
         if isinstance(shape, SpaceShape):
             triangles = shape.midsurface(time, pose)
@@ -373,14 +419,28 @@ class Fluid:
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
-        """Prepare the sides for a step; return its length [cells per (m/s)] and the push on a cell [(m/s)^2]."""
+        """Prepare the sides for a step.
+
+        Args:
+            dt: time step [s].
+            stream: velocity of the far water at the end of the step [m/s].
+            push: uniform acceleration of the water [m/s^2].
+            time: of the end of the step [s].
+
+        Returns:
+            length of the step [cells per (m/s)] and the acceleration times the cell [(m/s)^2].
+        """
         real, h = self.dtype, self.grid.cell
         span = real(dt / h)
         self.border.prepare(self.velocity, self.window, float(span), stream, time)
         return span, tuple(real(component * h) for component in push)
 
     def _plan(self, span: float) -> list[PlannedStage]:
-        """Return the stages of a step of a length [cells per (m/s)]; with Heun's method two."""
+        """Return the stages of a step; Heun's method has two.
+
+        Args:
+            span: length of the step [cells per (m/s)].
+        """
         plan, previous, buffers = [], self.velocity, (self._corrected, self._predicted)
         stages = self.integrator.stages
         for remaining, stage in zip(reversed(range(len(stages))), stages, strict=True):
@@ -390,10 +450,15 @@ class Fluid:
         return plan
 
     def _stages(self, plan: list[PlannedStage], push: tuple[float, ...], limits: tuple[float, float]) -> None:
-        """Take the stages of a step, each immersed and its divergence projected out.
+        """Take the stages of a step; each is immersed and then made divergence-free.
 
-        On return ``_corrected`` is the velocity at the step's end, ``p`` its pressure, and ``given`` what the immersion
-        gave to the water.
+        On return ``_corrected`` is the velocity at the end of the step, ``p`` its pressure, and ``given`` the sums of
+        the immersion.
+
+        Args:
+            plan: the stages.
+            push: uniform acceleration of the water times the cell [(m/s)^2].
+            limits: mean and largest divergence that may be left [m/s per cell].
         """
         self.solves = []
         self.given[:] = 0
@@ -412,28 +477,38 @@ class Fluid:
         self._project(stage.out, stage.solved, limits)
 
     def _hear(self, stage: PlannedStage) -> float:
-        """Let the water beyond the sides know what a stage came to; return by how much it moves them [m/s]."""
+        """Update the water beyond the sides after a stage; return the largest change of their velocity [m/s]."""
         return self.border.update_induced(stage.out, self.window)
 
     @property
     def _learns(self) -> bool:
-        """Whether water beyond the sides, or around a patch, has to come to terms with a first step."""
+        """Whether water beyond the sides, or around a patch, has to converge in the first step."""
         return self.border.water is not None
 
     def _is_first_step_converged(self, last_stage: PlannedStage, limits: tuple[float, float]) -> bool:
-        """Return whether the first step would be the same again, whose last stage is given."""
+        """Return whether a repetition of the first step would not change it; updates the water beyond the sides.
+
+        Args:
+            last_stage: last stage of the step.
+            limits: mean and largest divergence that may be left [m/s per cell].
+        """
         return self._hear(last_stage) <= limits[1]
 
     def _reset_first_step(self, start: np.ndarray) -> None:
-        """Make ready to take the first step once more, from the pressure that it started with."""
+        """Prepare a repetition of the first step, with the pressure with which it started."""
         self.p[:] = start
 
     def _swap(self) -> None:
-        """Let the velocity be that at the step's end."""
+        """Make the velocity at the end of the step the present one."""
         self.velocity, self._corrected = self._corrected, self.velocity
 
     def _advance(self, stage: PlannedStage, push: tuple[float, ...]) -> None:
-        """On return ``out`` of the stage is what ``PlannedStage`` says, and fits the sides; its divergence is left."""
+        """Write the velocity of a stage, immersed and with its sides filled; its divergence is not yet removed.
+
+        Args:
+            stage: the stage; its ``out`` is written.
+            push: uniform acceleration of the water times the cell [(m/s)^2].
+        """
         result, blend, base, rate = (self._flat(a) for a in stage[:4])
         place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         self._advance_all(
@@ -451,7 +526,7 @@ class Fluid:
         self.border.fill(stage.out)
 
     def _mirror_raw(self) -> None:
-        """Fill the bare update beyond the mirrors that cut bodies with its image."""
+        """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
         for k, is_cut in enumerate(cuts(self.window, self.grid)):
             if not is_cut:
                 continue
@@ -469,7 +544,12 @@ class Fluid:
                     planes[image] = planes[source]
 
     def _collect(self, stage: PlannedStage, weight: float) -> None:
-        """Add what the immersion gave in this stage, by the share that it has in the step."""
+        """Add the momentum and energy that the immersion gave to the water in a stage to ``given``.
+
+        Args:
+            stage: the stage after its projection.
+            weight: share of the stage in the step [-].
+        """
         if self.window[1] <= self.window[0]:
             return
         dt, keep, near_layout, inner = float(stage.dt), float(stage.keep), self._near, self.inner
@@ -489,16 +569,26 @@ class Fluid:
             self.pressed += self.pressures(self.p, weight * dt)
 
     def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
-        """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
+        """Subtract the work of a pressure on the widening inside bending bodies from the energy in ``sums``.
+
+        Args:
+            sums: see ``given``.
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
+        """
         if not self._widens:
             return
         flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
         dilatation_work(sums, *flat, self._near, self.inner, weight)
 
     def across(self, p: np.ndarray, weight: float) -> np.ndarray:
-        """Return what takes away that a pressure, times a weight, pushes links apart inside; see ``momentum.parted``.
+        """Return the correction for the force with which a pressure pushes linked parts apart inside the bodies.
 
-        Its shape is that of ``given``; nothing of bodies that have no joints.
+        Its shape is that of ``given``; it is 0 for bodies without joints. See ``momentum.parted``.
+
+        Args:
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
         """
         sums = np.zeros_like(self.given)
         if self._jointed and self.window[1] > self.window[0]:
@@ -508,10 +598,14 @@ class Fluid:
         return sums
 
     def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
-        """Return what a pressure, times a weight, does inside each row's region, shape (row, 1 + axis).
+        """Return integral and first moments of a pressure inside the region of each part, shape (row, 1 + axis).
 
-        It is summed over the cells by the bodies' share of them; then come its first moments from the grid's corner
-        [that of pressure and weight, and times cells].
+        The integral is a sum over the cells, weighted by the bodies' fraction of each. Moments are taken from the
+        corner of the grid [unit of pressure times weight; the same times cells].
+
+        Args:
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
         """
         sums = np.zeros_like(self.pressed)
         if self.window[1] > self.window[0]:
@@ -520,7 +614,10 @@ class Fluid:
         return sums
 
     def contents(self) -> np.ndarray:
-        """Return what the region of each part of each placed body holds, shape (row, ``momentum.contents_of``)."""
+        """Return momentum, volume and first moments inside the region of each part of each placed body.
+
+        The shape is (row, ``momentum.contents_of``).
+        """
         sums = np.zeros((len(self.given), contents_of(self.axes)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
@@ -529,7 +626,13 @@ class Fluid:
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
-        """On return the divergence of ``velocity`` is that of the bodies, to ``limits``; ``p`` has what that took."""
+        """Make the divergence of a velocity that of the bodies, and add the pressure that this takes to ``p``.
+
+        Args:
+            velocity: shape (axis, ...), which is changed [m/s].
+            dt: duration for which the pressure acts [cells per (m/s)].
+            limits: mean and largest divergence that may be left [m/s per cell].
+        """
         r, place = self._level_view(multigrid.B), self._layout[0]
         u, source = self._flat(velocity), self._flat(self.source)
         mean = mean_residual(u, source, place, self._near, self.inner)
@@ -549,24 +652,34 @@ class Fluid:
         self.solves.append(solve)
 
     def _seal(self, x: np.ndarray) -> None:
-        """Fill the cells beside the domain with those inside it, or with those at its other end."""
+        """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
         for axis, is_periodic in zip(reversed(range(self.axes)), self.repeats, strict=True):
             lines, n = x.swapaxes(axis, 0), x.shape[axis]
             lines[PAD - 1] = lines[n - PAD - 1 if is_periodic else PAD]
             lines[n - PAD] = lines[PAD if is_periodic else n - PAD - 1]
 
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
-        """Return the pressure that answers a body acceleration given on the faces of the window, shape (axis, ...).
+        """Return the pressure of the water's response to an acceleration of the bodies.
 
         The result is a work array: use it before the next call.
 
+        Args:
+            acceleration: on the faces of the window, shape (axis, ...).
+            limit: mean divergence that may be left.
+
         Raises:
-            NotConverged: the pressure solver got stuck.
+            NotConverged: the pressure solver did not converge.
         """
         return self._answering(acceleration, None, limit)
 
     def _answering(self, acceleration: np.ndarray, side_velocity: np.ndarray | None, limit: float) -> np.ndarray:
-        """Return ``potential``, also of what flows in through the sides, given as a velocity of the whole grid."""
+        """Return ``potential`` with an additional flow through the sides.
+
+        Args:
+            acceleration: on the faces of the window, shape (axis, ...).
+            side_velocity: flow through the sides, as a velocity of the whole grid; None for none.
+            limit: mean divergence that may be left.
+        """
         r = self._level_view(multigrid.B)
         r[:] = 0
         net = sum(
@@ -594,9 +707,9 @@ class Fluid:
         return x
 
     def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
-        """Give velocities on the faces of the window to the water, and what its pressure answers over a step.
+        """Add a velocity change on the faces of the window to the water, with the pressure of its response.
 
-        The sides stay as they are. Returns ``potential`` of what is given: the pressure times the step in cells.
+        The sides are not changed. Returns ``potential`` of the velocity change: the pressure times the step in cells.
 
         Args:
             velocity_change: shape (axis, ...) [m/s].
@@ -604,7 +717,7 @@ class Fluid:
             limit: mean divergence that may be left [m/s per cell].
 
         Raises:
-            NotConverged: the pressure solver got stuck.
+            NotConverged: the pressure solver did not converge.
         """
         x = self.potential(velocity_change, limit)
         self._answer_with(velocity_change, dt)
@@ -612,9 +725,13 @@ class Fluid:
         return x
 
     def _answer_with(self, velocity_change: np.ndarray, dt: float) -> None:
-        """Add what is given on the faces of the window to the velocity, and the last ``potential``, which answers it.
+        """Add a velocity change on the faces of the window, and the response of the water to it.
 
-        The sides are left as they are.
+        The response is the last ``potential``. The sides are not changed.
+
+        Args:
+            velocity_change: shape (axis, ...) [m/s].
+            dt: length of the step [s].
         """
         solution, z, unity, zero = self._x, self._level_view(multigrid.X), self.dtype(1), self.dtype(0)
         self.velocity[:, *self.here] += velocity_change.astype(self.dtype)
@@ -629,9 +746,12 @@ class Fluid:
         return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.axes)) for end in (0, -1)]
 
     def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
-        """Return the acceleration into the domain that ``potential``'s last answer induces on each side [m/s^2].
+        """Return the acceleration into the domain that the last ``potential`` induces on each side [m/s^2].
 
-        Takes what ``potential`` took. Empty if the domain is bounded.
+        The list is empty if the domain is bounded.
+
+        Args:
+            acceleration: argument of that ``potential``.
         """
         if self.border.water is None:
             return []
@@ -641,7 +761,11 @@ class Fluid:
         return [s - m * level for m, s in zip(moves, sides, strict=True)]
 
     def _gained(self, acceleration: np.ndarray) -> np.ndarray:
-        """Return the acceleration of the water in ``potential``'s last answer, shape (axis, ...) [m/s^2]."""
+        """Return the acceleration of the water by the last ``potential``, shape (axis, ...) [m/s^2].
+
+        Args:
+            acceleration: argument of that ``potential``, on the faces of the window.
+        """
         slices, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
         for c, work in enumerate(gained):
             axis = self.axes - 1 - c
@@ -650,7 +774,17 @@ class Fluid:
         return gained
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
-        """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
+        """Solve the pressure equation for the right side of the finest level.
+
+        Args:
+            limits: mean and largest residual at which the iteration stops.
+
+        Returns:
+            statistics of the solve, and the factors of the two arrays of the solution; see ``poisson.solve``.
+
+        Raises:
+            NotConverged: the residual is above ``STUCK`` times its limit.
+        """
         *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
             self.repeats, self._sums, *limits, self.least, MOST_CYCLES,
