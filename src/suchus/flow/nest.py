@@ -30,30 +30,31 @@ from suchus.flow.sides import NAMES, Side, Sides
 from suchus.flow.water import Fluid, PlannedStage
 
 MARGIN = 4
-"""Coarse cells that a patch keeps from the sides of the domain that it does not share [-]: what is read around it must
-lie inside."""
+"""Coarse cells between a patch and a side of the domain that it does not share, at least [-]. The stencil around the
+patch must lie inside the domain."""
 
 CLEAR = 2
-"""Coarse cells that the surroundings of a body keep from the patch's sides [-]: as far inside lie the velocities that
-those around the patch are read from, and they are not to be a body's."""
+"""Coarse cells between the window of a body and the patch's sides, at least [-]. The stencil around the patch reads
+velocities that far inside, which must not be those of a body."""
 
 NOT_HELD = 1e-6
-"""Share of a coarse cell by which a patch may lie off the coarse cells [-]: what rounding leaves."""
+"""Deviation of a patch from the coarse cells that counts as rounding, over a coarse cell [-]."""
 
 TIGHTER = 0.25
-"""Share of the divergence that fine cells may keep which the coarse ones may [-]. What they keep reaches the patch as a
-flux through its sides, other in every step: with all of it the force on a cylinder that oscillates, of 32 cells a
-diameter in cells of twice the size, shakes by 0.35 % of its rms, with a quarter by 0.1 %."""
+"""Limit of the divergence of the coarse cells, over that of the fine ones [-]. The coarse residual reaches the patch as
+a flux through its sides, which changes from step to step. With a ratio of 1, the force on an oscillating cylinder of 32
+fine cells a diameter, with coarse cells of twice the size, fluctuates by 0.35 % of its rms; with 0.25, by 0.1 %."""
 
 LEFT = 0.05
-"""Largest share of what the two pressures differ by along the patch's sides that a multigrid cycle leaves [-]."""
+"""Largest residual of the pressure difference along the patch's sides after one multigrid cycle, over the difference
+before it [-]."""
 
 _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wall_offset``
 
 
 @dataclass(frozen=True, slots=True)
 class Beyond(Side):
-    """Where a patch ends and the coarser cells go on."""
+    """The side of a patch beyond which the coarser cells continue."""
 
     ends: ClassVar[bool] = False
 
@@ -227,18 +228,18 @@ def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ign
 
 
 class Around(NamedTuple):
-    """What one component of the velocity around a patch is read by; see ``_read``."""
+    """Interpolation stencil of one velocity component around a patch; see ``_interpolate``."""
 
     places: np.ndarray
-    """Where its values belong in the patch, flat."""
+    """Flat indices of the values in the padded patch."""
     runs: np.ndarray
-    """Their runs along the rows."""
+    """Runs of consecutive values along the rows."""
     first: np.ndarray
-    """First coarse places."""
+    """First coarse index of a box."""
     weights: np.ndarray
     """Weights of the coarse values."""
     taps: np.ndarray
-    """Coarse places of a box along each axis."""
+    """Coarse values of a box along each axis."""
 
 
 def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
@@ -255,7 +256,7 @@ def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 
 class Rim:
-    """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
+    """Interpolation of the velocity around a patch from the coarser water, on its sides and beyond them."""
 
     def __init__(self, patch: Grid, coarse_grid: Grid, sides: Sides, dtype: type) -> None:
         """Prepare the interpolation stencil of each velocity component.
@@ -332,7 +333,9 @@ class Rim:
 
 
 class Nested(Fluid):
-    """The water on a patch of fine cells, and around it on coarser ones; what it shows as a ``Fluid`` is the patch.
+    """The water on a patch of fine cells and on the coarser cells around it.
+
+    Its fields as a ``Fluid`` are those of the patch.
 
     Attributes:
         coarse: the water on the whole domain, which inside the patch holds means over the fine cells.

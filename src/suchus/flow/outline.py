@@ -1,5 +1,5 @@
 # ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
-"""Rigid shapes of any outline: polygons, and whatever a signed distance says."""
+"""Rigid shapes of any outline: polygons, and shapes defined by a signed distance."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,11 +14,11 @@ from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Solid, positive
 
-_STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
+_STEPS = 200  # steps per size of a body with which its outline is traced
 _MIN_EXACT_FRACTION = 0.9  # fraction of an outline on which the gradient of a true distance is 1; corners are the rest
 _GRADIENT_TOLERANCE = 0.02  # deviation of such a gradient from 1
 _MIN_GRADIENT_QUANTILE = 0.01  # quantile of the gradient that bounds it from below: at corners it is a mean
-_SUBDIVISIONS = 8  # points that are then put in each step
+_SUBDIVISIONS = 8  # points per step after the refinement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -152,7 +152,7 @@ def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
     if is_count and len(counts) in (1, 2) and sum(counts) == len(corners) and all(len(row) == 2 for row in corners):
         if len(counts) == 1:
             return corners
-        # two surfaces, both from the nose on, which they share
+        # two surfaces, both from the nose on, which may be in both
         upper_count = int(counts[0])
         return corners[:upper_count][::-1] + corners[upper_count + (corners[0] == corners[upper_count]) :]
     for row in rows:
@@ -184,8 +184,8 @@ class Implicit(Solid):
     """
 
     sdf: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    """Signed distance to the surface at points (x, y) [m], negative inside; or, of another gradient than 1 on the
-    surface, anything that is 0 there and rises outward, which is divided by its gradient."""
+    """Signed distance to the surface at points (x, y) [m], negative inside. A function with another gradient is divided
+    by its gradient: it must be 0 on the surface and rise outward."""
     box: tuple[float, float, float, float]
     """A rectangle around the body: x0, x1, y0, y1 [m]."""
     _ring: np.ndarray = field(init=False, repr=False)
@@ -214,7 +214,7 @@ class Implicit(Solid):
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
-        flat = size < 1e-3 * self._step * (self._min_gradient or 1.0)  # in the very middle: any direction will do
+        flat = size < 1e-3 * self._step * (self._min_gradient or 1.0)  # at the centre any direction is right
         safe = np.where(flat, 1.0, size)
         if self._min_gradient is not None:
             value = value / np.maximum(size / (2 * self._step), self._min_gradient)

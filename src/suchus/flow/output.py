@@ -107,10 +107,10 @@ def _vti(sim: Fields) -> bytes:
 
 @dataclass(slots=True)
 class FieldSeries:
-    """Fields at chosen times of a run, in a file: ``simulation.run(..., watch=series)``.
+    """Writes the fields at chosen times of a run to a file: ``simulation.run(..., watch=series)``.
 
-    Each is written as soon as it is reached, at the end of the first step from its time on; a run that is killed keeps
-    what it had, and one that goes on from a checkpoint adds to it.
+    Each entry is written at the end of the first step from its time on. A run that is killed keeps its entries, and a
+    run that continues from a checkpoint appends to them.
 
     Raises:
         InvalidDesign: on creation, for times that do not rise or a file that is neither .nc nor .pvd.
@@ -141,7 +141,7 @@ class FieldSeries:
             Unwritable: naming the place.
             UnreadableFile: a file of that name holds something else.
         """
-        if not np.isfinite(self._last_time):  # those before this run were written by the one that it goes on from
+        if not np.isfinite(self._last_time):  # a continued run does not repeat earlier times
             started = sim.time - (sim.record.step[-1] if sim.record.step.size else 0.0)
             if started > 0:
                 self._next_index = sum(time <= started * (1 + 1e-12) for time in self.times)

@@ -18,16 +18,17 @@ from suchus.flow.slab import NONE, row_length, strides_like
 from suchus.flow.stencil import copy_slab, first_steps, relax_patch, weights
 
 ONE, TWO, RIGHT, INVERSE, FACES = range(5)
-"""What ``room[kind]`` holds: solution, its second copy, right side, inverse diagonal, and from there on face
-coefficients."""
+"""Kinds of values in the buffer: solution, its second copy, right side, inverse diagonal, and the face coefficients of
+each axis."""
 
 RIM = 8, 2
-"""Cells around a window that its patch takes in, in the plane and in space: the patch's rim jumps, and near a tail's
-end that must not be seen. In space 8 would make the patches of the coarser levels as large as the levels [-]."""
+"""Cells around a window that its patch includes, in the plane and in space [-]. The solution jumps at the edge of the
+patch, which must not be near the end of a thin tail. In space, 8 cells would make the patches of the coarser levels as
+large as the levels."""
 
 EXTRA = (6,), (6, 3, 1, 0)
-"""Pairs of smoothing steps in the patches, before and after, in the plane and in space, from the finest level on; the
-last number is that of all further levels. There the coefficients vary [-]."""
+"""Pairs of smoothing steps in the patches, before and after the coarse-grid correction, in the plane and in space, from
+the finest level on [-]. The last number holds for all further levels."""
 
 
 def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:

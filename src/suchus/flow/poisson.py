@@ -19,19 +19,21 @@ from suchus.flow.slab import EDGE, LEAST, block_of, row_count, row_length
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
 PARALLEL = 1e-3
-"""Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
+"""Ratio of (z, A z) after to before z is made orthogonal to the last direction, below which z is not changed [-]."""
 
 WORSE = 3.0
-"""Growth of the residual over the smallest so far at which a solve that is ``NEARLY`` done drops the iteration [-]."""
+"""Ratio of the residual to the smallest so far above which a nearly converged solve drops the iteration [-]; see
+``NEARLY``."""
 
 STALLED = 3
-"""Cycles without progress after which rounding, not the residual, is what is left [-]."""
+"""Cycles without progress after which a nearly converged solve stops, because rounding prevents a smaller residual
+[-]."""
 
 NEARLY = 10.0
-"""Residual over its limit below which that many cycles count [-]; farther off, a body hinders the cycles, and ..."""
+"""Ratio of the residual to its limit below which a solve is nearly converged [-]."""
 
 PATIENCE = 15
-"""... so many may pass [-]."""
+"""Cycles without progress after which a solve stops that is not nearly converged [-]: a body slows down the cycles."""
 
 
 @part
@@ -303,14 +305,14 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
 
 @dataclass(slots=True)
 class Solve:
-    """How one pressure solve went."""
+    """Statistics of one pressure solve."""
 
     cycles: int
     """Iterations [-]."""
     mean: float
-    """Mean divergence left over [m/s per cell]."""
+    """Mean of the remaining divergence [m/s per cell]."""
     largest: float
-    """Largest divergence left over [m/s per cell]."""
+    """Largest remaining divergence [m/s per cell]."""
 
 
 def levels(cells: tuple[int, ...]) -> np.ndarray:

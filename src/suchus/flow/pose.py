@@ -1,4 +1,4 @@
-"""Where a body is and how it moves: a pose, and motions that give a pose at every time."""
+"""Pose of a body, and motions: functions that return a pose for every time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 
 TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
-"""For each axis of turning of a grid with so many axes, the first and the second axis that lie across it."""
+"""The planes of rotation for 2 and 3 axes: for each rotation axis, the first and the second axis of its plane."""
 
 
 def cross(
@@ -47,12 +47,12 @@ def speeds(velocity: np.ndarray) -> np.ndarray:
 class Pose:
     """Position, attitude and their rates of a body's own frame.
 
-    In space the three angles are yaw, pitch and roll, which follow each other about the body's own axes
-    (``suchus.core.rotation``), and the three spins the angular velocity about the axes of the world.
+    In space the three angles are yaw, pitch and roll, which are successive rotations about the body's own axes
+    (``suchus.core.rotation``). The three spins are the angular velocity about the axes of the world.
     """
 
     position: tuple[float, ...] = (0.0, 0.0)
-    """Origin of the body's frame (x, y) or (x, y, z); without it, z is 0 in space [m]."""
+    """Origin of the body's frame, (x, y) or (x, y, z); two numbers in space mean z = 0 [m]."""
     angle: float = 0.0
     """Angle of the body's x axis, counter-clockwise about z: the yaw [rad]."""
     velocity: tuple[float, ...] = (0.0, 0.0)
@@ -186,7 +186,7 @@ class Pose:
 
 
 Motion = Callable[[float], Pose]
-"""A pose at every time [s]."""
+"""Pose as a function of the time [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

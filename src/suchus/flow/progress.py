@@ -1,4 +1,4 @@
-"""A progress line for long runs: how far, how many cells per second, how long still."""
+"""A progress bar for long runs: time reached, cells per second, remaining time."""
 
 from time import monotonic
 from types import TracebackType
@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 _QUIET = 2.0
-"""Wall-clock time before anything is shown [s]."""
+"""Wall-clock time before the bar appears [s]."""
 
 
 class Bar:

@@ -21,7 +21,7 @@ class Sample:
     velocity: np.ndarray
     """Velocity along each axis, shape (point, axis) [m/s]."""
     pressure: np.ndarray
-    """Pressure, zero on the average along the sides of the domain, shape (point,) [Pa]."""
+    """Pressure, whose mean along the sides of the domain is zero, shape (point,) [Pa]."""
 
 
 def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.ndarray:
@@ -57,7 +57,7 @@ def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) ->
     local = positions - frame[0]
     _check(water.layers[-1].grid, positions, local, frame[0])
     pressure, velocity = np.empty(len(positions)), np.empty((axes, len(positions)))
-    for layer in reversed(water.layers):  # what the finest has at a point counts
+    for layer in reversed(water.layers):  # the finest layer that holds a point counts
         indices = np.flatnonzero(_is_inside(layer.grid, local))
         places, steps = padded(local[indices].T, layer.grid), steps_of(layer.p)
         values = np.empty(len(indices))
@@ -108,12 +108,12 @@ class _Probed(Protocol):
 
 
 Place = np.ndarray | Callable[[float], np.ndarray]
-"""Points of shape (point, axis) [m], or those for every time [s]."""
+"""Points of shape (point, axis) [m], or a function of the time [s] that returns them."""
 
 
 @dataclass(slots=True)
 class Rake:
-    """Points at which velocity and pressure are noted during a run: ``simulation.run(..., watch=rake)``.
+    """Samples velocity and pressure at points during a run: ``simulation.run(..., watch=rake)``.
 
     Raises:
         InvalidDesign: in the run, if a point leaves the domain.
@@ -122,7 +122,7 @@ class Rake:
     points: Place
     """Positions of the points; a function of time for a rake that travels [m]."""
     every: float | None = None
-    """Interval of the notes [s]; None notes after every step."""
+    """Interval of the samples [s]; None samples after every step."""
     _times: list[float] = field(default_factory=list)
     _samples: list[Sample] = field(default_factory=list)
     _due: float = 0.0

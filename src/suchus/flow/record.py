@@ -1,4 +1,4 @@
-"""What a simulation tells: one row per time step."""
+"""The record of a simulation: one row for each time step."""
 
 from dataclasses import dataclass, field
 from math import isfinite
@@ -12,11 +12,8 @@ COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
     "spin", "force_x", "force_y", "layer_error",
 )  # fmt: skip
-"""Values kept of each body at each step, in the order of the last axis of ``Record.bodies``.
-
-``layer_error`` is the estimated error of the force, over the force, by the cells across the boundary layer; see
-``resolution``.
-"""
+"""Quantities of each body at each step, in the order of the last axis of ``Record.bodies``. ``layer_error`` is the
+estimated relative error of the force, see ``resolution``."""
 
 SPACE_COLUMNS = (
     "torque_x", "torque_y", "torque", "power", "x", "y", "z", "angle", "pitch", "roll", "velocity_x", "velocity_y",
@@ -48,14 +45,14 @@ HEAD = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coefficients:
-    """Force, torque and power of a body over those of a reference, means over the steps, each of shape (step,) [-]."""
+    """Force, torque and power of a body over those of a reference, mean over each step, each of shape (step,) [-]."""
 
     time: np.ndarray
-    """Middles of the steps, which the means belong to, shape (step,) [s]."""
+    """Times in the middle of the steps, to which the means belong, shape (step,) [s]."""
     drag: np.ndarray
     """Force along the stream over ``density speed^2 length / 2``, in space with the area for the length."""
     lift: np.ndarray
-    """Force across it, a quarter turn counter-clockwise from the drag, over the same."""
+    """Force across the stream, a quarter turn counter-clockwise from the drag, over the same reference."""
     moment: np.ndarray
     """Torque, counter-clockwise, over ``density speed^2 length^2 / 2``."""
     power: np.ndarray
@@ -75,7 +72,7 @@ class Record:
     cycles: np.ndarray
     """Multigrid cycles of the first and the last pressure solve of each step, shape (step, 2) [-]."""
     divergence: np.ndarray
-    """Largest divergence left over, in fastest speed per cell, shape (step,) [-]."""
+    """Largest remaining divergence, over the fastest speed per cell, shape (step,) [-]."""
     bodies: np.ndarray
     """The ``columns`` of each body, shape (step, body, column); see ``units``."""
     columns: tuple[str, ...] = COLUMNS

@@ -40,13 +40,13 @@ ALONG_THE_SKIN = (
     f"both together are {100 * SKIN_SPHERE[0]:.0f} to {SKIN_SPHERE[1]:.0%} low with 16 to 8 cells a diameter. Forces "
     "from the momentum exchanged are not."
 )
-"""What is known of the error of ``Surface`` and ``Record.surface_force``, to stand beside each plot of them."""
+"""Statement of the error of ``Surface`` and ``Record.surface_force``, for the caption of each plot of them."""
 
 REFUSED = 0.2
-"""Estimated error of the force from which a grid is refused [-]."""
+"""Estimated relative error of the force above which a grid is refused [-]."""
 
 DOUBTED = 0.1
-"""Estimated error of the force from which a warning is given [-]."""
+"""Estimated relative error of the force above which a warning is issued [-]."""
 
 _ERROR_AT_ONE_CELL, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
 

@@ -20,7 +20,7 @@ from suchus.flow.compiled import part
 from suchus.flow.grid import check_kinds
 
 TRIED = -1.0, 0.0, 3.0
-"""Uniform velocities that a scheme has to carry on as they are [m/s]."""
+"""Uniform velocities that a scheme must preserve [m/s]."""
 
 
 @part
@@ -62,8 +62,8 @@ class Scheme:
     """An advection scheme."""
 
     face: Callable[..., Any]
-    """Function of the velocities at the nodes two before, before and behind a face [m/s], as the water comes: that on
-    the face. It is compiled by numba; ``type(centre)(0.5)`` is a half in the precision of the fields."""
+    """Function that returns the velocity on a face [m/s] from three nodes: the second and the first upstream of it, and
+    the one downstream. It is compiled by numba; ``type(centre)(0.5)`` is a half in the precision of the fields."""
 
     def __post_init__(self) -> None:
         check_kinds(self)
@@ -96,10 +96,10 @@ class Scheme:
 
 
 QUICK = Scheme(limited_quick.py_func)
-"""Limited QUICK: of third order where the flow is smooth, without new extremes."""
+"""Limited QUICK: third order where the flow is smooth, without new extremes."""
 
 CENTRAL = Scheme(central)
-"""Central differences: of second order."""
+"""Central differences: second order."""
 
 UPWIND = Scheme(upwind)
-"""First-order upwind: to see what false diffusion is."""
+"""First-order upwind, to demonstrate numerical diffusion."""

@@ -19,13 +19,13 @@ X, Y, HEADING, WIDE, X_RATE, Y_RATE, TURN, HIGH, SWELL, ARC = range(10)
 """Rows of the stations: those of ``MidlineState.rows``, then half-height, rate of the half-width, and arc length."""
 
 PAINTED = 8
-"""Values painted at each point: distance, normal (3), velocity (2), thickness, which part of the body [-]."""
+"""Fields at each point: distance, normal (3), velocity (2), thickness, index of the body's part [-]."""
 
 _STRIDE = 4
-"""Stations from one to the next of those that the nearest one is looked for among first [-]."""
+"""Stride of the first, coarse search for the nearest station [-]."""
 
 _MIN_HALF_AXIS = 1e-9
-"""Half-axis, over the cell, below which a section is taken for a point [-]."""
+"""Half-axis, over the cell, below which a section counts as a point [-]."""
 
 
 @part

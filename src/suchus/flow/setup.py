@@ -1,4 +1,4 @@
-"""What is to be simulated: grid, water, sides and bodies, checked before anything runs."""
+"""The setup of a simulation: grid, water, sides and bodies, checked before anything runs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -25,12 +25,12 @@ from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 
 LAYER_CELLS = needed(REFUSED)
-"""Fewest cells across a boundary layer of thickness L / sqrt(Re), of a body that is not blunt and in space [-]."""
+"""Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
 
 
 LOOSEST = 0.01
-"""Greatest tolerance [-]: with it the drag of a cylinder at Reynolds number 40 shakes from step to step by 4 %, with a
-tenth of it by 0.2 %."""
+"""Greatest tolerance [-]. With it, the drag of a cylinder at Reynolds number 40 fluctuates from step to step by 4 %;
+with a tenth of it, by 0.2 %."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,46 +38,48 @@ class Setup:
     """A flow to be simulated.
 
     Raises:
-        InvalidDesign: on creation, for values that cannot be or that the grid cannot carry.
+        InvalidDesign: on creation, for values that are impossible or that the grid cannot resolve.
     """
 
     grid: Grid
-    """The cells, or of a patch in coarser ones the fine cells around the bodies; see ``Grid.patch``."""
+    """The cells of the domain; with ``around``, the fine cells of a patch around the bodies, see ``Grid.patch``."""
     around: Grid | None = None
-    """Coarser cells of the whole domain, in which ``grid`` is a patch; None lets ``grid`` be the whole domain."""
+    """Coarse cells of the whole domain, in which ``grid`` is a patch; None if ``grid`` is the whole domain."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
     density: float = 1.0
-    """Density of the water, 1 unless it is given: forces then come in units of speed squared times length [kg/m^3]."""
+    """Density of the water [kg/m^3]. With the default of 1, forces are in units of speed squared times length."""
     stream: tuple[float, float] | tuple[float, float, float] | Callable[[float], tuple[float, ...]] = (0.0, 0.0)
-    """Velocity of the far water (x, y) or (x, y, z), fixed or for every time; without it, that along z is 0 [m/s]."""
+    """Velocity of the far water, (x, y) or (x, y, z), constant or a function of the time; two numbers in space mean no
+    velocity along z [m/s]."""
     start: Callable[..., Sequence[np.ndarray]] | None = None
-    """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m], arrays of one
-    shape; None is that of the far stream. The first step takes out what it has of divergence [m/s]."""
+    """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m] that returns
+    arrays of their shape; None is that of the far stream. The first step removes its divergence [m/s]."""
     sides: Sides = field(default_factory=Sides)
-    """What happens on the sides of the domain."""
+    """Boundary conditions on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
     contact: BodyContact | None = None
-    """Force between bodies that nearly touch; None lets them run into each other."""
+    """Force between bodies that nearly touch; None lets them overlap."""
     follow: str | None = None
-    """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
+    """Name of the body with whose centre the grid travels; None fixes the grid."""
     follow_axes: tuple[bool, bool] | tuple[bool, bool, bool] = (True, True)
-    """Whether the grid travels along x, y (and z); along z it stays if that is not given."""
+    """Whether the grid travels along x, y (and z); two entries in space mean that it does not travel along z."""
     scheme: Scheme = QUICK
-    """What carries the water's velocity on: limited QUICK, ``CENTRAL``, ``UPWIND`` or one of your own."""
+    """Advection scheme: limited QUICK, ``CENTRAL``, ``UPWIND`` or your own."""
     integrator: Integrator = HEUN
-    """How a step is taken: Heun's method, ``SHU_OSHER``, ``EULER`` or one of your own."""
+    """Time integrator: Heun's method, ``SHU_OSHER``, ``EULER`` or your own."""
     courant: float = 0.8
-    """Share of a cell that the water may cross in one step [-]."""
+    """Courant number: distance that the water crosses in one step, over a cell [-]."""
     step: float | None = None
     """Fixed time step, or None to choose it from ``courant`` [s]."""
     tolerance: float = 1e-5
-    """Mean divergence left over, in fastest speed per cell; the largest may be ten times that [-]."""
+    """Limit of the mean divergence, over the fastest speed per cell; the limit of the largest divergence is ten times
+    that [-]."""
     precision: Literal["single", "double"] = "single"
     """Precision of the fields; sums are always double."""
     coarse: bool = False
-    """Whether a Reynolds number that the grid cannot carry is let through, without a warning."""
+    """Whether a Reynolds number that the grid cannot resolve is allowed, without a warning."""
 
     def __post_init__(self) -> None:
         """Check all values and their combinations."""
@@ -117,7 +119,7 @@ class Setup:
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
-        if self.scheme != QUICK:  # what is tried is compiled
+        if self.scheme != QUICK:  # the check compiles the scheme
             self.scheme.check()
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]

@@ -21,7 +21,7 @@ from suchus.flow.pose import Pose
 
 @dataclass(slots=True)
 class Field:
-    """What a body says about the points of a window, each array of shape (y, x)."""
+    """Distance, normal and velocity of a body at the points of a window, each array of shape (y, x)."""
 
     distance: np.ndarray
     """Signed distance to the surface, negative inside [m]."""
@@ -30,13 +30,13 @@ class Field:
     normal_y: np.ndarray
     """Outward normal along y [-]."""
     velocity_x: np.ndarray
-    """Velocity of the body, carried on smoothly a few cells into the water, along x [m/s]."""
+    """Velocity of the body along x, extended smoothly a few cells into the water [m/s]."""
     velocity_y: np.ndarray
-    """The same along y [m/s]."""
+    """Velocity of the body along y, extended likewise [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
     part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
+    """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
     @property
     def normal(self) -> tuple[np.ndarray, ...]:
@@ -95,7 +95,7 @@ class Shape(ABC):
 
 
 _COARSE_POINTS, _MIN_POINTS = 256, 32
-"""Points by which the length of an outline is found, and those that markers are made of, at least [-]."""
+"""Points with which the length of an outline is measured, and fewest points of the markers [-]."""
 
 
 def positive(name: str, value: float) -> None:
@@ -113,7 +113,7 @@ def positive(name: str, value: float) -> None:
 
 
 class Solid(Shape):
-    """A rigid shape: says its distance and outline in its own frame, and the pose does the rest."""
+    """A rigid shape, defined by its distance and outline in its own frame; the pose is applied here."""
 
     @abstractmethod
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -15,71 +15,74 @@ from suchus.flow.grid import check_kinds
 
 
 class Side:
-    """A kind of side of the domain: as it stands, a wall without friction.
+    """A kind of side of the domain; this base class is a wall without friction.
 
-    A subclass says what is otherwise. Its methods are asked in every step, for the time at the step's end.
+    A subclass overrides what differs. Its methods are called in every step, for the time at the end of the step.
     """
 
     __slots__ = ()
 
     passes: ClassVar[bool] = False
-    """Whether water can go through the side; what is through it must leave by a side that ``opens``."""
+    """Whether water can go through the side; water that enters must leave by a side that ``opens``."""
     opens: ClassVar[bool] = False
-    """Whether as much water goes through as the others leave over, and the side's place does not count."""
+    """Whether the flow through the side balances that through the others; the position of such a side is arbitrary."""
     ends: ClassVar[bool] = True
-    """Whether the domain ends here; beyond the side of a patch it may go on in coarser cells."""
+    """Whether the domain ends here; beyond the side of a patch it may continue in coarser cells."""
     travels: ClassVar[tuple[bool, bool]] = False, True
-    """Whether a grid that travels may take the side along: across it, and along it."""
+    """Whether the side may travel with the grid: across itself, and along itself."""
 
     def into(self, time: float, *places: np.ndarray) -> np.ndarray | float:
-        """Return the velocity into the domain [m/s], a number or one for each place; asked if the side ``passes``.
+        """Return the velocity into the domain, a number or one for each point [m/s].
+
+        It is called only if the side ``passes``.
 
         Args:
-            time: when [s].
+            time: time [s].
             places: coordinates along the side, of one axis in the plane and of two in space, in the order x, y, z [m].
         """
         del time, places
         return 0.0
 
     def along(self, time: float, axes: int) -> tuple[float, ...] | None:
-        """Return the velocity of what the water sticks to, along the other axes [m/s]; None without friction.
+        """Return the velocity of the wall along the other axes [m/s]; None without friction.
 
         Args:
-            time: when [s].
+            time: time [s].
             axes: of the domain, 2 or 3.
         """
         del time, axes
         return None
 
     def carries(self, outward: float) -> float:
-        """Return the share of a step in which the water that comes is carried out [-].
+        """Return the fraction of a step in which the arriving water is carried out [-].
 
         Args:
-            outward: what share of the far stream's speed is across the side, positive outward [-].
+            outward: outward velocity of the far stream across the side, over its speed [-].
         """
         del outward
         return 0.0
 
 
 _LEAVES = 0.2, 0.4
-"""Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
+"""Outward velocity of the far stream, over its speed, at which a Stream side begins to carry the wake out, and at which
+it does so fully [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stream(Side):
-    """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""
+    """Open water that moves with the far stream; where the stream leaves, it carries the wake out."""
 
     unbounded: bool = True
-    """Whether, if all four sides are such, they also move as the flow moves there in an unbounded domain
-    (``openwater``, in space ``farfield``); False prescribes the far stream itself, which the body's displacement then
-    cannot widen. In space some of the six may be a Mirror."""
+    """Whether the sides, if all are such, move with the flow in an unbounded domain (``openwater``, in space
+    ``farfield``). False prescribes the far stream itself, so that the displacement of a body cannot widen it. In space
+    some of the six may be a Mirror."""
 
     passes: ClassVar[bool] = True
     opens: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
     def carries(self, outward: float) -> float:
-        """Return the share of a step, which rises with the speed at which the far stream leaves here; see ``Side``."""
+        """Return the fraction, which rises with the outward velocity of the far stream; see ``Side``."""
         return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
 
 
@@ -90,7 +93,7 @@ class Slip(Side):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wall(Side):
-    """A wall that the water sticks to."""
+    """A wall with friction."""
 
     speed: float | tuple[float, float] = 0.0
     """Speed of the wall along itself, toward +x or +y; in space a pair along the other two axes, in the order x, y, z
@@ -109,8 +112,8 @@ class Inflow(Side):
     """Water that enters with a given profile."""
 
     profile: Callable[..., np.ndarray]
-    """Velocity into the domain [m/s] over the coordinate along the side [m]; in space over both, in the order x, y, z,
-    given as two arrays of the same shape."""
+    """Velocity into the domain [m/s] as a function of the coordinate along the side [m]; in space of both, two arrays
+    of one shape in the order x, y, z."""
 
     passes: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = False, False
@@ -128,7 +131,7 @@ class Inflow(Side):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outflow(Side):
-    """Where the water leaves; what it carries goes out with the mean speed."""
+    """A side at which water leaves, carried out with the mean speed."""
 
     passes: ClassVar[bool] = True
     opens: ClassVar[bool] = True
@@ -149,9 +152,9 @@ class Periodic(Side):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mirror(Side):
-    """A plane of symmetry, in space: beyond it lies the image of what is inside.
+    """A plane of symmetry in space, beyond which the flow is mirrored.
 
-    A body may be cut by it, if its middle lies on it and stays there; what the record says is then of the whole body.
+    It may cut a body whose centre lies on it and stays there; the record is then that of the whole body.
     """
 
 

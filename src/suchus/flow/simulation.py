@@ -43,16 +43,16 @@ from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Fluid
 
 ADDED_EVERY = 8
-"""Steps after which a free body's added mass is computed anew [-]."""
+"""Steps between two computations of a free body's added mass [-]."""
 
 RATES_EVERY = 8
-"""Steps after which the rates of a bending body are compared with its positions anew [-]."""
+"""Steps between two comparisons of a bending body's rates with its positions [-]."""
 
 SLACK = 1.5
-"""Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
+"""Factor by which a moving body may exceed the speed that the grid resolves before the run stops [-]."""
 
 OFFSET_CHANGE = 1e-3
-"""Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
+"""Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
 def _remembering(body: AnyBody) -> AnyBody:
@@ -70,23 +70,24 @@ def _fastest_marker(markers: Markers) -> float:
 
 
 Watcher = Callable[["Simulation"], None]
-"""What looks at a simulation on its way."""
+"""Function that is called with the simulation during a run."""
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
 
 LANDING = 16
-"""Steps before the end of a run over which the time step is evened out, so that the last one is no jolt [-]."""
+"""Steps before the end of a run over which the time step is evened out, so that the last step is not much shorter
+[-]."""
 
 
 class Simulation(Fields):
-    """A flow that starts with the water moving like the far stream and goes on step by step.
+    """A flow that starts with the velocity of the far stream and advances step by step.
 
     Attributes:
         setup: what is simulated.
-        time: how far it has come [s].
+        time: time reached [s].
         water: velocity and pressure.
-        thin: per body, the share of its length that is thinner than the kernel: no water passes it, but its force is
-            noisy.
+        thin: for each body, the fraction of its length that is thinner than the kernel: no water passes it, but its
+            force is noisy.
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
@@ -152,7 +153,7 @@ class Simulation(Fields):
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
-            if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may turn in its place
+            if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may spin in place
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             consistencies.append(
                 Consistency(
@@ -494,7 +495,7 @@ class Simulation(Fields):
         self.water.place(self._bodies, poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
-        self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
+        self._placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -626,7 +627,7 @@ class Simulation(Fields):
 
 
 class _LatestStep(NamedTuple):
-    """What is known of a step that was taken."""
+    """Data of the last step."""
 
     dt: float
     """Its length [s]."""
@@ -637,7 +638,7 @@ class _LatestStep(NamedTuple):
     drift: np.ndarray
     """Mean velocity of the grid [m/s]."""
     contents_before: np.ndarray
-    """What the bodies' regions held when it began; see ``momentum.contents``."""
+    """Momentum in the bodies' regions at the start of the step; see ``momentum.contents``."""
 
 
 def _even_step(dt: float, remaining: float) -> float:

@@ -21,13 +21,13 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from suchus.flow.compiled import BLOCK, PAD, UNIT, part, unsigned
 
 EDGE = unsigned(PAD)
-"""``PAD``, as kernels count [-]."""
+"""``PAD`` as an unsigned integer, for the kernels [-]."""
 
 NONE = unsigned(0)
-"""Nothing, as kernels count [-]."""
+"""Zero as an unsigned integer, for the kernels [-]."""
 
 PLANES, LEAST = 16, 8
-"""Planes that one thread takes at a time, at most and, of a thin domain, at least [-]."""
+"""Planes that one thread takes at a time: the most, and the fewest in a thin domain [-]."""
 
 Strides = tuple[np.uint64, ...]
 """Strides along the axes of a slab [-]."""

@@ -1,7 +1,7 @@
 # ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
-"""Shapes of bodies in space: a signed distance, a normal and a velocity at points, and points spread over the skin.
+"""Shapes of bodies in space: a signed distance, a normal and a velocity at points, and markers over the skin.
 
-Distances are negative inside; normals point into the water. What a plane shape says, ``shape`` has.
+Distances are negative inside; normals point into the water. See ``shape`` for shapes in the plane.
 """
 
 from abc import ABC, abstractmethod
@@ -17,36 +17,37 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 
 _MIN_RINGS = 16
-"""Rings of points on a skin, at least [-]."""
+"""Fewest rings of markers on a skin [-]."""
 
 _RIM = 96
-"""Corners of the ellipse in the middle of a thin ellipsoid [-]."""
+"""Corners of the midsurface ellipse of a thin ellipsoid [-]."""
 
 _MAX_BLUNT_RATIO = 2.0
-"""Longest over shortest axis of a body up to which its drag on a grid is off as a sphere's is [-]."""
+"""Ratio of the longest to the shortest axis up to which the error of a body's drag is that of a sphere [-]."""
 
 _ROUND = 1e-3
-"""Length of that ellipse, over the smallest half-axis, below which the ellipsoid is taken for round there [-]."""
+"""Length of the midsurface ellipse, over the smallest half-axis, below which the ellipsoid counts as round there
+[-]."""
 
 
 INSIDE = 1e-9
-"""Depth over a shape's size from which a point of its skin lies inside another one [-]."""
+"""Depth, over a shape's size, from which a point of its skin counts as inside another shape [-]."""
 
 
 @dataclass(slots=True)
 class SpaceField:
-    """What a body says about the points of a window in space, arrays of shape (z, y, x)."""
+    """Distance, normal and velocity of a body at the points of a window in space, arrays of shape (z, y, x)."""
 
     distance: np.ndarray
     """Signed distance to the surface, negative inside [m]."""
     normal: tuple[np.ndarray, ...]
     """Outward normal, along each axis [-]."""
     velocity: tuple[np.ndarray, ...]
-    """Velocity of the body, carried on smoothly a few cells into the water, along each axis [m/s]."""
+    """Velocity of the body along each axis, extended smoothly a few cells into the water [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
     part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
+    """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
 
 class SpaceShape(ABC):
@@ -54,10 +55,10 @@ class SpaceShape(ABC):
 
     axes: ClassVar[int] = 3
     even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
-    """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
+    """Whether the planes through the origin across x, y and z are planes of symmetry."""
 
     jointed: ClassVar[bool] = False
-    """Whether its parts are rigid and turn against each other at joints."""
+    """Whether its parts are rigid and connected by joints."""
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:

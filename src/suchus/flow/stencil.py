@@ -16,7 +16,8 @@ WEIGHTS = (0.5617, 1.3896), (0.5695, 1.7319)
 and 1/3 to 2 [-]."""
 
 LANES = 16
-"""Numbers that a largest is kept of side by side: one alone is not vectorised, as it could hide a NaN [-]."""
+"""Partial maxima that are kept side by side, so that the loop is vectorised; a single maximum is not, because it could
+hide a NaN [-]."""
 
 
 @part

@@ -70,28 +70,28 @@ def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
 _CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "applied", "span", "steps")
 
 REPAID = 0.5
-"""Share of the momentum still owed that a step repays [-]; all at once rings."""
+"""Fraction of the momentum still owed that a step repays [-]; all at once excites oscillations."""
 
 MOST_ROUNDS = 40
-"""Rounds in which attitude and angular velocity at a step's end come to terms, at most [-]: each makes the error
-smaller by about the angle that the body turns in a step."""
+"""Most iterations in which attitude and angular velocity at the end of a step converge [-]. Each reduces the error by
+about the angle that the body turns in a step."""
 
 _RATE_TOLERANCE = 1e-14
-"""Change of the rates, over their size, at which they have [-]."""
+"""Relative change of the rates at which the iteration stops [-]."""
 
 
 @dataclass(slots=True)
 class Swimmer:
-    """A free body under way. Vectors are per degree of freedom, shape (3,) or (6,); in the plane per metre of depth."""
+    """State of a free body. Vectors are per degree of freedom, shape (3,) or (6,); in the plane per metre of depth."""
 
     body: FreeBody
-    """Which body."""
+    """The free body."""
     place: np.ndarray
     """Centre of mass and angle of the frame, in space its rotation vector [m, rad]."""
     rate: np.ndarray
     """Velocity of the centre, and angular momentum over the tensor of inertia [m/s, rad/s]."""
     go: np.ndarray
-    """Whether it may move in each degree of freedom."""
+    """Whether the body is free in each degree of freedom."""
     push: np.ndarray = field(init=False)
     """Acceleration in the last step [m/s^2, rad/s^2]."""
     load: np.ndarray = field(init=False)
@@ -101,13 +101,13 @@ class Swimmer:
     momentum: np.ndarray = field(init=False)
     """Momentum and angular momentum before the last step [kg/s, kg m/s; in space kg m/s, kg m^2/s]."""
     owed: np.ndarray = field(init=False)
-    """Momentum that the water and the other forces gave and the body has not got yet [kg/s, kg m/s]."""
+    """Momentum given by water and other forces that has not yet changed the body's motion [kg/s, kg m/s]."""
     applied: np.ndarray = field(init=False)
-    """Force and torque of all but the water in the last step [N/m, N]."""
+    """Force and torque in the last step, except those of the water [N/m, N]."""
     span: float = 0.0
     """Length of the last step [s]."""
     steps: int = 0
-    """Steps taken so far [-]."""
+    """Number of steps taken [-]."""
 
     def __post_init__(self) -> None:
         count = len(self.place)
@@ -252,7 +252,7 @@ class Swimmer:
         if contact is not None:
             outer = outer + contact
         rate = self.rate
-        for count in range(MOST_ROUNDS):  # in the plane the first is the last; in space it takes the attitude for fixed
+        for count in range(MOST_ROUNDS):  # one is exact in the plane; in space the first assumes a fixed attitude
             end_inertia = end_mass.inertia(matrix)
             inertia_change = end_inertia - start_inertia
             inertia_change[: self._axes] = 0
@@ -280,10 +280,10 @@ class Swimmer:
         guess: np.ndarray = self.load + self.added @ self.push
         if self.steps:
             self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
-        if self.steps > 1:  # the second step itself repays the jolt of the start
-            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
-            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
-            # added mass aside is ten times its own, sways several times too much.
+        if self.steps > 1:  # the second step compensates the sudden start by itself
+            # The force of the last step is one step late. The missing momentum is repaid gradually. Otherwise an eel,
+            # whose lateral added mass is ten times its own mass, sways several times too much. An extrapolation of the
+            # force would instead amplify its fluctuations.
             guess = guess + REPAID * self.owed / dt
         return guess
 

@@ -16,7 +16,7 @@ from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import SpaceField, SpaceShape
 
 _MIN_POINTS = 12
-"""Points around a section, at least [-]."""
+"""Fewest points around a section [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,12 +33,11 @@ class Trunk(SpaceShape):
     even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
 
     spine: Callable[[float], MidlineState]
-    """The midline at every time, with the half-widths in the plane [s]."""
+    """The midline as a function of the time [s], with the half-widths in its plane."""
     half_height: np.ndarray
-    """Half of the height across the plane at the stations, shape (station,) [m]."""
+    """Half of the height across the plane at each station, shape (station,) [m]."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
-    [m]."""
+    """Arc lengths from the first station that divide the body into the parts of ``Record.along`` [m]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
 

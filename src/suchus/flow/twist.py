@@ -17,18 +17,18 @@ from suchus.flow.pose import TURNS
 from suchus.flow.water import Fluid
 
 SOLVED = 1e-4
-"""Mean divergence that ``accelerate`` leaves over, relative to the largest change of a body's velocity [-]."""
+"""Limit of the mean divergence in ``accelerate``, over the largest change of a body's velocity [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Twists:
-    """Rigid motions of parts, one a row: velocities, or what is added to them.
+    """Rigid motions of parts, one a row: velocities, or changes of velocity.
 
-    A body that is not divided is one part; one that bends is as many rigid pieces as it has parts.
+    A body that is not divided is one part. A bending body is approximated by as many rigid pieces as it has parts.
     """
 
     about: np.ndarray
-    """Points of the parts that ``linear`` is the velocity of, in the frame of the grid, shape (part, axis) [m]."""
+    """Reference points of the parts, whose velocity is ``linear``, in the frame of the grid, shape (part, axis) [m]."""
     linear: np.ndarray
     """Velocities of these points, shape (part, axis) [m/s]."""
     angular: np.ndarray
@@ -80,18 +80,18 @@ def joined(twists: Sequence[Twists]) -> Twists:
 
 
 class HeldFaces(NamedTuple):
-    """Faces across one axis that the bodies hold in part, each array of shape (face,) but for the points."""
+    """Faces across one axis that belong to the bodies in part; arrays of shape (face,) except for the points."""
 
     place: np.ndarray
-    """Which of the window's faces they are, counted in the order of its array [-]."""
+    """Flat indices of the faces in an array of the window [-]."""
     row: np.ndarray
-    """Part that each belongs to [-]."""
+    """Part to which each face belongs [-]."""
     points: np.ndarray
-    """Their middles, in the frame of the grid, shape (axis, face) [m]."""
+    """Centres of the faces in the frame of the grid, shape (axis, face) [m]."""
     held: np.ndarray
-    """Share of each that moves with the body, ``1 - mu0`` [-]."""
+    """Fraction of each face that moves with the body, ``1 - mu0`` [-]."""
     closed: np.ndarray
-    """Share that the pressure does not act on, ``1 - passage`` [-]."""
+    """Fraction of each face on which the pressure does not act, ``1 - passage`` [-]."""
 
 
 def held_faces(water: Fluid) -> list[HeldFaces]:
@@ -179,7 +179,7 @@ def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
     sums = np.zeros_like(water.given)
     corner = np.array(water.grid.origin)
     lever = replace(twists, about=twists.about - corner)
-    # half of the step's mean velocity is new, of all that was given before
+    # the mean velocity of the step changes by half of the velocity change, which acts on the previous sums too
     previous_sums, spin = water.given, h * twists.angular
     sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
     sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)

@@ -12,16 +12,16 @@ from suchus.flow.sides import Stream
 from suchus.flow.water import Fluid
 
 EVERY = 256
-"""Steps after which the sides are looked at, and at a run's end [-]."""
+"""Steps between two checks of the sides; they are also checked at the end of a run [-]."""
 
 STRONG = 0.05
-"""Vorticity at a side, over the largest in the domain, that is too strong for the side to be held [-]."""
+"""Vorticity at a fixed side, over the largest in the domain, above which a warning is issued [-]."""
 
 SHARED = 0.5
-"""Depth from which two bodies lie in each other [cells]: what a grid hardly tells from bodies that touch."""
+"""Depth above which two bodies overlap [cells]; the grid hardly distinguishes less from contact."""
 
 FELT = 0.02
-"""Speed that the vortex gives a cell at the side, over the fastest water, below which nothing is said [-]."""
+"""Speed that the vortex induces in a cell at the side, over the fastest water, below which no warning is issued [-]."""
 
 
 def vorticity_size(velocity: np.ndarray) -> np.ndarray:
@@ -49,12 +49,12 @@ def vorticity_size(velocity: np.ndarray) -> np.ndarray:
 
 @dataclass(slots=True)
 class Watch:
-    """Warns once of each thing."""
+    """Issues each warning once."""
 
     setup: Setup
     """Set-up of the simulation."""
     errors: list[float] = field(default_factory=list)
-    """Estimated error of each body's force now [-]."""
+    """Present estimated error of each body's force [-]."""
     _issued_keys: set[str] = field(default_factory=set)
 
     def layers(self, errors: list[float]) -> None:

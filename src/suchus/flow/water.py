@@ -30,17 +30,17 @@ from suchus.flow.slab import inner_strides
 from suchus.flow.solid import SpaceShape
 
 MOST_CYCLES = 60
-"""Iterations of the pressure solver before it counts as stuck [-]."""
+"""Most iterations of the pressure solver [-]."""
 
 MOST_ROUNDS = 12
-"""Rounds in which the first step and the water around the domain come to terms [-]."""
+"""Most rounds in which the first step and the water around the domain converge [-]."""
 
 SKIPPED = 0.01
-"""Residual over its limit below which nothing is solved [-]; at 1 whole steps pass so, and the force of the next one
-that does not carries what was left over."""
+"""Residual over its limit below which the pressure is not solved [-]. With 1, whole steps would skip the solve, and
+their residual would appear in the force of the next step."""
 
 STUCK = 1000.0
-"""Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
+"""Residual over its limit above which a solve has failed; below it, rounding has stopped the solve [-]."""
 
 
 def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
@@ -55,51 +55,52 @@ def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
 
 
 class PlannedStage(NamedTuple):
-    """A stage of an integrator at work: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
+    """A stage of an integrator: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
 
     B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
     """
 
     out: np.ndarray
-    """Where the result goes."""
+    """Velocity at the end of the stage, which is written."""
     blend: np.ndarray
-    """What it is mixed with."""
+    """Velocity that is blended with it."""
     base: np.ndarray
     """Velocity that the stage starts from."""
     rate: np.ndarray
     """Velocity at which advection and diffusion are taken."""
     keep: float
-    """Share of ``blend`` [-]."""
+    """Fraction of ``blend`` [-]."""
     dt: float
-    """How far it goes from ``base`` [cells per (m/s)]."""
+    """Length of the stage from ``base`` [cells per (m/s)]."""
     beyond: Any = None
     """The same stage of the coarser water around a patch; see ``nest``."""
 
     @property
     def solved(self) -> float:
-        """How long the pressure that is solved for acts on ``out`` [cells per (m/s)]."""
+        """Duration for which the solved pressure acts on ``out`` [cells per (m/s)]."""
         return (1 - self.keep) * self.dt
 
 
 class Fluid:
-    """Velocity and pressure on a grid, and the bodies as the equations see them.
+    """Velocity and pressure on a grid, and the bodies as coefficients of the equations.
 
     Attributes:
         velocity: on the faces before the cells along each axis, shape (axis, ...) [m/s].
         p: pressure over density at the cell centres [m^2/s^2].
-        mu0: share of the fluid on these faces, shape (axis, ...) [-].
+        mu0: fraction of the fluid on these faces, shape (axis, ...) [-].
         mu1: half the first moment of the kernel along each axis on these faces, in the window, shape
             (face's axis, axis, ...) [cells].
         b: velocity of the bodies on these faces, in the window, shape (axis, ...) [m/s].
-        source: divergence of the bodies' own motion, times the body's share, in the window [m/s per cell].
-        window: padded cell indices around the bodies; a cell beyond a mirror that cuts one is one of them.
+        source: divergence of the bodies' own motion, times the body's fraction, in the window [m/s per cell].
+        window: padded cell indices around the bodies; it includes a cell beyond a mirror that cuts one.
         cut: for each body, which mirrors cut it; see ``body.cuts``.
-        rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
+        rows: for each body the rows of its parts in arrays of sums; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
-        given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
-        pressed: what the pressure did inside bodies that are divided in the last step, per row; see ``pressures``.
-        solves: how the pressure solves of the last step went, one a stage.
-        overlap: the two bodies that lie deepest in each other.
+        given: momentum and energy given to the water by the immersion in the last step, per row; see
+            ``momentum.collect``.
+        pressed: integral of the pressure inside divided bodies in the last step, per row; see ``pressures``.
+        solves: statistics of the pressure solves of the last step, one a stage.
+        overlap: the two bodies that overlap most.
         least: fewest iterations of a pressure solve.
     """
 
@@ -408,7 +409,7 @@ class Fluid:
         is_first, plan = self.border.steps == 1 and self._learns, self._plan(span)
         start = self.p.copy() if is_first else self.p
         self._stages(plan, force, limits)
-        if is_first:  # a body that starts at once moves the far water at once
+        if is_first:  # an impulsively started body moves the far water at once
             for _ in range(MOST_ROUNDS):
                 if self._is_first_step_converged(plan[-1], limits):
                     break
@@ -468,7 +469,7 @@ class Fluid:
                 self._hear(plan[k - 1])
             self._take(stage, push, limits)
             self._collect(stage, weight)
-        if len(plan) == 1:  # else the sides would go on from what they have never seen
+        if len(plan) == 1:  # with a single stage, the water beyond the sides is updated here
             self._hear(plan[0])
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
@@ -693,13 +694,13 @@ class Fluid:
             for c, component in enumerate(side_velocity):
                 lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(component, self.axes - 1 - c, 0)
                 lines[:-1] += faces[:-1] - faces[1:]
-        for axis in range(self.axes):  # a body that a mirror cuts has cells beyond it
+        for axis in range(self.axes):  # a body cut by a mirror has cells beyond the mirror
             lines = np.moveaxis(field, axis, 0)
             lines[:PAD], lines[-PAD:] = 0, 0
         r[self._level_view(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
         x, d, z = (slabs.reshape(self.p.shape) for slabs in (self._x, self._d, self._level_view(multigrid.X)))
-        cells = (slice(PAD, -PAD),) * self.axes  # beyond them the multigrid leaves what it happens to
+        cells = (slice(PAD, -PAD),) * self.axes  # the multigrid leaves undefined values beyond them
         x[:] = 0
         np.multiply(d[cells], a, out=x[cells])
         x[cells] += b * z[cells]
