@@ -44,11 +44,11 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     rows, offset, axes = [], 0, layout.shape[1] // 3
     rim, pairs = RIM[axes - 2], EXTRA[axes - 2]
     includes_mirror = [axes == 3 and not is_periodic for is_periodic in reversed(repeats)]
-    for k, place in enumerate(layout.tolist()):
-        begin, end = place[1 + axes :: 2], place[2 + axes :: 2]
+    for k, level_layout in enumerate(layout.tolist()):
+        begin, end = level_layout[1 + axes :: 2], level_layout[2 + axes :: 2]
         if end[0] > begin[0]:
             begin = [max(a - rim, PAD - extra_cell) for a, extra_cell in zip(begin, includes_mirror, strict=True)]
-            ends = zip(end, place[1 : 1 + axes], includes_mirror, strict=True)
+            ends = zip(end, level_layout[1 : 1 + axes], includes_mirror, strict=True)
             end = [min(b + rim, n + PAD + extra_cell) for b, n, extra_cell in ends]
         window = list(zip(begin, end, strict=True))
         rows.append([offset, *(value for pair in window for value in pair), pairs[min(k, len(pairs) - 1)]])
@@ -111,13 +111,13 @@ def _take(target, rect, a, inner):
 
 
 @part
-def _close_sides(buffer, rect, place, inner):
+def _close_sides(buffer, rect, level_layout, inner):
     """Set the coefficients to 0 on the faces where a patch in space extends beyond a side of the domain.
 
     Args:
         buffer: values of all patches.
         rect: row of ``rects``.
-        place: row of the layout for the level; see ``slab``.
+        level_layout: row of the layout for the level; see ``slab``.
         inner: strides within a slab.
     """
     _, length, row_cells = _sizes(rect, inner)
@@ -125,7 +125,7 @@ def _close_sides(buffer, rect, place, inner):
         face, r = patch(buffer, rect, inner, FACES + d), 5 - 2 * d
         step = 1 if d == 0 else row_cells
         for is_low in range(2):
-            if rect[r] >= PAD if is_low else rect[r + 1] <= place[3 - d] + PAD:
+            if rect[r] >= PAD if is_low else rect[r + 1] <= level_layout[3 - d] + PAD:
                 continue
             line = 1 if is_low else rect[r + 1] - rect[r] - 1
             for j in range(face.shape[0]):
@@ -136,13 +136,13 @@ def _close_sides(buffer, rect, place, inner):
 
 
 @part
-def take_coefficients(buffer, rect, place, faces, dinv, inner):
+def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
     """Copy the coefficients of a patch from its level to the buffer.
 
     Args:
         buffer: values of all patches.
         rect: row of ``rects``.
-        place: row of the layout for the level; see ``slab``.
+        level_layout: row of the layout for the level; see ``slab``.
         faces: face coefficients of the level along each axis.
         dinv: inverse diagonal of the level.
         inner: strides within a slab.
@@ -150,7 +150,7 @@ def take_coefficients(buffer, rect, place, faces, dinv, inner):
     for d in range(len(inner) + 1):
         _take(patch(buffer, rect, inner, FACES + d), rect, faces[d], inner)
     if len(inner) > 1:
-        _close_sides(buffer, rect, place, inner)
+        _close_sides(buffer, rect, level_layout, inner)
     inverse = patch(buffer, rect, inner, INVERSE)
     _take(inverse, rect, dinv, inner)
     _, length, row_cells = _sizes(rect, inner)

@@ -66,7 +66,7 @@ def _dots(z, az, r, d, slab, inner):
 
 
 @threaded_part
-def _measure(z, r, d, faces, place, inner, sums):
+def _measure(z, r, d, faces, level_layout, inner, sums):
     """Write the products (z, A z), (d, A z), (r, z) and (r, d) of each slab to ``sums``; see ``_dots``.
 
     Args:
@@ -74,7 +74,7 @@ def _measure(z, r, d, faces, place, inner, sums):
         r: residual, shape (slab, cell).
         d: last direction, shape (slab, cell).
         faces: face coefficients of the finest level along each axis.
-        place: row of the layout for that level; see ``slab``.
+        level_layout: row of the layout for that level; see ``slab``.
         inner: strides within a slab.
         sums: the products, shape (slab, 4).
     """
@@ -84,7 +84,7 @@ def _measure(z, r, d, faces, place, inner, sums):
         block_start = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
         for j in range(block_start, min(block_start + block, end)):
-            apply_slabs(az, 0, z, j - 1, j, j + 1, faces, place, j, inner)
+            apply_slabs(az, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
 
@@ -125,14 +125,14 @@ def _subtract_scaled(r, slab, q, alpha, inner):
 
 
 @threaded_part
-def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
+def _first_step(r, z, faces, level_layout, alpha, inner, repeats, sums):
     """Write ``r -= alpha A z``, and the sum and the maximum of |r| of each slab.
 
     Args:
         r: residual, shape (slab, cell).
         z: direction, shape (slab, cell).
         faces: face coefficients of the finest level along each axis.
-        place: row of the layout for that level; see ``slab``.
+        level_layout: row of the layout for that level; see ``slab``.
         alpha: step length.
         inner: strides within a slab.
         repeats: which axes are periodic.
@@ -144,14 +144,14 @@ def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
         block_start = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         for j in range(block_start, min(block_start + block, end)):
-            apply_slabs(q, 0, z, j - 1, j, j + 1, faces, place, j, inner)
+            apply_slabs(q, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
             sums[j, 0] = _subtract_scaled(r, j, q, alpha, inner)
             sums[j, 1] = largest_size(r, j, inner, top)
             seal_slab(r, j, inner, repeats)
 
 
 @threaded_part
-def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
+def _step(r, z, d, faces, level_layout, alpha, beta, inner, repeats, sums):
     """Write ``r -= alpha A (z + beta d)``, and the sum and the maximum of |r| of each slab.
 
     Args:
@@ -159,7 +159,7 @@ def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
         z: preconditioned residual, shape (slab, cell).
         d: last direction, shape (slab, cell).
         faces: face coefficients of the finest level along each axis.
-        place: row of the layout for that level; see ``slab``.
+        level_layout: row of the layout for that level; see ``slab``.
         alpha: step length.
         beta: share of the last direction in the new one.
         inner: strides within a slab.
@@ -178,7 +178,7 @@ def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
             _mix(rows, upper_slab, z, d, j, unity, beta)
             if j > block_start:
                 c = j - 1
-                apply_slabs(q, 0, rows, lower_slab, mid, upper_slab, faces, place, c, inner)
+                apply_slabs(q, 0, rows, lower_slab, mid, upper_slab, faces, level_layout, c, inner)
                 sums[c, 0] = _subtract_scaled(r, c, q, alpha, inner)
                 sums[c, 1] = largest_size(r, c, inner, top)
                 seal_slab(r, c, inner, repeats)
@@ -254,10 +254,10 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
         ``a d + b X``, where ``X`` is that of level 0.
     """
     r, z = level(store, layout, inner, B, 0), level(store, layout, inner, X, 0)
-    faces, place, real = faces_of(store, layout, inner, 0), layout[0], store.dtype.type
+    faces, level_layout, real = faces_of(store, layout, inner, 0), layout[0], store.dtype.type
     cells = 1
     for axis in range(len(inner) + 1):
-        cells *= place[1 + axis]
+        cells *= level_layout[1 + axis]
     d_ad, alpha, beta, previous_alpha = 1.0, 0.0, 0.0, 0.0
     initial_d, is_pending, is_stored = d, False, False
     mean, maximum, min_excess, stalled_cycles = 0.0, 0.0, np.inf, 0
@@ -267,7 +267,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
             _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
             d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
         cycle(d if k == 0 else z, store, layout, buffer, rects, inner, repeats)
-        _measure(d if k == 0 else z, r, d, faces, place, inner, sums)
+        _measure(d if k == 0 else z, r, d, faces, level_layout, inner, sums)
         z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
         turn = 0.0 if k == 0 else -d_az / d_ad
         d_ad = z_az + turn * d_az
@@ -277,10 +277,10 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
             break
         alpha, beta = (r_z + turn * _total(sums, 3)) / d_ad, turn
         if k == 0:
-            _first_step(r, d, faces, place, real(alpha), inner, repeats, sums)
+            _first_step(r, d, faces, level_layout, real(alpha), inner, repeats, sums)
             previous_alpha = alpha
         else:
-            _step(r, z, d, faces, place, real(alpha), real(beta), inner, repeats, sums)
+            _step(r, z, d, faces, level_layout, real(alpha), real(beta), inner, repeats, sums)
             is_pending = True
         k += 1
         previous_residuals = mean, maximum

@@ -42,7 +42,7 @@ def _divergence_slab(r, velocity, slab, mean, inner):
 
 
 @threaded
-def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats, sums):
+def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, repeats, sums):
     """Write the residual ``source - div u - mean`` of the pressure equation, and its sum and maximum slab by slab.
 
     Cells that lie wholly inside the body get 0: no pressure acts there.
@@ -52,7 +52,7 @@ def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats
         velocity: shape (axis, slab, cell).
         source: divergence of the bodies' own motion, an array of the window ``near_layout``.
         dinv: inverse diagonal of the pressure equation, 0 inside the body.
-        place: row of the layout for the finest level; see ``slab``.
+        level_layout: row of the layout for the finest level; see ``slab``.
         near_layout: the window around the bodies; see ``slab``.
         mean: see ``mean_residual``.
         inner: strides within a slab.
@@ -66,9 +66,9 @@ def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats
         top = np.empty(LANES, r.dtype)
         for j in range(start, min(start + block, end)):
             _divergence_slab(r, velocity, j, mean, inner)
-            if meets(place, inner, j):
-                c, row_cells, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(place, inner)
-                (s, e), o = window_columns(place, inner), c - unsigned(near_layout[len(inner) + 2])
+            if meets(level_layout, inner, j):
+                c, row_cells, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(level_layout, inner)
+                (s, e), o = window_columns(level_layout, inner), c - unsigned(near_layout[len(inner) + 2])
                 for row in range(r0, r1):
                     shift = near_shift(near_layout, inner, row, row_cells)
                     for i in range(row * row_cells + s, row * row_cells + e):
@@ -79,7 +79,7 @@ def residual(r, velocity, source, dinv, place, near_layout, mean, inner, repeats
 
 
 @part
-def _mean_of_plane(u, v, source, place, near_layout):
+def _mean_of_plane(u, v, source, level_layout, near_layout):
     """Return the mean of ``source - div u`` in the plane; see ``mean_residual``."""
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
     total = 0.0
@@ -87,14 +87,14 @@ def _mean_of_plane(u, v, source, place, near_layout):
         total += np.float64(u[j, s]) - np.float64(u[j, b])
     for i in range(s, b):
         total += np.float64(v[s, i]) - np.float64(v[t, i])
-    for j in range(place[3], place[4]):
-        for i in range(place[5], place[6]):
+    for j in range(level_layout[3], level_layout[4]):
+        for i in range(level_layout[5], level_layout[6]):
             total += source[j - near_layout[3], i - near_layout[5]]
     return total / ((t - s) * (b - s))
 
 
 @part
-def _mean_in_space(velocity, source, place, near_layout, inner):
+def _mean_in_space(velocity, source, level_layout, near_layout, inner):
     """Return the mean of ``source - div u`` in space; see ``mean_residual``."""
     end, row_cells, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
     rows, columns = signed(row_count(inner, velocity.shape[2])), row_cells - 2 * PAD
@@ -107,28 +107,28 @@ def _mean_in_space(velocity, source, place, near_layout, inner):
     for j in range(PAD, end):
         for i in range(PAD * row_cells + PAD, PAD * row_cells + PAD + columns):
             total += np.float64(velocity[1, j, i]) - np.float64(velocity[1, j, i + rows * row_cells])
-    for j in range(place[4], place[5]):
-        for row in range(place[6], place[7]):
-            for i in range(place[8], place[9]):
+    for j in range(level_layout[4], level_layout[5]):
+        for row in range(level_layout[6], level_layout[7]):
+            for i in range(level_layout[8], level_layout[9]):
                 k = (row - near_layout[6]) * (near_layout[9] - near_layout[8] + 1) + i - near_layout[8]
                 total += source[j - near_layout[4], k]
     return total / ((end - PAD) * rows * columns)
 
 
 @compiled
-def mean_residual(velocity, source, place, near_layout, inner):
+def mean_residual(velocity, source, level_layout, near_layout, inner):
     """Return the mean of ``source - div u``: the inflow through the sides and the volume that the bodies displace.
 
     Args:
         velocity: shape (axis, slab, cell).
         source: divergence of the bodies' own motion, an array of the window ``near_layout``.
-        place: row of the layout for the finest level; see ``slab``.
+        level_layout: row of the layout for the finest level; see ``slab``.
         near_layout: the window around the bodies; see ``slab``.
         inner: strides within a slab.
     """
     if len(inner) == 1:
-        return _mean_of_plane(velocity[0], velocity[1], source, place, near_layout)
-    return _mean_in_space(velocity, source, place, near_layout, inner)
+        return _mean_of_plane(velocity[0], velocity[1], source, level_layout, near_layout)
+    return _mean_in_space(velocity, source, level_layout, near_layout, inner)
 
 
 @part
@@ -185,11 +185,11 @@ def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, s
 
 
 @part
-def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, place, level, gain, inner):
+def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, level_layout, level, gain, inner):
     """Correct velocity and pressure of one slab, inside and outside the window; see ``correct``."""
     row_cells = row_length(inner, p.shape[1])
-    (r0, r1), (w0, w1) = window_rows(place, inner), window_columns(place, inner)
-    meets_window = meets(place, inner, slab)
+    (r0, r1), (w0, w1) = window_rows(level_layout, inner), window_columns(level_layout, inner)
+    meets_window = meets(level_layout, inner, slab)
     for n in range(row_count(inner, p.shape[1])):
         row = n + EDGE if len(inner) > 1 else n
         f, e = row * row_cells + EDGE, row * row_cells + row_cells - EDGE
@@ -232,7 +232,7 @@ def _along_sides(x, inner):
 
 
 @threaded
-def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
+def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
     """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
     The mean of the added pressure along the sides is zero. Without this condition the pressure drifts and single
@@ -247,7 +247,7 @@ def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
         a: factor of ``d``.
         b: factor of ``z``.
         passage: share of the pressure gradient that acts on each face, shape (axis, slab, cell).
-        place: row of the layout for the finest level; see ``slab``.
+        level_layout: row of the layout for the finest level; see ``slab``.
         inner: strides within a slab.
         gain: factor from ``x`` to the pressure.
     """
@@ -262,7 +262,7 @@ def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
         for j in range(block_start, min(block_start + block, end)):
             lower_slab, mid = mid, lower_slab
             _add(x, mid, d, z, j, a, b)
-            _correct_slab(velocity, p, j, x, lower_slab, mid, passage, place, level, gain, inner)
+            _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
 
 
 @part

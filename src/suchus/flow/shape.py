@@ -132,8 +132,8 @@ class Solid(Shape):
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""
-        middle, normal, length = _edges(self, spacing)
-        points = np.stack(pose.to_world(*middle))
+        centres, normal, length = _edges(self, spacing)
+        points = np.stack(pose.to_world(*centres))
         return Markers(
             points=points, share=length, velocities=np.stack(pose.carry(*points)), normals=np.stack(pose.turn(*normal)),
             spins=np.full((1, length.size), pose.spin), station=np.cumsum(length) - length / 2,

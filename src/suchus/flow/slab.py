@@ -7,12 +7,12 @@ one index along the last axis: a row of a plane grid, a plane of a grid in space
 axes within a slab, ``(1,)`` or ``(1, cells along a row)``: a tuple of ``np.uint64``, whose length is a part of its
 type. So ``for d in range(len(inner))`` inside a loop over cells is unrolled, and one kernel serves both.
 
-A ``place`` is a row of the multigrid's layout. It holds the offset of a level in memory, its cells along the axes (the
-last axis first), and then the window around the bodies, first and end along each axis, the last axis first.
+A ``level_layout`` is a row of the multigrid's layout. It holds the offset of a level in memory, its cells along the
+axes (the last axis first), and then the window around the bodies, first and end along each axis, the last axis first.
 
 Quantities that matter only around the bodies are stored for the window alone, with the faces behind its last cells: a
 slab of such a *near* array has one cell more along each axis than the window. ``near_layout`` describes this window.
-It has the form of a ``place``, but its window may reach beyond mirrors, whereas the window of a level ends there.
+It has the form of a ``level_layout``, but its window may reach beyond mirrors, whereas the window of a level ends there.
 """
 
 import numpy as np
@@ -86,24 +86,24 @@ def run_of(inner, length):
 
 
 @part
-def meets(place, inner, slab):
+def meets(level_layout, inner, slab):
     """Return whether a slab meets the window."""
     w = len(inner) + 2
-    return place[w] <= slab < place[w + 1]
+    return level_layout[w] <= slab < level_layout[w + 1]
 
 
 @part
-def window_rows(place, inner):
+def window_rows(level_layout, inner):
     """Return first and end of the rows of a slab that meet the window."""
     w = len(inner) + 4
-    return (unsigned(place[w]), unsigned(place[w + 1])) if len(inner) > 1 else (NONE, UNIT)
+    return (unsigned(level_layout[w]), unsigned(level_layout[w + 1])) if len(inner) > 1 else (NONE, UNIT)
 
 
 @part
-def window_columns(place, inner):
+def window_columns(level_layout, inner):
     """Return first and end of the cells of a row that meet the window."""
     w = 3 * len(inner) + 2
-    return unsigned(place[w]), unsigned(place[w + 1])
+    return unsigned(level_layout[w]), unsigned(level_layout[w + 1])
 
 
 @part

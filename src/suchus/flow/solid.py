@@ -150,39 +150,39 @@ class Ellipsoid(SpaceShape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
         """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
-        place = pose.along(3)
+        pose_3d = pose.along(3)
         fields = np.zeros((8, z.size, y.size, x.size))
         fields[7] = np.inf
         cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_ellipsoid(
-            fields, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
-            place.spins, self.half, float(reach), cell,
+            fields, px, py, pz, np.ascontiguousarray(pose_3d.matrix), np.array(pose_3d.position),
+            np.array(pose_3d.velocity), pose_3d.spins, self.half, float(reach), cell,
         )  # fmt: skip
         return SpaceField(fields[0], (fields[1], fields[2], fields[3]), (fields[4], fields[5], fields[6]), fields[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
-        place, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
+        pose_3d, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
         sin = np.sqrt(1 - cos * cos)[:, None]
         unit = np.stack([sin * np.cos(turn), sin * np.sin(turn), np.broadcast_to(cos[:, None], (rings, turn.size))])
         unit = unit.reshape(3, -1)
         a = self.half[:, None]
-        share = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
-        points = np.stack(place.place(a * unit))
-        normals = np.stack(turned(place.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
-        spins = np.broadcast_to(place.spins[:, None], points.shape)
+        areas = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
+        points = np.stack(pose_3d.place(a * unit))
+        normals = np.stack(turned(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
+        spins = np.broadcast_to(pose_3d.spins[:, None], points.shape)
         return Markers(
-            points=points, share=share, velocities=np.stack(place.rates(points)), normals=normals, spins=spins
+            points=points, share=areas, velocities=np.stack(pose_3d.rates(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
-        place = pose.along(3)
-        reach = np.sqrt(((place.matrix * self.half) ** 2).sum(axis=1)).tolist()
-        return tuple(p + sign * r for p, r in zip(place.position, reach, strict=True) for sign in (-1.0, 1.0))
+        pose_3d = pose.along(3)
+        reach = np.sqrt(((pose_3d.matrix * self.half) ** 2).sum(axis=1)).tolist()
+        return tuple(p + sign * r for p, r in zip(pose_3d.position, reach, strict=True) for sign in (-1.0, 1.0))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return an ellipse across the smallest axis, in triangles; None if that axis is not the only small one.
@@ -198,8 +198,8 @@ class Ellipsoid(SpaceShape):
         turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
         rim = np.zeros((3, turn.size))
         rim[long_axes] = rim_half_axes[long_axes, None] * np.stack([np.cos(turn), np.sin(turn)])
-        rim, middle = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
-        return np.stack([np.broadcast_to(middle[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
+        rim, centre = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
+        return np.stack([np.broadcast_to(centre[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest axis."""

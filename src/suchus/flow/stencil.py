@@ -131,7 +131,7 @@ def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
 
 
 @part
-def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, inner):
+def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, level_layout, slab, inner):
     """Write the pressure operator applied to one slab of a level.
 
     Args:
@@ -142,7 +142,7 @@ def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, i
         mid: index in ``x`` of the slab itself.
         upper_slab: index in ``x`` of the slab above.
         faces: face coefficients of the level along each axis.
-        place: row of the layout for the level; see ``slab``.
+        level_layout: row of the layout for the level; see ``slab``.
         slab: index of the slab in the level.
         inner: strides within a slab.
     """
@@ -155,9 +155,9 @@ def apply_slabs(output, o, x, lower_slab, mid, upper_slab, faces, place, slab, i
         for d in range(len(inner)):
             neighbour_sum += x[mid, k - inner[d]] + x[mid, k + inner[d]]
         output[o, k] = diagonal * x[mid, k] - (neighbour_sum + (x[lower_slab, k] + x[upper_slab, k]))
-    if meets(place, inner, slab):
+    if meets(level_layout, inner, slab):
         row_cells = row_length(inner, x.shape[1])
-        (r0, r1), (s, e) = window_rows(place, inner), window_columns(place, inner)
+        (r0, r1), (s, e) = window_rows(level_layout, inner), window_columns(level_layout, inner)
         for row in range(r0, r1):
             for k in range(row * row_cells + s, row * row_cells + e):
                 output[o, k] = _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner)
@@ -206,7 +206,7 @@ def _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
 
 
 @part
-def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place, slab, weight, inner, repeats):
+def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, level_layout, slab, weight, inner, repeats):
     """Write one Jacobi step of one slab of a level.
 
     Args:
@@ -219,7 +219,7 @@ def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place
         b: right side of the level.
         faces: face coefficients of the level along each axis.
         dinv: inverse diagonal of the level.
-        place: row of the layout for the level; see ``slab``.
+        level_layout: row of the layout for the level; see ``slab``.
         slab: index of the slab in the level.
         weight: Jacobi weight [-].
         inner: strides within a slab.
@@ -228,9 +228,9 @@ def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place
     o, j = unsigned(o), unsigned(slab)
     lower_slab, mid, upper_slab = unsigned(lower_slab), unsigned(mid), unsigned(upper_slab)
     _relax_plain(output, o, x, lower_slab, mid, upper_slab, b, j, weight, inner)
-    if meets(place, inner, slab):
+    if meets(level_layout, inner, slab):
         row_cells = row_length(inner, x.shape[1])
-        (r0, r1), (s, e) = window_rows(place, inner), window_columns(place, inner)
+        (r0, r1), (s, e) = window_rows(level_layout, inner), window_columns(level_layout, inner)
         for row in range(r0, r1):
             for k in range(row * row_cells + s, row * row_cells + e):
                 residual = b[j, k] - _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner)
@@ -239,10 +239,10 @@ def relax_slabs(output, o, x, lower_slab, mid, upper_slab, b, faces, dinv, place
 
 
 @part
-def smooth(output, x, b, faces, dinv, place, weight, inner, repeats):
+def smooth(output, x, b, faces, dinv, level_layout, weight, inner, repeats):
     """Write one Jacobi step of a whole level from ``x`` to ``output``; see ``relax_slabs``."""
     for j in range(PAD, x.shape[0] - PAD):
-        relax_slabs(output, j, x, j - 1, j, j + 1, b, faces, dinv, place, j, weight, inner, repeats)
+        relax_slabs(output, j, x, j - 1, j, j + 1, b, faces, dinv, level_layout, j, weight, inner, repeats)
 
 
 @part

@@ -333,13 +333,13 @@ class Swimmer:
             InvalidDesign: the body's own force is not three or six finite numbers.
         """
         body, axes = self.body, self._axes
-        middle = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
+        mid_place = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
         stiff, viscous = spread(body.springs, axes), spread(body.dampers, axes)
         pull = _lengthened(body.gravity, axes)
-        outer = weight * np.array([*pull, *np.zeros(middle.size - axes)]) - self._held(middle, stiff)
+        outer = weight * np.array([*pull, *np.zeros(mid_place.size - axes)]) - self._held(mid_place, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
-            force = body.force(time + 0.5 * dt, self._state(middle))
+            force = body.force(time + 0.5 * dt, self._state(mid_place))
             sizes = [(3,)] if axes == 2 else [(3,), (6,)]
             if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(
@@ -350,26 +350,26 @@ class Swimmer:
             outer = outer + spread(np.asarray(force, float).tolist(), axes)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
-    def _held(self, middle: np.ndarray, stiff: np.ndarray) -> np.ndarray:
+    def _held(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:
         """Return the elastic force of the springs, positive along the displacement [N/m, N].
 
         Args:
-            middle: place of the body [m, rad].
+            mid_place: place of the body [m, rad].
             stiff: stiffness of each degree of freedom.
         """
         body = self.body
         if self._axes == 2:
             slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
-            return np.asarray(stiff * (middle - slack))
+            return np.asarray(stiff * (mid_place - slack))
         if body.anchor is None:
             slack = np.array([*_lengthened(body.start, 3), *_attitude(body.angle, body.pitch, body.roll)])
         else:
             x, y, z, yaw, pitch, roll = self._anchor(body.anchor)
             slack = np.array([x, y, z, *_attitude(yaw, pitch, roll)])
-        spring_force = stiff * (middle - slack)
+        spring_force = stiff * (mid_place - slack)
         if stiff[3:].any():
-            turn = rotation.multiply(rotation.from_vector(middle[3:]), rotation.from_vector(-slack[3:]))
-            vector = rotation.to_vector(turn, middle[3:] - slack[3:])
+            turn = rotation.multiply(rotation.from_vector(mid_place[3:]), rotation.from_vector(-slack[3:]))
+            vector = rotation.to_vector(turn, mid_place[3:] - slack[3:])
             spring_force[3:] = -_unwinding(vector, stiff[3:] * vector)
         return np.asarray(spring_force)
 

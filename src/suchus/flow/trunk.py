@@ -73,10 +73,10 @@ class Trunk(SpaceShape):
         Raises:
             InvalidDesign: the midline has another number of stations than the half-heights.
         """
-        spine, place = self._spine(time), pose.along(3)
-        if not place.in_plane:
-            return spine, place
-        height, rate = place.position[2], place.velocity[2]
+        spine, pose_3d = self._spine(time), pose.along(3)
+        if not pose_3d.in_plane:
+            return spine, pose_3d
+        height, rate = pose_3d.position[2], pose_3d.velocity[2]
         return spine.placed(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> MidlineState:
@@ -153,13 +153,13 @@ class Trunk(SpaceShape):
         square = np.cross(first_diagonal, second_diagonal, axis=0)
         size = np.sqrt((square**2).sum(axis=0))
         arc = np.broadcast_to(spine.arc[station, None], lateral_offset.shape)
-        arc_centres = _middles(arc[None])[0]
+        arc_centres = _patch_centres(arc[None])[0]
         part_index = np.searchsorted(self.cuts, arc_centres.ravel(), side="right") if self.cuts else None
         spins = np.zeros(square.shape)
-        spins[2] = _middles(np.broadcast_to(turn, lateral_offset.shape)[None])[0]
+        spins[2] = _patch_centres(np.broadcast_to(turn, lateral_offset.shape)[None])[0]
         return Markers(
-            points=_middles(corner).reshape(3, -1), share=0.5 * size.ravel(),
-            velocities=_middles(rate).reshape(3, -1),
+            points=_patch_centres(corner).reshape(3, -1), share=0.5 * size.ravel(),
+            velocities=_patch_centres(rate).reshape(3, -1),
             normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part_index,
         )  # fmt: skip
 
@@ -167,16 +167,16 @@ class Trunk(SpaceShape):
         """Return the smallest box around the body: x0, x1, y0, y1, z0, z1 [m]."""
         spine, frame = self.placed(time, pose)
         if pose.in_plane:
-            outline, middle = ring(spine.rows), frame.position[2]
+            outline, height = ring(spine.rows), frame.position[2]
             ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
             half_height = float(self.half_height.max())
-            return (*ends, middle - half_height, middle + half_height)
-        middles, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
+            return (*ends, height - half_height, height + half_height)
+        centres, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
         lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
         vertical_extent = np.outer(matrix[:, 2], self.half_height)
         extent = np.hypot(lateral_extent, vertical_extent)  # how far each section reaches along the world's axes
-        lower_bounds, upper_bounds = (middles - extent).min(axis=1).tolist(), (middles + extent).max(axis=1).tolist()
+        lower_bounds, upper_bounds = (centres - extent).min(axis=1).tolist(), (centres + extent).max(axis=1).tolist()
         return tuple(end for pair in zip(lower_bounds, upper_bounds, strict=True) for end in pair)
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
@@ -191,11 +191,11 @@ class Trunk(SpaceShape):
         excess = np.where(is_slim, (half_height**2 - half_width**2) / square, 0.0)
         vertical, lateral = half_height * np.maximum(excess, 0.0), half_width * np.maximum(-excess, 0.0)
         rim_offset = np.stack([-lateral * np.sin(spine.heading), lateral * np.cos(spine.heading), vertical])
-        middle = np.stack([spine.x, spine.y, 0 * spine.x])
+        centre_line = np.stack([spine.x, spine.y, 0 * spine.x])
         has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
         if not has_surface.any():
             return None
-        lower_rim, upper_rim = (np.array(frame.place(middle + sign * rim_offset)) for sign in (-1.0, 1.0))
+        lower_rim, upper_rim = (np.array(frame.place(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
         pairs = [
             (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
             (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
@@ -244,8 +244,8 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
     )  # fmt: skip
 
 
-def _middles(corners: np.ndarray) -> np.ndarray:
+def _patch_centres(corners: np.ndarray) -> np.ndarray:
     """Return the means over the four corners of each patch, shape (..., station - 1, angle - 1)."""
     pairs = corners[:, 1:] + corners[:, :-1]
-    middles: np.ndarray = 0.25 * (pairs[:, :, 1:] + pairs[:, :, :-1])
-    return middles
+    centres: np.ndarray = 0.25 * (pairs[:, :, 1:] + pairs[:, :, :-1])
+    return centres

@@ -141,9 +141,9 @@ def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray
     """
     low_corner = [s.start for s in water.here]
     cell_behind = [
-        place + start for place, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
+        index + start for index, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
     ]
-    cell_before = [place - (n == water.axes - 1 - axis) for n, place in enumerate(cell_behind)]
+    cell_before = [index - (n == water.axes - 1 - axis) for n, index in enumerate(cell_behind)]
     return x[tuple(cell_behind)].astype(np.float64) - x[tuple(cell_before)]
 
 

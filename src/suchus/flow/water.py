@@ -511,10 +511,10 @@ class Fluid:
             push: uniform acceleration of the water times the cell [(m/s)^2].
         """
         result, blend, base, rate = (self._flat(a) for a in stage[:4])
-        place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
+        level_layout, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         self._advance_all(
-            result, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, stage.dt, self.nu, push,
-            stage.keep,
+            result, blend, base, rate, p, raw, level_layout, self._near, self.inner, self.repeats, stage.dt, self.nu,
+            push, stage.keep,
         )  # fmt: skip
         if self.window[1] > self.window[0]:
             self._mirror_raw()
@@ -634,11 +634,11 @@ class Fluid:
             dt: duration for which the pressure acts [cells per (m/s)].
             limits: mean and largest divergence that may be left [m/s per cell].
         """
-        r, place = self._level_view(multigrid.B), self._layout[0]
+        r, level_layout = self._level_view(multigrid.B), self._layout[0]
         u, source = self._flat(velocity), self._flat(self.source)
-        mean = mean_residual(u, source, place, self._near, self.inner)
+        mean = mean_residual(u, source, level_layout, self._near, self.inner)
         residual(
-            r, u, source, self._level_view(multigrid.DINV), place, self._near, self.dtype(mean), self.inner,
+            r, u, source, self._level_view(multigrid.DINV), level_layout, self._near, self.dtype(mean), self.inner,
             self.repeats, self._sums,
         )  # fmt: skip
         sums = self._sums[PAD:-PAD]
@@ -647,7 +647,7 @@ class Fluid:
         if solve.mean > SKIPPED * limits[0] or solve.largest > SKIPPED * limits[1]:
             solve, parts = self._solve(limits)
             x, gain = (self._d, self._level_view(multigrid.X)), self.dtype(1 / dt)
-            correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), place, self.inner, gain)
+            correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), level_layout, self.inner, gain)
             self._seal(self.p)
             self.border.fill(velocity)
         self.solves.append(solve)
