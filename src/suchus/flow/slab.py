@@ -12,7 +12,7 @@ axes (the last axis first), and then the window around the bodies, first and end
 
 Quantities that matter only around the bodies are stored for the window alone, with the faces behind its last cells: a
 slab of such a *near* array has one cell more along each axis than the window. ``near_layout`` describes this window.
-It has the form of a ``level_layout``, but its window may reach beyond mirrors, whereas the window of a level ends there.
+It has the form of a ``level_layout``, but its window may reach beyond mirrors, where the window of a level ends.
 """
 
 import numpy as np
