@@ -126,8 +126,8 @@ def _apply_body(x, lower_slab, mid, upper_slab, faces, j, k, inner):
     for d in range(len(inner)):
         s = inner[d]
         total += faces[d, j, k] * (m - x[mid, k - s]) + faces[d, j, k + s] * (m - x[mid, k + s])
-    lower, upper = faces[slab_axis, j, k], faces[slab_axis, j + UNIT, k]
-    return total + (lower * (m - x[lower_slab, k]) + upper * (m - x[upper_slab, k]))
+    lower_face, upper_face = faces[slab_axis, j, k], faces[slab_axis, j + UNIT, k]
+    return total + (lower_face * (m - x[lower_slab, k]) + upper_face * (m - x[upper_slab, k]))
 
 
 @part
