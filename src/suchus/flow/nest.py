@@ -1,12 +1,12 @@
-"""A patch of fine cells around the bodies, nested in a coarser grid that reaches as far as the domain does.
+"""A patch of fine cells around the bodies, nested in a coarser grid that covers the whole domain.
 
-Both grids lie still to each other and take the same steps. In each stage of a step the fine cells advance first, before
-the pressure; what they come to is put in the place of the coarse velocities inside the patch, and the coarse pressure
-is solved for on the whole domain. Its velocities on the patch's sides, spread over the fine faces so that each coarse
-face passes the same flux, are what the fine pressure is solved with; velocity and pressure of the fine cells then
-replace the coarse ones inside. So neither grid loses water to the other, the pressure of both fits at the patch's
-sides up to what the coarse pressure gets wrong of a stage's change, and of the bodies the coarse cells know only where
-no pressure acts.
+The two grids do not move relative to each other, and they take the same time steps. Each stage of a step has four
+parts. First, the fine cells advance without the pressure. Their velocities then replace the coarse velocities inside
+the patch, and the coarse pressure is solved on the whole domain. The coarse velocities on the sides of the patch are
+spread over the fine faces, so that each coarse face passes the same flux, and the fine pressure is solved with them.
+Finally, velocity and pressure of the fine cells replace the coarse ones inside the patch. So neither grid loses water
+to the other. The two pressures agree at the sides of the patch, up to the error of the coarse pressure in the change
+of one stage. The coarse cells see the bodies only as cells on which no pressure acts.
 
 Source: the composite projection of Almgren, Bell, Colella, Howell and Welcome 1998, J. Comput. Phys. 142, 1-46, with
 one cycle a stage of McCormick's fast adaptive composite grids (1989).
@@ -30,55 +30,68 @@ from suchus.flow.sides import NAMES, Side, Sides
 from suchus.flow.water import Fluid, PlannedStage
 
 MARGIN = 4
-"""Coarse cells that a patch keeps from the sides of the domain that it does not share [-]: what is read around it must
-lie inside."""
+"""Coarse cells between a patch and a side of the domain that it does not share, at least [-]. The stencil around the
+patch must lie inside the domain."""
 
 CLEAR = 2
-"""Coarse cells that the surroundings of a body keep from the patch's sides [-]: as far inside lie the velocities that
-those around the patch are read from, and they are not to be a body's."""
+"""Coarse cells between the window of a body and the patch's sides, at least [-]. The stencil around the patch reads
+velocities that far inside, which must not be those of a body."""
 
 NOT_HELD = 1e-6
-"""Share of a coarse cell by which a patch may lie off the coarse cells [-]: what rounding leaves."""
+"""Deviation of a patch from the coarse cells that counts as rounding, over a coarse cell [-]."""
 
 TIGHTER = 0.25
-"""Share of the divergence that fine cells may keep which the coarse ones may [-]. What they keep reaches the patch as a
-flux through its sides, other in every step: with all of it the force on a cylinder that oscillates, of 32 cells a
-diameter in cells of twice the size, shakes by 0.35 % of its rms, with a quarter by 0.1 %."""
+"""Limit of the divergence of the coarse cells, over that of the fine ones [-]. The coarse residual reaches the patch as
+a flux through its sides, which changes from step to step. With a ratio of 1, the force on an oscillating cylinder of 32
+fine cells a diameter, with coarse cells of twice the size, fluctuates by 0.35 % of its rms; with 0.25, by 0.1 %."""
 
 LEFT = 0.05
-"""Largest share of what the two pressures differ by along the patch's sides that a multigrid cycle leaves [-]."""
+"""Largest residual of the pressure difference along the patch's sides after one multigrid cycle, over the difference
+before it [-]."""
 
 _SHIFT = -0.8  # of the wall's offset in cells, over the cell: see ``immerse.wall_offset``
 
 
 @dataclass(frozen=True, slots=True)
 class Beyond(Side):
-    """Where a patch ends and the coarser cells go on."""
+    """The side of a patch beyond which the coarser cells continue."""
 
     ends: ClassVar[bool] = False
 
 
-def place_of(grid: Grid, around: Grid) -> tuple[int, tuple[int, ...]]:
-    """Return how many fine cells lie along a coarse one, and the coarse cell in the patch's low corner, x first.
+def place_of(grid: Grid, coarse_grid: Grid) -> tuple[int, tuple[int, ...]]:
+    """Return the refinement ratio of a patch and the coarse cell in its low corner, x first.
+
+    Args:
+        grid: the fine cells of the patch.
+        coarse_grid: the coarse cells of the whole domain.
+
+    Returns:
+        fine cells along a coarse cell, and the index of the coarse cell along each axis [-].
 
     Raises:
         InvalidDesign: the cells of both do not fit, or the patch reaches out of the domain.
     """
-    if around.axes != grid.axes:
-        raise InvalidDesign(f"the patch has {grid.axes} axes and the grid around it {around.axes}; give both the same.")
-    ratio = round(around.cell / grid.cell)
-    low = [(a - b) / around.cell for a, b in zip(grid.origin, around.origin, strict=True)]
-    fits = abs(around.cell / grid.cell - ratio) < NOT_HELD and all(n % ratio == 0 for n in grid.cells)
-    if ratio not in RATIOS or not fits or any(abs(part - round(part)) > NOT_HELD * ratio for part in low):
+    if coarse_grid.axes != grid.axes:
+        raise InvalidDesign(
+            f"the patch has {grid.axes} axes and the grid around it {coarse_grid.axes}; give both the same."
+        )
+    ratio = round(coarse_grid.cell / grid.cell)
+    low_corner = [(a - b) / coarse_grid.cell for a, b in zip(grid.origin, coarse_grid.origin, strict=True)]
+    fits = abs(coarse_grid.cell / grid.cell - ratio) < NOT_HELD and all(n % ratio == 0 for n in grid.cells)
+    is_aligned = all(abs(coordinate - round(coordinate)) <= NOT_HELD * ratio for coordinate in low_corner)
+    if ratio not in RATIOS or not fits or not is_aligned:
         raise InvalidDesign(
             f"the patch of {' x '.join(map(str, grid.cells))} cells of {grid.cell:.6g} m from {grid.origin} m on does "
-            f"not fill whole cells, {around.cell:.6g} m wide, of the grid around it, {RATIOS[0]}, {RATIOS[1]} or "
+            f"not fill whole cells, {coarse_grid.cell:.6g} m wide, of the grid around it, {RATIOS[0]}, {RATIOS[1]} or "
             f"{RATIOS[2]} to one; take around.patch(x, y, ratio=4), in space with z."
         )
-    corner = tuple(map(round, low))
-    for d, (a, n, m) in enumerate(zip(corner, grid.cells, around.cells, strict=True)):
+    corner = tuple(map(round, low_corner))
+    for d, (a, n, m) in enumerate(zip(corner, grid.cells, coarse_grid.cells, strict=True)):
         if a < 0 or a + n // ratio > m:
-            ends = (f"{one.origin[d]:.6g} to {one.origin[d] + one.size[d]:.6g} m" for one in (grid, around))
+            ends = (
+                f"{domain.origin[d]:.6g} to {domain.origin[d] + domain.size[d]:.6g} m" for domain in (grid, coarse_grid)
+            )
             raise InvalidDesign(
                 f"along {'xyz'[d]} the patch from {next(ends)} reaches out of the grid around it, which goes from "
                 f"{next(ends)}; take around.patch(x, y, ratio=4), in space with z."
@@ -86,48 +99,53 @@ def place_of(grid: Grid, around: Grid) -> tuple[int, tuple[int, ...]]:
     return ratio, corner
 
 
-def sides_of(grid: Grid, around: Grid, sides: Sides) -> Sides:
-    """Return the sides of a patch: those of the domain where it reaches them, else where coarser cells go on.
-
-    Raises:
-        InvalidDesign: it comes near a side of the domain and does not reach it, or reaches one that is open.
-    """
-    ratio, corner = place_of(grid, around)
-    found: dict[str, Side] = {}
-    for d, (first, n, m) in enumerate(zip(corner, grid.cells, around.cells, strict=True)):
-        for k, room in enumerate((first, m - first - n // ratio)):
-            name = NAMES[2 * d + k]
-            side: Side = getattr(sides, name)
-            shared = room == 0 and not side.opens and not side.passes
-            if not shared and room < MARGIN:
-                raise InvalidDesign(
-                    f"the patch comes within {room * around.cell:.4g} m of the {name} side of the domain; keep "
-                    f"{MARGIN * around.cell:.4g} m away, {MARGIN} coarse cells, or end on it where it is a wall, a "
-                    f"mirror or periodic."
-                )
-            found[name] = side if shared else Beyond()
-    return replace(sides, **found)
-
-
-def least_cycles(longest: int) -> int:
-    """Return how many cycles the coarse pressure takes at least, lest errors at a patch's sides grow from step to step.
-
-    After a stage the coarse pressure inside the patch is that of the fine cells, which differs a little from the one
-    outside. That jump is there along a single coarse cell, and the next stage has to take its gradient back. Of what is
-    left of it the fine pressure, which takes the flux through the sides as given, makes a smooth one that is up to
-    ``longest / pi`` times as large, which differs again.
+def sides_of(grid: Grid, coarse_grid: Grid, sides: Sides) -> Sides:
+    """Return the sides of a patch: the side of the domain where it reaches one, else the border to the coarse cells.
 
     Args:
-        longest: coarse cells along the longest side of the patch [-].
+        grid: the fine cells of the patch.
+        coarse_grid: the coarse cells of the whole domain.
+        sides: sides of the domain.
+
+    Raises:
+        InvalidDesign: the patch comes near a side of the domain without reaching it, or reaches a side that is open.
     """
-    return max(1, ceil(log(2 * longest / pi) / log(1 / LEFT)))
+    ratio, corner = place_of(grid, coarse_grid)
+    patch_sides: dict[str, Side] = {}
+    for d, (start, n, m) in enumerate(zip(corner, grid.cells, coarse_grid.cells, strict=True)):
+        for k, margin in enumerate((start, m - start - n // ratio)):
+            name = NAMES[2 * d + k]
+            side: Side = getattr(sides, name)
+            shared = margin == 0 and not side.opens and not side.passes
+            if not shared and margin < MARGIN:
+                raise InvalidDesign(
+                    f"the patch comes within {margin * coarse_grid.cell:.4g} m of the {name} side of the domain; keep "
+                    f"{MARGIN * coarse_grid.cell:.4g} m away, {MARGIN} coarse cells, or end on it where it is a wall, "
+                    f"a mirror or periodic."
+                )
+            patch_sides[name] = side if shared else Beyond()
+    return replace(sides, **patch_sides)
+
+
+def least_cycles(side_cells: int) -> int:
+    """Return the fewest pressure cycles with which errors at the sides of a patch do not grow from step to step.
+
+    After a stage, the coarse pressure inside the patch is the pressure of the fine cells. It differs slightly from the
+    pressure outside. This jump lies along a single coarse cell, and the next stage has to remove its gradient. The fine
+    pressure takes the flux through the sides as given: it turns what is left of the jump into a smooth error that is up
+    to ``side_cells / pi`` times as large.
+
+    Args:
+        side_cells: coarse cells along the longest side of the patch [-].
+    """
+    return max(1, ceil(log(2 * side_cells / pi) / log(1 / LEFT)))
 
 
 def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return from which coarse places values of a patch are taken along one axis, and by which weights.
+    """Return the coarse cells from which values of a patch are interpolated along one axis, and the weights.
 
-    On faces along their own axis a cubic goes through four coarse values; else a parabola over three, whose mean over
-    the fine values in a coarse cell is the coarse value.
+    On faces across this axis, a cubic goes through four coarse values. Otherwise a parabola goes through three values,
+    and the mean of the fine values in a coarse cell is the coarse value.
 
     Args:
         index: of the fine values, padded [-].
@@ -137,25 +155,33 @@ def _weights(index: np.ndarray, ratio: int, *, on_faces: bool) -> tuple[np.ndarr
     Returns:
         Coarse indices, counted from the patch's first cell, and weights, each of shape (value, 4 or 3).
     """
-    cell, part = np.divmod(index - PAD, ratio)
+    cell, subcell = np.divmod(index - PAD, ratio)
     if on_faces:
-        t = part / ratio
+        t = subcell / ratio
         weights = [
             -t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
             (t + 1) * t * (t - 1) / 6,
         ]  # fmt: skip
     else:
-        middles = (np.arange(ratio) + 0.5) / ratio - 0.5
-        at = middles[part]
-        bend = at**2 - np.mean(middles**2)
-        weights = [(bend - at) / 2, 1 - bend, (bend + at) / 2]
+        centres = (np.arange(ratio) + 0.5) / ratio - 0.5
+        offset = centres[subcell]
+        bend = offset**2 - np.mean(centres**2)
+        weights = [(bend - offset) / 2, 1 - bend, (bend + offset) / 2]
     return cell[:, None] + np.arange(-1, len(weights) - 1), np.stack(weights, axis=1)
 
 
 @compiled
 def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
-    """Write means of boxes of ``spans`` values, which begin at ``starts`` and every ``steps`` on; three axes each."""
-    share = fine.dtype.type(1.0 / (spans[0] * spans[1] * spans[2]))
+    """Write the mean of a box of fine values to each coarse value; all vectors have three axes, the last axis first.
+
+    Args:
+        fine: padded fine values.
+        coarse: the means, which are written.
+        starts: first fine value of the first box, along each axis [-].
+        steps: distance of consecutive boxes, along each axis [fine values].
+        spans: length of a box, along each axis [fine values].
+    """
+    fraction = fine.dtype.type(1.0 / (spans[0] * spans[1] * spans[2]))
     for k in range(coarse.shape[0]):
         for j in range(coarse.shape[1]):
             for i in range(coarse.shape[2]):
@@ -163,59 +189,66 @@ def average(fine, coarse, starts, steps, spans):  # type: ignore[no-untyped-def]
                 for n in range(spans[0]):
                     for m in range(spans[1]):
                         row, slab = starts[1] + steps[1] * j + m, starts[0] + steps[0] * k + n
-                        for at in range(spans[2]):
-                            total += fine[slab, row, starts[2] + steps[2] * i + at]
-                coarse[k, j, i] = share * total
+                        for c in range(spans[2]):
+                            total += fine[slab, row, starts[2] + steps[2] * i + c]
+                coarse[k, j, i] = fraction * total
 
 
 @compiled
-def _read(coarse, runs, first, weights, taps, out):  # type: ignore[no-untyped-def]
-    """Write values around a patch, each a weighted sum over a box of coarse ones; three axes each, the last one first.
+def _interpolate(coarse, runs, first_cells, weights, taps, values):  # type: ignore[no-untyped-def]
+    """Write values around a patch, each a weighted sum over a box of coarse values.
+
+    All vectors have three axes, the last axis first.
 
     Args:
         coarse: padded values, shape (slab, row, cell).
-        runs: values of one slab and one row of the patch, one after the other, with consecutive numbers along the row:
-            slab, row, number of the first and end, and which value is the first, shape (run, 5).
-        first: first coarse place of a box, by axis and number in the patch.
-        weights: of the coarse places along an axis, by axis, number in the patch, and place.
-        taps: coarse places of a box along each axis.
-        out: the values, shape (value,).
+        runs: consecutive values along one row of the patch: slab, row, first and end index along the row, and the index
+            in ``values`` of the first one, shape (run, 5).
+        first_cells: first coarse index of a box, by axis and index in the patch.
+        weights: of the coarse values along an axis, by axis, index in the patch, and position in the box.
+        taps: coarse values of a box along each axis.
+        values: the values, shape (value,).
     """
-    line = np.empty(coarse.shape[2], out.dtype)
+    line = np.empty(coarse.shape[2], values.dtype)
     for n in range(unsigned(runs.shape[0])):
-        k, j, start, end, place = runs[n, 0], runs[n, 1], runs[n, 2], runs[n, 3], runs[n, 4]
-        low, high = first[2, start], first[2, end - UNIT] + taps[2]
-        for column in range(low, high):
+        k, j, start, end, value_start = runs[n, 0], runs[n, 1], runs[n, 2], runs[n, 3], runs[n, 4]
+        start_column, end_column = first_cells[2, start], first_cells[2, end - UNIT] + taps[2]
+        for column in range(start_column, end_column):
             line[column] = 0
         for a in range(taps[0]):
             for b in range(taps[1]):
-                share, slab, row = weights[0, k, a] * weights[1, j, b], first[0, k] + a, first[1, j] + b
-                for column in range(low, high):
-                    line[column] += share * coarse[slab, row, column]
+                weight, slab, row = weights[0, k, a] * weights[1, j, b], first_cells[0, k] + a, first_cells[1, j] + b
+                for column in range(start_column, end_column):
+                    line[column] += weight * coarse[slab, row, column]
         for i in range(start, end):
-            total = out.dtype.type(0)
+            total = values.dtype.type(0)
             for c in range(taps[2]):
-                total += weights[2, i, c] * line[first[2, i] + c]
-            out[place + i - start] = total
+                total += weights[2, i, c] * line[first_cells[2, i] + c]
+            values[value_start + i - start] = total
 
 
 class Around(NamedTuple):
-    """What one component of the velocity around a patch is read by; see ``_read``."""
+    """Interpolation stencil of one velocity component around a patch; see ``_interpolate``."""
 
     places: np.ndarray
-    """Where its values belong in the patch, flat."""
+    """Flat indices of the values in the padded patch."""
     runs: np.ndarray
-    """Their runs along the rows."""
+    """Runs of consecutive values along the rows."""
     first: np.ndarray
-    """First coarse places."""
+    """First coarse index of a box."""
     weights: np.ndarray
     """Weights of the coarse values."""
     taps: np.ndarray
-    """Coarse places of a box along each axis."""
+    """Coarse values of a box along each axis."""
 
 
 def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return the runs along the rows of flat places, which rise, in an array of three axes, shape (run, 5)."""
+    """Return the runs of consecutive cells along the rows, shape (run, 5); see ``_interpolate``.
+
+    Args:
+        places: flat indices of the cells, rising.
+        shape: padded shape of the patch, three axes.
+    """
     slab, row, number = np.unravel_index(places, shape)
     begins = np.flatnonzero(np.diff(places, prepend=-2) - 1 + (np.diff(row, prepend=-1) != 0))
     ends = np.append(begins[1:], places.size) - 1
@@ -223,92 +256,127 @@ def _runs(places: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 
 class Rim:
-    """The values around a patch, read from the coarser water: those on its sides and in the lines beyond them."""
+    """Interpolation of the velocity around a patch from the coarser water, on its sides and beyond them."""
 
-    def __init__(self, patch: Grid, around: Grid, sides: Sides, dtype: type) -> None:
+    def __init__(self, patch: Grid, coarse_grid: Grid, sides: Sides, dtype: type) -> None:
+        """Prepare the interpolation stencil of each velocity component.
+
+        Args:
+            patch: the fine cells.
+            coarse_grid: the coarse cells of the whole domain.
+            sides: sides of the patch.
+            dtype: precision of the fields.
+        """
         self._dtype = dtype
-        ratio, corner = place_of(patch, around)
+        ratio, corner = place_of(patch, coarse_grid)
         axes = patch.axes
         shape = tuple(n + 2 * PAD for n in reversed(patch.cells))
-        goes_on, repeats = [isinstance(side, Beyond) for side in sides.around(axes)], sides.repeats(axes)
-        self._around = []
+        is_coarse_side, repeats = [isinstance(side, Beyond) for side in sides.around(axes)], sides.repeats(axes)
+        self._stencils = []
         for c in range(axes):
-            outside, beyond = np.zeros(shape, bool), np.zeros(shape, bool)
+            is_rim, is_excluded = np.zeros(shape, bool), np.zeros(shape, bool)
             for d, n in enumerate(patch.cells):
-                lines, no = np.moveaxis(outside, axes - 1 - d, 0), np.moveaxis(beyond, axes - 1 - d, 0)
-                low, high = slice(0, PAD + (c == d and not repeats[d])), slice(PAD + n, None)
-                for end, on in zip((low, high), goes_on[2 * d :], strict=False):
-                    if on:
-                        lines[end] = True
+                rim_lines = np.moveaxis(is_rim, axes - 1 - d, 0)
+                excluded_lines = np.moveaxis(is_excluded, axes - 1 - d, 0)
+                low_end, high_end = slice(0, PAD + (c == d and not repeats[d])), slice(PAD + n, None)
+                for end, is_coarse in zip((low_end, high_end), is_coarse_side[2 * d :], strict=False):
+                    if is_coarse:
+                        rim_lines[end] = True
                     else:
-                        no[end] = True
-            places = np.flatnonzero(outside & ~beyond)
-            self._around.append(self._component(c, places, shape, ratio, corner))
+                        excluded_lines[end] = True
+            places = np.flatnonzero(is_rim & ~is_excluded)
+            self._stencils.append(self._component(c, places, shape, ratio, corner))
 
     def _component(
         self, c: int, places: np.ndarray, shape: tuple[int, ...], ratio: int, corner: tuple[int, ...]
     ) -> Around:
-        """Return what the component along an axis is read by at flat places of a patch of a padded shape."""
+        """Return the interpolation stencil of one velocity component.
+
+        Args:
+            c: axis of the component.
+            places: flat indices of the values in the padded patch.
+            shape: padded shape of the patch.
+            ratio: fine cells along a coarse cell [-].
+            corner: coarse cell in the low corner of the patch, x first [-].
+        """
         axes = len(shape)
         flat = 3 - axes  # of a plane the first of three axes is a single place
-        first, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
+        first_cells, taps = np.zeros((3, max(shape)), unsigned), np.ones(3, unsigned)
         weights: np.ndarray = np.zeros((3, max(shape), 4), self._dtype)
         weights[:flat, 0, 0] = 1
         for axis, n in enumerate(shape):
             d = axes - 1 - axis
-            where, share = _weights(np.arange(n), ratio, on_faces=c == d)
-            first[flat + axis, :n] = where[:, 0] + corner[d] + PAD
-            taps[flat + axis] = share.shape[1]
-            weights[flat + axis, :n, : share.shape[1]] = share
-        return Around(places, _runs(places, (1,) * flat + shape), first, weights, taps)
+            coarse_cells, axis_weights = _weights(np.arange(n), ratio, on_faces=c == d)
+            first_cells[flat + axis, :n] = coarse_cells[:, 0] + corner[d] + PAD
+            taps[flat + axis] = axis_weights.shape[1]
+            weights[flat + axis, :n, : axis_weights.shape[1]] = axis_weights
+        return Around(places, _runs(places, (1,) * flat + shape), first_cells, weights, taps)
 
     def read(self, coarse: np.ndarray) -> list[np.ndarray]:
-        """Return what the velocity around the patch is, component by component, by that on the coarse faces."""
-        found = []
-        for part, by in zip(coarse, self._around, strict=True):
-            out: np.ndarray = np.empty(by.places.size, self._dtype)
-            _read(part if part.ndim == 3 else part[None], by.runs, by.first, by.weights, by.taps, out)
-            found.append(out)
-        return found
+        """Return the velocity around the patch, interpolated from the coarse faces, one array for each component [m/s].
+
+        Args:
+            coarse: padded velocity of the coarse grid, shape (axis, ...) [m/s].
+        """
+        values = []
+        for component, stencil in zip(coarse, self._stencils, strict=True):
+            rim_values: np.ndarray = np.empty(stencil.places.size, self._dtype)
+            slabs = component if component.ndim == 3 else component[None]
+            _interpolate(slabs, stencil.runs, stencil.first, stencil.weights, stencil.taps, rim_values)
+            values.append(rim_values)
+        return values
 
     def write(self, velocity: np.ndarray, values: Sequence[np.ndarray]) -> None:
-        """Write what was read to the padded velocity of the patch."""
-        for part, by, found in zip(velocity, self._around, values, strict=True):
-            part.reshape(-1)[by.places] = found
+        """Write interpolated values, see ``read``, to the padded velocity of the patch."""
+        for component, stencil, rim_values in zip(velocity, self._stencils, values, strict=True):
+            component.reshape(-1)[stencil.places] = rim_values
 
 
 class Nested(Fluid):
-    """The water on a patch of fine cells, and around it on coarser ones; what it shows as a ``Fluid`` is the patch.
+    """The water on a patch of fine cells and on the coarser cells around it.
+
+    Its fields as a ``Fluid`` are those of the patch.
 
     Attributes:
         coarse: the water on the whole domain, which inside the patch holds means over the fine cells.
     """
 
     def __init__(
-        self, grid: Grid, around: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme,
+        self, grid: Grid, coarse_grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme,
         integrator: Integrator,
     ) -> None:  # fmt: skip
-        own = sides_of(grid, around, sides)
-        super().__init__(grid, own, viscosity, dtype, scheme, integrator)
-        self.coarse = Fluid(around, sides, viscosity, dtype, scheme, integrator)
-        self.ratio, corner = place_of(grid, around)
+        """Set up the patch and the coarse water around it.
+
+        Args:
+            grid: the fine cells of the patch.
+            coarse_grid: the coarse cells of the whole domain.
+            sides: sides of the domain.
+            viscosity: kinematic viscosity [m^2/s].
+            dtype: precision of the fields.
+            scheme: advection scheme.
+            integrator: time integrator.
+        """
+        patch_sides = sides_of(grid, coarse_grid, sides)
+        super().__init__(grid, patch_sides, viscosity, dtype, scheme, integrator)
+        self.coarse = Fluid(coarse_grid, sides, viscosity, dtype, scheme, integrator)
+        self.ratio, corner = place_of(grid, coarse_grid)
         self.coarse.least = least_cycles(max(grid.cells) // self.ratio)
-        self._rim = Rim(grid, around, own, dtype)
+        self._rim = Rim(grid, coarse_grid, patch_sides, dtype)
         self._values: list[np.ndarray] = []  # around the patch, as they were last read
-        self._before: list[np.ndarray] = []  # a round of the first step earlier
+        self._previous_values: list[np.ndarray] = []  # a round of the first step earlier
         counts = [n // self.ratio for n in grid.cells]
         self._cells = tuple(
             slice(a + PAD, a + PAD + n) for a, n in zip(corner[::-1], counts[::-1], strict=True)
         )  # fmt: skip
         self._faces = []
-        for c, again in enumerate(self.repeats):
-            here, at = list(self._cells), grid.axes - 1 - c
-            here[at] = slice(here[at].start + (not again), here[at].stop)
-            self._faces.append(tuple(here))
-        self._shares = any(not isinstance(side, Beyond) for side in own.around(grid.axes))
+        for c, is_periodic in enumerate(self.repeats):
+            face_slices, axis = list(self._cells), grid.axes - 1 - c
+            face_slices[axis] = slice(face_slices[axis].start + (not is_periodic), face_slices[axis].stop)
+            self._faces.append(tuple(face_slices))
+        self._shares = any(not isinstance(side, Beyond) for side in patch_sides.around(grid.axes))
         self._push: tuple[float, ...] = ()
         self._span = 0.0
-        self._given: np.ndarray = np.zeros(0)
+        self._coarse_acceleration: np.ndarray = np.zeros(0)
 
     @property
     def layers(self) -> list[Fluid]:
@@ -327,8 +395,8 @@ class Nested(Fluid):
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set what changes of both."""
         super().resume(state)
-        ahead = "coarse."
-        self.coarse.resume({name.removeprefix(ahead): state[name] for name in state if name.startswith(ahead)})
+        prefix = "coarse."
+        self.coarse.resume({name.removeprefix(prefix): state[name] for name in state if name.startswith(prefix)})
 
     def imposed(self, time: float) -> float:
         """Return the fastest speed that a side of the domain imposes; see ``Fluid``."""
@@ -353,17 +421,17 @@ class Nested(Fluid):
         """Refuse bodies that come too near to where the coarser cells begin."""
         if self.window[1] <= self.window[0]:
             return
-        apart, sides = CLEAR * self.ratio, self.sides.around(self.axes)
+        min_clearance, sides = CLEAR * self.ratio, self.sides.around(self.axes)
         for d, n in enumerate(self.grid.cells):
-            first, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
-            for k, room in enumerate((first - PAD, n + PAD - end)):
-                if isinstance(sides[2 * d + k], Beyond) and room < apart:
-                    names = ", ".join(body.name for body in bodies)
+            start, end = self.window[2 * (self.axes - 1 - d) : 2 * (self.axes - d)]
+            for k, clearance in enumerate((start - PAD, n + PAD - end)):
+                if isinstance(sides[2 * d + k], Beyond) and clearance < min_clearance:
+                    names, missing = ", ".join(body.name for body in bodies), min_clearance - clearance
                     raise InvalidDesign(
-                        f"at t = {time:.4g} s the cells around {names} come within {max(room, 0)} fine cells of the "
-                        f"{NAMES[2 * d + k]} side of the patch, and {apart} are needed, {CLEAR} coarse ones; give a "
-                        f"patch that is {(apart - room) * self.grid.cell:.3g} m larger there, or let the grid follow "
-                        f"the body."
+                        f"at t = {time:.4g} s the cells around {names} come within {max(clearance, 0)} fine cells of "
+                        f"the {NAMES[2 * d + k]} side of the patch, and {min_clearance} are needed, {CLEAR} coarse "
+                        f"ones; give a patch that is {missing * self.grid.cell:.3g} m larger there, or let the grid "
+                        f"follow the body."
                     )
 
     def _surround(self, velocity: np.ndarray, coarse: np.ndarray) -> None:
@@ -374,8 +442,8 @@ class Nested(Fluid):
 
     def _give(self, fine: np.ndarray, coarse: np.ndarray) -> None:
         """Put the mean velocity through the fine faces of each coarse face inside the patch in its place."""
-        for c, (part, whole) in enumerate(zip(fine, coarse, strict=True)):
-            self._average(part, whole[self._faces[c]], c)
+        for c, (fine_component, coarse_component) in enumerate(zip(fine, coarse, strict=True)):
+            self._average(fine_component, coarse_component[self._faces[c]], c)
 
     def _replace(self, fine: np.ndarray, coarse: np.ndarray) -> None:
         """Let the coarse velocity inside the patch be the mean of the fine one, and fit sides that both share."""
@@ -383,17 +451,17 @@ class Nested(Fluid):
         if self._shares:
             self.coarse.border.fill(coarse)
 
-    def _average(self, fine: np.ndarray, coarse: np.ndarray, across: int | None = None) -> None:
+    def _average(self, fine: np.ndarray, coarse: np.ndarray, face_axis: int | None = None) -> None:
         """Write means over the fine cells in each coarse one, or over the fine faces in each coarse face.
 
         Args:
             fine: padded values on the patch.
             coarse: where they go; the coarse cells of the patch, or the faces between them.
-            across: the axis that the faces lie across; None for cells.
+            face_axis: the axis that the faces lie across; None for cells.
         """
-        spans = [1 if d == across else self.ratio for d in reversed(range(self.axes))]
-        inner = across is not None and not self.repeats[across]  # the first face lies on a side
-        starts = [PAD + self.ratio * (d == across and inner) for d in reversed(range(self.axes))]
+        spans = [1 if d == face_axis else self.ratio for d in reversed(range(self.axes))]
+        inner = face_axis is not None and not self.repeats[face_axis]  # the first face lies on a side
+        starts = [PAD + self.ratio * (d == face_axis and inner) for d in reversed(range(self.axes))]
         steps = [self.ratio] * self.axes
         if self.axes == 2:
             fine, coarse, spans, starts, steps = fine[None], coarse[None], [1, *spans], [0, *starts], [1, *steps]
@@ -405,14 +473,14 @@ class Nested(Fluid):
         The level is that at which the outermost coarse cells of the patch have the mean that they had; returns by how
         much it rose [m^2/s^2].
         """
-        inside = self.coarse.p[self._cells]
-        mean = np.empty_like(inside)
+        coarse_pressure = self.coarse.p[self._cells]
+        mean = np.empty_like(coarse_pressure)
         self._average(self.p, mean)
-        rise = inside - mean
+        rise = coarse_pressure - mean
         core = rise[(slice(1, -1),) * self.axes]
         level = self.dtype((rise.sum(dtype=np.float64) - core.sum(dtype=np.float64)) / (rise.size - core.size))
         self.p += level
-        inside[:] = mean + level
+        coarse_pressure[:] = mean + level
         self.coarse._seal(self.coarse.p)
         return float(level)
 
@@ -421,23 +489,25 @@ class Nested(Fluid):
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
-        self._before, self.coarse.solves = [], []
+        """Prepare the sides of both grids for a step; see ``Fluid``."""
+        self._previous_values, self.coarse.solves = [], []
         self._span, self._push = self.coarse._begin(dt, stream, push, time)
         return super()._begin(dt, stream, push, time)
 
     def _plan(self, span: float) -> list[PlannedStage]:
-        both = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
-        return [stage._replace(beyond=beyond) for stage, beyond in both]
+        pairs = zip(super()._plan(span), self.coarse._plan(self._span), strict=True)
+        return [stage._replace(beyond=coarse_stage) for stage, coarse_stage in pairs]
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
-        coarse, beyond = self.coarse, stage.beyond
+        """Take one stage on both grids: fine advance, coarse advance and pressure, then the fine pressure."""
+        coarse, coarse_stage = self.coarse, stage.beyond
         self._advance(stage, push)
-        coarse._advance(beyond, self._push)
-        self._replace(stage.out, beyond.out)
-        coarse._project(beyond.out, beyond.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
-        self._surround(stage.out, beyond.out)
+        coarse._advance(coarse_stage, self._push)
+        self._replace(stage.out, coarse_stage.out)
+        coarse._project(coarse_stage.out, coarse_stage.solved, (TIGHTER * limits[0], TIGHTER * limits[1]))
+        self._surround(stage.out, coarse_stage.out)
         self._project(stage.out, stage.solved, limits)
-        self._replace(stage.out, beyond.out)
+        self._replace(stage.out, coarse_stage.out)
         self._give_pressure()
 
     def _hear(self, stage: PlannedStage) -> float:
@@ -447,15 +517,17 @@ class Nested(Fluid):
     def _learns(self) -> bool:
         return True
 
-    def _settled(self, last: PlannedStage, limits: tuple[float, float]) -> bool:
-        far, before, self._before = self._hear(last), self._before, self._values
-        if not before:
+    def _is_first_step_converged(self, last_stage: PlannedStage, limits: tuple[float, float]) -> bool:
+        """Return whether far water and velocity around the patch stayed the same in this round of the first step."""
+        side_change = self._hear(last_stage)
+        previous_values, self._previous_values = self._previous_values, self._values
+        if not previous_values:
             return False
-        change = max(float(np.abs(a - b).max()) for a, b in zip(before, self._values, strict=True))
-        return max(far, change) <= limits[1]
+        change = max(float(np.abs(a - b).max()) for a, b in zip(previous_values, self._values, strict=True))
+        return max(side_change, change) <= limits[1]
 
-    def _again(self, start: np.ndarray) -> None:
-        """Go on from the pressure that was found: both grids come to agree on it round by round."""
+    def _reset_first_step(self, start: np.ndarray) -> None:
+        """Keep the current pressure: the two grids converge to a common pressure round by round."""
 
     def _swap(self) -> None:
         super()._swap()
@@ -463,48 +535,54 @@ class Nested(Fluid):
 
     # --- what bodies that are accelerated meet -----------------------------------------------------------------
 
-    def _coarsened(self, given: np.ndarray) -> np.ndarray:
-        """Return what is given on the faces of the fine window on those of the coarse one."""
+    def _coarsened(self, face_values: np.ndarray) -> np.ndarray:
+        """Return values on the faces of the fine window, averaged onto those of the coarse window, (axis, ...)."""
         fine, coarse = np.zeros(self.velocity.shape), np.zeros(self.coarse.velocity.shape)
-        fine[:, *self.here] = given
+        fine[:, *self.here] = face_values
         self._give(fine, coarse)
         return coarse[:, *self.coarse.here]
 
-    def potential(self, given: np.ndarray, limit: float) -> np.ndarray:
+    def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure that answers a body acceleration on the patch; see ``Fluid``."""
-        self._given = self._coarsened(given)
-        self.coarse.potential(self._given, TIGHTER * limit)
-        return self._answering(given, self._through(self._given), limit)
+        self._coarse_acceleration = self._coarsened(acceleration)
+        self.coarse.potential(self._coarse_acceleration, TIGHTER * limit)
+        return self._answering(acceleration, self._side_velocity(self._coarse_acceleration), limit)
 
-    def press(self, given: np.ndarray, dt: float, limit: float) -> np.ndarray:
-        """Give velocities on the faces of the window to the water, and what its pressure answers; see ``Fluid``.
+    def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
+        """Add a velocity change to the water on both grids, with the pressure that it causes; see ``Fluid``.
 
-        What is solved for on both grids is the change alone: with what the step itself has left over of divergence in
-        it, a change ten thousand times smaller than the velocity drowns.
+        Only the change is solved for on both grids. The step leaves a divergence; beside it, a change ten thousand
+        times smaller than the velocity would be lost.
+
+        Args:
+            velocity_change: on the faces of the fine window, shape (axis, ...) [m/s].
+            dt: length of the step [s].
+            limit: mean divergence that may be left [m/s per cell].
         """
         span = self.dtype(dt / self.grid.cell)
-        self.coarse.press(self._coarsened(given), dt, TIGHTER * limit)
-        x = self._answering(given, self._through(self._coarsened(given)), limit)
-        self._answer_with(given, dt)
+        self.coarse.press(self._coarsened(velocity_change), dt, TIGHTER * limit)
+        x = self._answering(velocity_change, self._side_velocity(self._coarsened(velocity_change)), limit)
+        self._answer_with(velocity_change, dt)
         self._surround(self.velocity, self.coarse.velocity)
         self._replace(self.velocity, self.coarse.velocity)
         return x + (self._give_pressure() * span - self._level_of(x))  # as it was added to the pressure
 
-    def _through(self, given: np.ndarray) -> np.ndarray:
-        """Return what the coarse ``potential``'s last answer moves on the sides of the patch, a velocity of all of it.
+    def _side_velocity(self, acceleration: np.ndarray) -> np.ndarray:
+        """Return the velocity that the last coarse ``potential`` induces on the sides of the patch.
 
-        ``given`` is what that answers, on the faces of the coarse window.
+        Args:
+            acceleration: argument of that ``potential``, on the faces of the coarse window, shape (axis, ...).
         """
-        through = np.zeros(self.velocity.shape)
-        self._rim.write(through, self._rim.read(self.coarse._gained(given)))
-        return through
+        velocity = np.zeros(self.velocity.shape)
+        self._rim.write(velocity, self._rim.read(self.coarse._gained(acceleration)))
+        return velocity
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of ``potential``'s last answer along the sides of the domain; see ``Fluid``."""
         del x
         return self.coarse.along_sides(self.coarse._x.reshape(self.coarse.p.shape))
 
-    def answer(self, given: np.ndarray) -> list[np.ndarray]:
+    def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
         """Return the acceleration into the domain on each side that ``potential``'s last answer induces."""
-        del given
-        return self.coarse.answer(self._given)
+        del acceleration
+        return self.coarse.answer(self._coarse_acceleration)

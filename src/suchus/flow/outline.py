@@ -1,5 +1,5 @@
 # ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
-"""Rigid shapes of any outline: polygons, and whatever a signed distance says."""
+"""Rigid shapes of any outline: polygons, and shapes defined by a signed distance."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,10 +14,11 @@ from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Field, Solid, positive
 
-_STEPS = 200  # steps over a body's size in which the outline of a distance is walked along
-_MOST, _OFF = 0.9, 0.02  # share of an outline on which a distance has the gradient 1, but for corners, and how nearly
-_FLATTEST = 0.01  # share of it whose gradient is no measure: at corners it is a mean
-_BETWEEN = 8  # points that are then put in each step
+_STEPS = 200  # steps per size of a body with which its outline is traced
+_MIN_EXACT_FRACTION = 0.9  # fraction of an outline on which the gradient of a true distance is 1; corners are the rest
+_GRADIENT_TOLERANCE = 0.02  # deviation of such a gradient from 1
+_MIN_GRADIENT_QUANTILE = 0.01  # quantile of the gradient that bounds it from below: at corners it is a mean
+_SUBDIVISIONS = 8  # points per step after the refinement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,6 +33,7 @@ class Polygon(Solid):
     """Corners in order around it, either way, the first not repeated, shape (corner, 2) [m]."""
 
     def __post_init__(self) -> None:
+        """Check the corners and store them counter-clockwise, without repetitions."""
         corners = np.array(self.corners, dtype=np.float64)
         if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
             raise InvalidDesign(f"the corners have shape {corners.shape}; give rows of two finite numbers, x and y.")
@@ -47,23 +49,23 @@ class Polygon(Solid):
         object.__setattr__(self, "corners", corners if _area(corners) > 0 else corners[::-1].copy())
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal."""
+        """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m]."""
         px, py = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        out = np.empty((3, px.size))
-        measure_outline(out, px.ravel(), py.ravel(), self._around, self._flat)
-        d, nx, ny = out.reshape(3, *px.shape)
+        fields = np.empty((3, px.size))
+        measure_outline(fields, px.ravel(), py.ravel(), self._outline_points, self._flat)
+        d, nx, ny = fields.reshape(3, *px.shape)
         return d, nx, ny
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
-        """Return the field on the points of a window, as far as ``reach``."""
+        """Return distance, normal and velocity on the points of a window; see ``Shape.measure``."""
         h = float(x[-1] - x[0]) / (x.size - 1)
-        outline = np.stack(pose.to_world(*self._around))
+        outline = np.stack(pose.to_world(*self._outline_points))
         d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
         vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(*np.meshgrid(x, y)))
         return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
 
     @property
-    def _around(self) -> np.ndarray:
+    def _outline_points(self) -> np.ndarray:
         return np.ascontiguousarray(self.corners.T)
 
     @property
@@ -71,13 +73,13 @@ class Polygon(Solid):
         return 1e-9 * float(np.ptp(self.corners))
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the corners, and points between them about evenly spaced."""
+        """Return the corners and points between them, about ``count`` in all and about evenly spaced [m]."""
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         length = np.hypot(*edges.T)
         parts = np.maximum(1, np.round(count * length / length.sum())).astype(int)
-        within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-        share = within / np.repeat(parts, parts)
-        points = np.repeat(self.corners, parts, axis=0) + share[:, None] * np.repeat(edges, parts, axis=0)
+        edge_index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        fraction = edge_index / np.repeat(parts, parts)
+        points = np.repeat(self.corners, parts, axis=0) + fraction[:, None] * np.repeat(edges, parts, axis=0)
         return points[:, 0], points[:, 1]
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
@@ -111,10 +113,14 @@ def from_outline(points: np.ndarray | Path | str) -> Polygon:
 
 
 def _numbers(rows: list[list[str]], path: Path) -> list[list[float]]:
-    """Return the numbers of an outline's rows.
+    """Return the numbers in the rows of an outline file.
+
+    Args:
+        rows: words of each row.
+        path: name of the file, for the error message.
 
     Raises:
-        UnreadableFile: there are none, or words that are no numbers.
+        UnreadableFile: there is no row, or a word is not a number.
     """
     if not rows:
         raise UnreadableFile(f"the outline {path} is not two columns of numbers, x and y: it holds no row.")
@@ -129,29 +135,39 @@ def _numbers(rows: list[list[str]], path: Path) -> list[list[float]]:
 
 
 def _uncounted(rows: list[list[float]], path: Path) -> list[list[float]]:
-    """Return the corners of an outline that may begin with how many there are, or how many above and below a chord.
+    """Return the corners of an outline, without the counts that its first row may hold.
+
+    One count is the number of corners. Two counts are the numbers of corners on the upper and on the lower surface; the
+    two surfaces are then joined to one outline.
+
+    Args:
+        rows: numbers of each row.
+        path: name of the file, for the error message.
 
     Raises:
-        UnreadableFile: a row is not two numbers, or the count is another.
+        UnreadableFile: a row does not hold two numbers, or the counts do not match the rows.
     """
-    first, corners = rows[0], rows[1:]
-    whole = all(count == int(count) and count > 1 for count in first if abs(count) < 1e9) and bool(first)
-    if whole and len(first) in (1, 2) and sum(first) == len(corners) and all(len(row) == 2 for row in corners):
-        above = int(first[0])
-        # two surfaces, both from the nose on, which they share
-        return corners if len(first) == 1 else corners[:above][::-1] + corners[above + (corners[0] == corners[above]) :]
+    counts, corners = rows[0], rows[1:]
+    is_count = all(count == int(count) and count > 1 for count in counts if abs(count) < 1e9) and bool(counts)
+    if is_count and len(counts) in (1, 2) and sum(counts) == len(corners) and all(len(row) == 2 for row in corners):
+        if len(counts) == 1:
+            return corners
+        # two surfaces, both from the nose on, which may be in both
+        upper_count = int(counts[0])
+        return corners[:upper_count][::-1] + corners[upper_count + (corners[0] == corners[upper_count]) :]
     for row in rows:
         if len(row) != 2:
-            shown = " ".join(f"{number:g}" for number in row[:6])
-            counted = f"; a single number at the beginning is the count of rows after it, here {len(corners)}"
+            row_text = " ".join(f"{number:g}" for number in row[:6])
+            hint = f"; a single number at the beginning is the count of rows after it, here {len(corners)}"
             raise UnreadableFile(
-                f"the outline {path} is not two columns of numbers, x and y: it has the row {shown!r}"
-                f"{counted if row is first and len(row) == 1 else ''}."
+                f"the outline {path} is not two columns of numbers, x and y: it has the row {row_text!r}"
+                f"{hint if row is counts and len(row) == 1 else ''}."
             )
     return rows
 
 
 def _is_heading(rows: list[list[str]]) -> bool:
+    """Return whether the first row holds words that are not numbers."""
     try:
         [float(word) for word in (rows or [[]])[0]]
     except ValueError:
@@ -168,45 +184,48 @@ class Implicit(Solid):
     """
 
     sdf: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    """Signed distance to the surface at points (x, y) [m], negative inside; or, of another gradient than 1 on the
-    surface, anything that is 0 there and rises outward, which is divided by its gradient."""
+    """Signed distance to the surface at points (x, y) [m], negative inside. A function with another gradient is divided
+    by its gradient: it must be 0 on the surface and rise outward."""
     box: tuple[float, float, float, float]
     """A rectangle around the body: x0, x1, y0, y1 [m]."""
     _ring: np.ndarray = field(init=False, repr=False)
-    _least: float | None = field(init=False, repr=False)
+    _min_gradient: float | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_ring", _around(self.sdf, self.box))
+        object.__setattr__(self, "_ring", _trace_outline(self.sdf, self.box))
         sizes = np.hypot(*self._rises(*self._ring.T)) / (2 * self._step)
-        exact = np.quantile(np.abs(sizes - 1), _MOST) < _OFF
-        object.__setattr__(self, "_least", None if exact else float(np.quantile(sizes, _FLATTEST)))
+        exact = np.quantile(np.abs(sizes - 1), _MIN_EXACT_FRACTION) < _GRADIENT_TOLERANCE
+        object.__setattr__(self, "_min_gradient", None if exact else float(np.quantile(sizes, _MIN_GRADIENT_QUANTILE)))
 
     @property
     def _step(self) -> float:
         return 1e-6 * _size(self.box)
 
     def _rises(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return by how much the function rises over two steps along x and along y."""
+        """Return the differences of the function over two steps along x and along y."""
         step = self._step
         return self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal, the normal by differences."""
+        """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m].
+
+        The normal is a central difference.
+        """
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
-        flat = size < 1e-3 * self._step * (self._least or 1.0)  # in the very middle: any direction will do
+        flat = size < 1e-3 * self._step * (self._min_gradient or 1.0)  # at the centre any direction is right
         safe = np.where(flat, 1.0, size)
-        if self._least is not None:
-            value = value / np.maximum(size / (2 * self._step), self._least)
+        if self._min_gradient is not None:
+            value = value / np.maximum(size / (2 * self._step), self._min_gradient)
         return value, np.where(flat, 1.0, gx / safe), np.where(flat, 0.0, gy / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the body, evenly spaced."""
+        """Return ``count`` points around the body, evenly spaced [m]."""
         closed = np.concatenate([self._ring, self._ring[:1]])
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-        at = np.linspace(0, arc[-1], count, endpoint=False)
-        return np.interp(at, arc, closed[:, 0]), np.interp(at, arc, closed[:, 1])
+        arc_positions = np.linspace(0, arc[-1], count, endpoint=False)
+        return np.interp(arc_positions, arc, closed[:, 0]), np.interp(arc_positions, arc, closed[:, 1])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter of the largest circle inside, to a hundredth of the outline's size."""
@@ -241,18 +260,22 @@ def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Imp
     return Implicit(sdf=function, box=(x0, x1, y0, y1))
 
 
-def union(one: Solid, other: Solid) -> Implicit:
+def union(shape: Solid, other_shape: Solid) -> Implicit:
     """Return the body that is inside either of two, which must overlap."""
-    return _joined(one, other, np.minimum)
+    return _joined(shape, other_shape, np.minimum)
 
 
-def difference(one: Solid, other: Solid) -> Implicit:
+def difference(shape: Solid, other_shape: Solid) -> Implicit:
     """Return the body inside the first and not inside the second, which must leave it in one piece without a hole."""
-    return _joined(one, other, lambda a, b: np.maximum(a, -b))
+    return _joined(shape, other_shape, lambda a, b: np.maximum(a, -b))
 
 
 def scaled(shape: Solid, factor: float) -> Implicit:
-    """Return a shape ``factor`` times as large about the origin of its frame.
+    """Return a shape enlarged about the origin of its frame.
+
+    Args:
+        shape: the shape.
+        factor: ratio of the new size to the old one [-].
 
     Raises:
         InvalidDesign: the factor is not positive.
@@ -261,14 +284,16 @@ def scaled(shape: Solid, factor: float) -> Implicit:
     return from_sdf(lambda x, y: factor * shape.distance(x / factor, y / factor)[0], _box([shape], factor))
 
 
-def _joined(one: Solid, other: Solid, both: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
-    return from_sdf(lambda x, y: both(one.distance(x, y)[0], other.distance(x, y)[0]), _box([one, other], 1.0))
+def _joined(shape: Solid, other_shape: Solid, combine: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
+    return from_sdf(
+        lambda x, y: combine(shape.distance(x, y)[0], other_shape.distance(x, y)[0]), _box([shape, other_shape], 1.0)
+    )
 
 
 def _box(shapes: list[Solid], factor: float) -> tuple[float, float, float, float]:
     x, y = np.concatenate([np.stack(shape.outline(512)) for shape in shapes], axis=1) * factor
-    room = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
-    return float(x.min()) - room, float(x.max()) + room, float(y.min()) - room, float(y.max()) + room
+    margin = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
+    return float(x.min()) - margin, float(x.max()) + margin, float(y.min()) - margin, float(y.max()) + margin
 
 
 def _size(box: tuple[float, float, float, float]) -> float:
@@ -281,44 +306,55 @@ def _area(corners: np.ndarray) -> float:
 
 
 def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
-    """Return two edges that cross or touch and are not neighbours, if there are any."""
+    """Return the indices of two edges that cross or touch and are not neighbours; None if there are none.
+
+    Args:
+        corners: of a polygon, shape (corner, 2) [m].
+    """
     a, b = corners, np.roll(corners, -1, axis=0)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
         return np.sign((q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0])
 
     for k in range(len(corners)):
-        others = np.arange(k + 2, len(corners) - (k == 0))
-        if not others.size:
+        candidates = np.arange(k + 2, len(corners) - (k == 0))
+        if not candidates.size:
             continue
-        p, q = a[others], b[others]
-        apart = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
-        far = side(p, q, a[k]) * side(p, q, b[k]) > 0
-        beside = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
+        p, q = a[candidates], b[candidates]
+        is_on_one_side = side(a[k], b[k], p) * side(a[k], b[k], q) > 0
+        has_edge_on_one_side = side(p, q, a[k]) * side(p, q, b[k]) > 0
+        is_box_disjoint = (np.maximum(p, q) < np.minimum(a[k], b[k])).any(axis=1) | (
             np.minimum(p, q) > np.maximum(a[k], b[k])
         ).any(axis=1)
-        hit = np.flatnonzero(~(apart | far | beside))
+        hit = np.flatnonzero(~(is_on_one_side | has_edge_on_one_side | is_box_disjoint))
         if hit.size:
-            return k, int(others[hit[0]])
+            return k, int(candidates[hit[0]])
     return None
 
 
 def _widest(shape: Solid) -> float:
-    """Return the diameter of the largest circle inside the outline of a shape."""
+    """Return the diameter of the largest circle inside the outline of a shape [m]."""
     x, y = shape.outline(512)
     gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))
-    out = np.empty((3, gx.size))
-    measure_outline(out, gx.ravel(), gy.ravel(), np.stack([x, y]), 0.0)
-    return max(-2 * float(out[0].min()), 0.0)
+    fields = np.empty((3, gx.size))
+    measure_outline(fields, gx.ravel(), gy.ravel(), np.stack([x, y]), 0.0)
+    return max(-2 * float(fields[0].min()), 0.0)
 
 
-def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]) -> np.ndarray:
-    """Return the outline of where a function is negative, counter-clockwise, shape (point, 2) [m].
+def _trace_outline(
+    sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[float, float, float, float]
+) -> np.ndarray:
+    """Return the outline of the region in which a function is negative, counter-clockwise, shape (point, 2) [m].
 
-    It is walked along: a step ahead at right angles to the gradient, then back to zero by Newton's method.
+    The outline is traced point by point: each step goes at right angles to the gradient, and Newton's method then
+    returns the point to the zero of the function.
+
+    Args:
+        sdf: signed distance at points (x, y) [m].
+        box: rectangle around the body, x0, x1, y0, y1 [m].
 
     Raises:
-        InvalidDesign: there is no such place in the box, or it reaches the box's rim.
+        InvalidDesign: the function is nowhere negative in the box, or the region reaches the edge of the box.
     """
     x0, x1, y0, y1 = box
     gx, gy = np.meshgrid(np.linspace(x0, x1, 257), np.linspace(y0, y1, 257))
@@ -337,28 +373,33 @@ def _around(sdf: Callable[[np.ndarray, np.ndarray], np.ndarray], box: tuple[floa
         x, y = p
         return np.stack([sdf(x + eps, y) - sdf(x - eps, y), sdf(x, y + eps) - sdf(x, y - eps)]) / (2 * eps)
 
-    def onto(p: np.ndarray, times: int) -> np.ndarray:
+    def project(p: np.ndarray, times: int) -> np.ndarray:
         for _ in range(times):
             g = gradient(p)
             p = p - sdf(*p) * g / np.maximum((g * g).sum(axis=0), 1e-12)
         return p
 
-    inside = np.unravel_index(int(values.argmin()), values.shape)
-    row = values[inside[0], inside[1] :]
-    start = np.array([[gx[0, inside[1] + int(np.flatnonzero(row > 0)[0])]], [gy[inside[0], 0]]])
-    here = first = onto(start, 8)
-    points = [first]
+    deepest = np.unravel_index(int(values.argmin()), values.shape)
+    row = values[deepest[0], deepest[1] :]
+    start = np.array([[gx[0, deepest[1] + int(np.flatnonzero(row > 0)[0])]], [gy[deepest[0], 0]]])
+    point = first_point = project(start, 8)
+    points = [first_point]
     for _ in range(64 * _STEPS):
-        g = gradient(here)
-        here = onto(here + step * np.stack([-g[1], g[0]]) / np.maximum(np.hypot(*g), 1e-12), 2)
-        if len(points) > 3 and np.hypot(*(here - first)) < 0.75 * step:
-            return _finer(np.concatenate(points, axis=1), lambda p: onto(p, 3)).T
-        points.append(here)
+        g = gradient(point)
+        point = project(point + step * np.stack([-g[1], g[0]]) / np.maximum(np.hypot(*g), 1e-12), 2)
+        if len(points) > 3 and np.hypot(*(point - first_point)) < 0.75 * step:
+            return _refine_ring(np.concatenate(points, axis=1), lambda p: project(p, 3)).T
+        points.append(point)
     raise InvalidDesign("the outline of the signed distance does not close; its gradient should be about 1 near it.")
 
 
-def _finer(ring: np.ndarray, onto: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Return a ring of points, shape (2, point), with ``_BETWEEN`` times as many, all put onto the outline."""
-    share = np.arange(_BETWEEN) / _BETWEEN
-    ahead = np.roll(ring, -1, axis=1)
-    return onto((ring[:, :, None] * (1 - share) + ahead[:, :, None] * share).reshape(2, -1))
+def _refine_ring(ring: np.ndarray, project: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Return a ring with ``_SUBDIVISIONS`` times as many points, shape (2, point) [m].
+
+    Args:
+        ring: points around the body, shape (2, point) [m].
+        project: function that moves points onto the outline.
+    """
+    fraction = np.arange(_SUBDIVISIONS) / _SUBDIVISIONS
+    next_points = np.roll(ring, -1, axis=1)
+    return project((ring[:, :, None] * (1 - fraction) + next_points[:, :, None] * fraction).reshape(2, -1))

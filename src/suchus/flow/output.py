@@ -28,12 +28,15 @@ _NAMES = {
 
 
 def snapshot(sim: Fields) -> xr.Dataset:
-    """Return the fields at the cell centres now, dimensions (``z``,) ``y`` and ``x`` [m].
+    """Return the fields at the cell centres at the present time, dimensions (``z``,) ``y`` and ``x`` [m].
 
-    The velocity has the dimension ``component`` as well, and so has the vorticity in space.
-    The coordinates are those of the world: those of a grid that follows a body travel.
+    The velocity also has the dimension ``component``, and so has the vorticity in space. Coordinates and velocities are
+    those of the world frame, also for a grid that follows a body.
+
+    Args:
+        sim: the simulation whose fields are read.
     """
-    grid, (place, drift) = sim.water.grid, sim.frame
+    grid, (position, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
     names = tuple("xyz"[: grid.axes])
     cells = names[::-1]
@@ -42,20 +45,24 @@ def snapshot(sim: Fields) -> xr.Dataset:
         "velocity": (("component", *cells), velocity), "pressure": (cells, sim.pressure),
         "vorticity": (spin, sim.vorticity_at_centres), "fluid_share": (cells, sim.fluid_share),
     }  # fmt: skip
+    coords: dict[str, object] = {
+        name: (name, getattr(grid, name) + shift, {"units": "m"}) for name, shift in zip(names, position, strict=True)
+    }
     return xr.Dataset(
         {
             name: (dims, np.asarray(value, np.float32), {"units": _UNITS[name], "long_name": _NAMES[name]})
             for name, (dims, value) in values.items()
         },
-        coords={
-            **{name: (name, getattr(grid, name) + own, {"units": "m"}) for name, own in zip(names, place, strict=True)},
-            "component": list(names), "time": ((), sim.time, {"units": "s"}),
-        },
-    )  # fmt: skip
+        coords={**coords, "component": list(names), "time": ((), sim.time, {"units": "s"})},
+    )
 
 
 def save_vti(sim: Fields, path: Path | str) -> None:
-    """Write the fields now as a VTK ImageData file, which ParaView and VisIt open.
+    """Write the present fields to a VTK ImageData file, which ParaView and VisIt open.
+
+    Args:
+        sim: the simulation whose fields are written.
+        path: name of the file.
 
     Raises:
         Unwritable: naming the place.
@@ -64,6 +71,7 @@ def save_vti(sim: Fields, path: Path | str) -> None:
 
 
 def _vti(sim: Fields) -> bytes:
+    """Return the content of a VTK ImageData file with all fields, the numbers as raw little-endian floats."""
     data, grid, frame = snapshot(sim), sim.water.grid, sim.frame[0]
     flat, h = grid.axes == 2, float(grid.cell)
     x, y, z = (*(float(value) for value in np.array(grid.origin) + frame), 0)[:3]
@@ -99,10 +107,10 @@ def _vti(sim: Fields) -> bytes:
 
 @dataclass(slots=True)
 class FieldSeries:
-    """Fields at chosen times of a run, in a file: ``simulation.run(..., watch=series)``.
+    """Writes the fields at chosen times of a run to a file: ``simulation.run(..., watch=series)``.
 
-    Each is written as soon as it is reached, at the end of the first step from its time on; a run that is killed keeps
-    what it had, and one that goes on from a checkpoint adds to it.
+    Each entry is written at the end of the first step from its time on. A run that is killed keeps its entries, and a
+    run that continues from a checkpoint appends to them.
 
     Raises:
         InvalidDesign: on creation, for times that do not rise or a file that is neither .nc nor .pvd.
@@ -112,10 +120,11 @@ class FieldSeries:
     """``*.nc`` for NetCDF with all times, ``*.pvd`` for a series of .vti files beside it."""
     times: Sequence[float]
     """Times at which the fields are written: at the end of the first step from each on [s]."""
-    _next: int = field(default=0, init=False)
-    _last: float = field(default=-np.inf, init=False)
+    _next_index: int = field(default=0, init=False)
+    _last_time: float = field(default=-np.inf, init=False)
 
     def __post_init__(self) -> None:
+        """Check the file name and the times."""
         self.path, self.times = Path(self.path), tuple(float(time) for time in self.times)
         if self.path.suffix not in (".nc", ".pvd"):
             raise InvalidDesign(f"fields are to be written to {self.path}; give a name that ends with .nc or .pvd.")
@@ -123,30 +132,38 @@ class FieldSeries:
             raise InvalidDesign(f"the times of the fields are {self.times} s; give finite times that rise.")
 
     def __call__(self, sim: Fields) -> None:
-        """Write the fields, if it is time.
+        """Write the fields if a chosen time has been reached.
+
+        Args:
+            sim: the simulation after a step.
 
         Raises:
             Unwritable: naming the place.
             UnreadableFile: a file of that name holds something else.
         """
-        if not np.isfinite(self._last):  # those before this run were written by the one that it goes on from
+        if not np.isfinite(self._last_time):  # a continued run does not repeat earlier times
             started = sim.time - (sim.record.step[-1] if sim.record.step.size else 0.0)
-            while started > 0 and self._next < len(self.times) and self.times[self._next] <= started * (1 + 1e-12):
-                self._next += 1
-        self._last = sim.time
-        due = self._next
-        while self._next < len(self.times) and sim.time >= self.times[self._next] * (1 - 1e-12):
-            self._next += 1
-        if self._next > due:
+            if started > 0:
+                self._next_index = sum(time <= started * (1 + 1e-12) for time in self.times)
+        self._last_time = sim.time
+        due = self._next_index
+        while self._next_index < len(self.times) and sim.time >= self.times[self._next_index] * (1 - 1e-12):
+            self._next_index += 1
+        if self._next_index > due:
             (_add_to_netcdf if Path(self.path).suffix == ".nc" else _add_to_collection)(sim, Path(self.path))
 
 
 def _add_to_netcdf(sim: Fields, path: Path) -> None:
+    """Append the present fields to a NetCDF file; entries at or after the present time are replaced.
+
+    Raises:
+        UnreadableFile: the file holds something else.
+    """
     new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
         travelled = dict(zip("xyz", sim.frame[0], strict=False))
-        places: dict[str, object] = {name: new[name] - own for name, own in travelled.items()}
-        places |= {f"grid_{name}": ((), own, {"units": "m"}) for name, own in travelled.items()}
+        places: dict[str, object] = {name: new[name] - shift for name, shift in travelled.items()}
+        places |= {f"grid_{name}": ((), shift, {"units": "m"}) for name, shift in travelled.items()}
         new = new.assign_coords(places)
     new = new.expand_dims("time")
     if path.exists():
@@ -165,18 +182,27 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
 
 
 def _add_to_collection(sim: Fields, path: Path) -> None:
+    """Write the present fields to a new .vti file and add it to a ParaView collection (.pvd).
+
+    Entries at or after the present time are replaced.
+
+    Raises:
+        UnreadableFile: the collection cannot be read.
+    """
     entries: list[tuple[float, str]] = []
     if path.exists():
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise UnreadableFile(f"{path} cannot be read: {error}; give another name.") from error
-        entries = [(float(at), unescape(name)) for at, name in findall(r'timestep="([0-9.e+-]+)" file="([^"]+)"', text)]
+        entries = [
+            (float(time), unescape(name)) for time, name in findall(r'timestep="([0-9.e+-]+)" file="([^"]+)"', text)
+        ]
         entries = [entry for entry in entries if entry[0] < sim.time * (1 - 1e-12)]
     name = f"{path.stem}_{len(entries):04d}.vti"
     save_vti(sim, path.with_name(name))
     entries.append((float(sim.time), name))
-    rows = "\n".join(f'<DataSet timestep="{at!r}" file="{escape(file)}"/>' for at, file in entries)
+    rows = "\n".join(f'<DataSet timestep="{time!r}" file="{escape(file)}"/>' for time, file in entries)
     _write(
         path,
         f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="1.0">\n<Collection>\n{rows}\n</Collection>\n'

@@ -1,11 +1,12 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision and number of dimensions)
-"""The windows of all levels by themselves: small arrays on which extra smoothing steps cost next to nothing.
+"""Multigrid smoothing on the windows alone: small arrays on which extra smoothing steps cost almost nothing.
 
-A level's patch is its window and ``RIM`` cells around it, as far as they lie in the domain. Its cells lie end to end,
-so that a smoothing step is one long loop; the cells at the rim keep their value, because their inverse diagonal counts
-as 0. A row of ``rects`` is a patch: where it starts in the room, its padded cell indices, first and end along each
-axis, the last axis first, and how many pairs of smoothing steps it gets before and after.
+The patch of a level is its window and ``RIM`` cells around it, as far as they lie in the domain. The cells of a patch
+lie contiguously in memory, so that a smoothing step is one long loop. Cells at the edge of a patch keep their value,
+because their inverse diagonal is 0. A row of ``rects`` describes a patch: its offset in the buffer, its padded cell
+indices (first and end along each axis, the last axis first), and the number of pairs of smoothing steps before and
+after the coarse-grid correction.
 """
 
 from math import prod
@@ -17,16 +18,17 @@ from suchus.flow.slab import NONE, row_length, strides_like
 from suchus.flow.stencil import copy_slab, first_steps, relax_patch, weights
 
 ONE, TWO, RIGHT, INVERSE, FACES = range(5)
-"""What ``room[kind]`` holds: solution, its second copy, right side, inverse diagonal, and from there on face
-coefficients."""
+"""Kinds of values in the buffer: solution, its second copy, right side, inverse diagonal, and the face coefficients of
+each axis."""
 
 RIM = 8, 2
-"""Cells around a window that its patch takes in, in the plane and in space: the patch's rim jumps, and near a tail's
-end that must not be seen. In space 8 would make the patches of the coarser levels as large as the levels [-]."""
+"""Cells around a window that its patch includes, in the plane and in space [-]. The solution jumps at the edge of the
+patch, which must not be near the end of a thin tail. In space, 8 cells would make the patches of the coarser levels as
+large as the levels."""
 
 EXTRA = (6,), (6, 3, 1, 0)
-"""Pairs of smoothing steps in the patches, before and after, in the plane and in space, from the finest level on; the
-last number is that of all further levels. There the coefficients vary [-]."""
+"""Pairs of smoothing steps in the patches, before and after the coarse-grid correction, in the plane and in space, from
+the finest level on [-]. The last number holds for all further levels."""
 
 
 def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
@@ -41,147 +43,209 @@ def rects(layout: np.ndarray, repeats: tuple[bool, ...]) -> np.ndarray:
     """
     rows, offset, axes = [], 0, layout.shape[1] // 3
     rim, pairs = RIM[axes - 2], EXTRA[axes - 2]
-    beyond = [axes == 3 and not again for again in reversed(repeats)]
-    for k, place in enumerate(layout.tolist()):
-        first, end = place[1 + axes :: 2], place[2 + axes :: 2]
-        if end[0] > first[0]:
-            first = [max(a - rim, PAD - more) for a, more in zip(first, beyond, strict=True)]
-            ends = zip(end, place[1 : 1 + axes], beyond, strict=True)
-            end = [min(b + rim, n + PAD + more) for b, n, more in ends]
-        window = list(zip(first, end, strict=True))
+    includes_mirror = [axes == 3 and not is_periodic for is_periodic in reversed(repeats)]
+    for k, level_layout in enumerate(layout.tolist()):
+        begin, end = level_layout[1 + axes :: 2], level_layout[2 + axes :: 2]
+        if end[0] > begin[0]:
+            begin = [max(a - rim, PAD - extra_cell) for a, extra_cell in zip(begin, includes_mirror, strict=True)]
+            ends = zip(end, level_layout[1 : 1 + axes], includes_mirror, strict=True)
+            end = [min(b + rim, n + PAD + extra_cell) for b, n, extra_cell in ends]
+        window = list(zip(begin, end, strict=True))
         rows.append([offset, *(value for pair in window for value in pair), pairs[min(k, len(pairs) - 1)]])
         offset += prod(b - a for a, b in window)
     return np.array(rows, dtype=np.int64)
 
 
-def room_for(room: np.ndarray, patches: np.ndarray) -> np.ndarray:
-    """Return a room in which the patches have place, the old one if it will do."""
+def room_for(buffer: np.ndarray, patches: np.ndarray) -> np.ndarray:
+    """Return a buffer that holds all patches: the old one if it is large enough, else a new one.
+
+    Args:
+        buffer: the old buffer, shape (kind, cell).
+        patches: see ``rects``.
+    """
     ends = patches[-1, 1:-1].reshape(-1, 2)
     size = int(patches[-1, 0] + np.prod(ends[:, 1] - ends[:, 0]))
-    return room if size <= room.shape[1] else np.zeros((FACES + len(ends), size + size // 4), room.dtype)
+    return buffer if size <= buffer.shape[1] else np.zeros((FACES + len(ends), size + size // 4), buffer.dtype)
 
 
 @part
 def _sizes(rect, inner):
-    """Return how many slabs a patch has, and how many cells a slab of it and a row of it."""
-    high, last = rect[2] - rect[1], 2 * len(inner) + 1
-    wide = rect[last + 1] - rect[last]
-    return high, wide * (rect[4] - rect[3]) if len(inner) > 1 else wide, wide
+    """Return the number of slabs of a patch, the cells of one of its slabs, and the cells of one of its rows."""
+    slab_count, column_index = rect[2] - rect[1], 2 * len(inner) + 1
+    row_cells = rect[column_index + 1] - rect[column_index]
+    return slab_count, row_cells * (rect[4] - rect[3]) if len(inner) > 1 else row_cells, row_cells
 
 
 @part
-def patch(room, rect, inner, kind):
-    """Return what the room holds of one kind for one patch, shape (slab, cell)."""
-    high, length, _ = _sizes(rect, inner)
-    return room[kind, rect[0] : rect[0] + high * length].reshape(high, length)
+def patch(buffer, rect, inner, kind):
+    """Return the values of one kind and one patch, a view of the buffer, shape (slab, cell)."""
+    slab_count, length, _ = _sizes(rect, inner)
+    return buffer[kind, rect[0] : rect[0] + slab_count * length].reshape(slab_count, length)
 
 
 @part
 def _rows(rect, inner):
     """Return the first row of a patch in its level's slabs, its end, and first and end of the cells of a row."""
-    last = 2 * len(inner) + 1
+    column_index = 2 * len(inner) + 1
     r0, r1 = (unsigned(rect[3]), unsigned(rect[4])) if len(inner) > 1 else (NONE, UNIT)
-    return r0, r1, unsigned(rect[last]), unsigned(rect[last + 1])
+    return r0, r1, unsigned(rect[column_index]), unsigned(rect[column_index + 1])
 
 
 @part
-def _take(to, rect, a, inner):
-    """Copy a patch from an array of its level to the room."""
-    wide, (r0, r1, s, e) = row_length(inner, a.shape[1]), _rows(rect, inner)
-    for j in range(unsigned(to.shape[0])):
+def _take(target, rect, a, inner):
+    """Copy a patch from an array of its level.
+
+    Args:
+        target: values of the patch, shape (slab, cell).
+        rect: row of ``rects``.
+        a: array of the level.
+        inner: strides within a slab.
+    """
+    row_cells, (r0, r1, s, e) = row_length(inner, a.shape[1]), _rows(rect, inner)
+    for j in range(unsigned(target.shape[0])):
         for row in range(r0, r1):
-            left = row * wide + s
-            right = (row - r0) * (e - s)
+            level_start = row * row_cells + s
+            patch_start = (row - r0) * (e - s)
             for i in range(e - s):
-                to[j, right + i] = a[j + unsigned(rect[1]), left + i]
+                target[j, patch_start + i] = a[j + unsigned(rect[1]), level_start + i]
 
 
 @part
-def _close_sides(room, rect, place, inner):
-    """Close the faces on the sides of the domain that a patch in space reaches beyond."""
-    _, length, wide = _sizes(rect, inner)
+def _close_sides(buffer, rect, level_layout, inner):
+    """Set the coefficients to 0 on the faces where a patch in space extends beyond a side of the domain.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        level_layout: row of the layout for the level; see ``slab``.
+        inner: strides within a slab.
+    """
+    _, length, row_cells = _sizes(rect, inner)
     for d in range(len(inner) + 1):
-        face, r = patch(room, rect, inner, FACES + d), 5 - 2 * d
-        step = 1 if d == 0 else wide
-        for low in range(2):
-            if rect[r] >= PAD if low else rect[r + 1] <= place[3 - d] + PAD:
+        face, r = patch(buffer, rect, inner, FACES + d), 5 - 2 * d
+        step = 1 if d == 0 else row_cells
+        for is_low in range(2):
+            if rect[r] >= PAD if is_low else rect[r + 1] <= level_layout[3 - d] + PAD:
                 continue
-            line = 1 if low else rect[r + 1] - rect[r] - 1
+            line = 1 if is_low else rect[r + 1] - rect[r] - 1
             for j in range(face.shape[0]):
                 for i in range(length):
-                    at = j if d == len(inner) else i // step % wide if d == 0 else i // step
-                    if at == line:
+                    index = j if d == len(inner) else i // step % row_cells if d == 0 else i // step
+                    if index == line:
                         face[j, i] = 0
 
 
 @part
-def take_coefficients(room, rect, place, faces, dinv, inner):
-    """Copy the coefficients of a patch from its level, whose place is given, to the room."""
+def take_coefficients(buffer, rect, level_layout, faces, dinv, inner):
+    """Copy the coefficients of a patch from its level to the buffer.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        level_layout: row of the layout for the level; see ``slab``.
+        faces: face coefficients of the level along each axis.
+        dinv: inverse diagonal of the level.
+        inner: strides within a slab.
+    """
     for d in range(len(inner) + 1):
-        _take(patch(room, rect, inner, FACES + d), rect, faces[d], inner)
+        _take(patch(buffer, rect, inner, FACES + d), rect, faces[d], inner)
     if len(inner) > 1:
-        _close_sides(room, rect, place, inner)
-    inverse = patch(room, rect, inner, INVERSE)
+        _close_sides(buffer, rect, level_layout, inner)
+    inverse = patch(buffer, rect, inner, INVERSE)
     _take(inverse, rect, dinv, inner)
-    _, length, wide = _sizes(rect, inner)
+    _, length, row_cells = _sizes(rect, inner)
     for j in range(inverse.shape[0]):
-        for k in range(0, length, wide):
+        for k in range(0, length, row_cells):
             inverse[j, k] = 0
-            inverse[j, k + wide - 1] = 0
+            inverse[j, k + row_cells - 1] = 0
         if len(inner) > 1:
-            for i in range(wide):
+            for i in range(row_cells):
                 inverse[j, i] = 0
-                inverse[j, length - wide + i] = 0
+                inverse[j, length - row_cells + i] = 0
 
 
 @part
-def _relax(room, rect, inner, first, second):
-    x, y = patch(room, rect, inner, ONE), patch(room, rect, inner, TWO)
-    _, length, wide = _sizes(rect, inner)
-    strides = strides_like(inner, unsigned(wide)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
+def _relax(buffer, rect, inner, first_weight, second_weight):
+    """Smooth the solution of a patch by pairs of Jacobi steps with two weights.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``; its last number is the number of pairs.
+        inner: strides within a slab.
+        first_weight: Jacobi weight of the first step of a pair [-].
+        second_weight: Jacobi weight of the second step [-].
+    """
+    x, y = patch(buffer, rect, inner, ONE), patch(buffer, rect, inner, TWO)
+    _, length, row_cells = _sizes(rect, inner)
+    strides = strides_like(inner, unsigned(row_cells)) + (unsigned(length),)  # noqa: RUF005  numba unpacks no tuples
     copy_slab(y, 0, x, 0)
     copy_slab(y, y.shape[0] - 1, x, x.shape[0] - 1)
-    x, y, b = x.reshape(-1), y.reshape(-1), patch(room, rect, inner, RIGHT).reshape(-1)
-    faces, at = room[FACES:], unsigned(rect[0])
-    dinv = patch(room, rect, inner, INVERSE).reshape(-1)
+    x, y, b = x.reshape(-1), y.reshape(-1), patch(buffer, rect, inner, RIGHT).reshape(-1)
+    faces, offset = buffer[FACES:], unsigned(rect[0])
+    dinv = patch(buffer, rect, inner, INVERSE).reshape(-1)
     for _ in range(rect[-1]):
-        relax_patch(y, x, b, faces, at, dinv, strides, first)
-        relax_patch(x, y, b, faces, at, dinv, strides, second)
+        relax_patch(y, x, b, faces, offset, dinv, strides, first_weight)
+        relax_patch(x, y, b, faces, offset, dinv, strides, second_weight)
 
 
 @part
-def start(room, rect, b, inner):
-    """Write the first smoothing steps on a patch to the room; at its rim they are those without a body."""
-    _take(patch(room, rect, inner, RIGHT), rect, b, inner)
-    x = patch(room, rect, inner, ONE)
-    wide, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
+def start(buffer, rect, b, inner):
+    """Write the first smoothing steps on a patch to the buffer; at the edge of the patch they are those without a body.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        b: right side of the level.
+        inner: strides within a slab.
+    """
+    _take(patch(buffer, rect, inner, RIGHT), rect, b, inner)
+    x = patch(buffer, rect, inner, ONE)
+    row_cells, (r0, r1, s, e) = row_length(inner, b.shape[1]), _rows(rect, inner)
     for j in range(rect[1], rect[2]):
         for row in range(r0, r1):
-            left = row * wide
-            first_steps(x, j - rect[1], left + s - (row - r0) * (e - s), b, j, inner, left + s, left + e)
-    one, two = weights(inner, room.dtype.type)
-    _relax(room, rect, inner, one, two)
+            row_start = row * row_cells
+            first_steps(x, j - rect[1], row_start + s - (row - r0) * (e - s), b, j, inner, row_start + s, row_start + e)
+    first_weight, second_weight = weights(inner, buffer.dtype.type)
+    _relax(buffer, rect, inner, first_weight, second_weight)
 
 
 @part
-def end(room, rect, x, inner):
-    """Smooth ``x`` on a patch."""
-    own = patch(room, rect, inner, ONE)
-    _take(own, rect, x, inner)
-    one, two = weights(inner, room.dtype.type)
-    _relax(room, rect, inner, two, one)
+def end(buffer, rect, x, inner):
+    """Smooth the solution of a level on a patch.
+
+    Args:
+        buffer: values of all patches.
+        rect: row of ``rects``.
+        x: solution of the level, which is changed.
+        inner: strides within a slab.
+    """
+    solution = patch(buffer, rect, inner, ONE)
+    _take(solution, rect, x, inner)
+    first_weight, second_weight = weights(inner, buffer.dtype.type)
+    _relax(buffer, rect, inner, second_weight, first_weight)
     for j in range(rect[1] + 1, rect[2] - 1):
-        give_slab(x, j, own, rect, j, inner)
+        give_slab(x, j, solution, rect, j, inner)
 
 
 @part
-def give_slab(out, o, own, rect, slab, inner):
-    """Copy a slab of a patch's solution, but for its rim, to slab ``o`` of ``out``; it may not have that slab."""
+def give_slab(output, o, solution, rect, slab, inner):
+    """Copy one slab of a patch's solution, except the edge of the patch, to a slab of another array.
+
+    Nothing happens if the patch does not contain the slab.
+
+    Args:
+        output: the other array.
+        o: slab of ``output``.
+        solution: solution of the patch, shape (slab, cell).
+        rect: row of ``rects``.
+        slab: slab of the level.
+        inner: strides within a slab.
+    """
     if rect[1] < slab < rect[2] - 1:
         o, j = unsigned(o), unsigned(slab - rect[1])
-        wide, (r0, r1, s, e) = row_length(inner, out.shape[1]), _rows(rect, inner)
+        row_cells, (r0, r1, s, e) = row_length(inner, output.shape[1]), _rows(rect, inner)
         f0, f1 = (r0 + UNIT, r1 - UNIT) if len(inner) > 1 else (r0, r1)
         for row in range(f0, f1):
-            left, right = row * wide + s, (row - r0) * (e - s)
+            level_start, patch_start = row * row_cells + s, (row - r0) * (e - s)
             for i in range(UNIT, (e - s) - UNIT):
-                out[o, left + i] = own[j, right + i]
+                output[o, level_start + i] = solution[j, patch_start + i]

@@ -2,10 +2,10 @@
 # (the kernels get their types from numba, once per precision and number of dimensions)
 """The pressure equation: conjugate gradients, preconditioned by one multigrid cycle.
 
-Solves ``-div(c grad x) = b`` from nothing; the caller has already applied the last pressure, which is the warm
-start. Stops when both the mean and the largest residual are small. The multigrid cycle is not symmetric, so each
-new direction is made orthogonal to the last one explicitly (flexible conjugate gradients, Notay 2000, SIAM J.
-Sci. Comput. 22, 1444-1460).
+Solves ``-div(c grad x) = b`` from a zero initial value; the caller has already applied the last pressure, which is the
+warm start. The iteration stops when both the mean and the largest residual are small. The multigrid cycle is not
+symmetric. Each new direction is therefore made orthogonal to the last one explicitly (flexible conjugate gradients,
+Notay 2000, SIAM J. Sci. Comput. 22, 1444-1460).
 """
 
 from dataclasses import dataclass
@@ -19,57 +19,80 @@ from suchus.flow.slab import EDGE, LEAST, block_of, row_count, row_length
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
 PARALLEL = 1e-3
-"""Share of (z, A z) that must be left once z is orthogonal to the last direction: with less it stays as it is [-]."""
+"""Ratio of (z, A z) after to before z is made orthogonal to the last direction, below which z is not changed [-]."""
 
 WORSE = 3.0
-"""Growth of the residual over the smallest so far at which a solve that is ``NEARLY`` done drops the iteration [-]."""
+"""Ratio of the residual to the smallest so far above which a nearly converged solve drops the iteration [-]; see
+``NEARLY``."""
 
 STALLED = 3
-"""Cycles without progress after which rounding, not the residual, is what is left [-]."""
+"""Cycles without progress after which a nearly converged solve stops, because rounding prevents a smaller residual
+[-]."""
 
 NEARLY = 10.0
-"""Residual over its limit below which that many cycles count [-]; farther off, a body hinders the cycles, and ..."""
+"""Ratio of the residual to its limit below which a solve is nearly converged [-]."""
 
 PATIENCE = 15
-"""... so many may pass [-]."""
+"""Cycles without progress after which a solve stops that is not nearly converged [-]: a body slows down the cycles."""
 
 
 @part
 def _dots(z, az, r, d, slab, inner):
-    """Return (z, A z), (d, A z), (r, z) and (r, d) of a slab; the last is nearly nothing, so r's sums are double."""
-    j, wide = unsigned(slab), row_length(inner, z.shape[1])
-    all_own, all_old, gain, left = 0.0, 0.0, 0.0, 0.0
+    """Return the products (z, A z), (d, A z), (r, z) and (r, d) of one slab.
+
+    (r, d) nearly cancels, so the sums with r are in double precision.
+
+    Args:
+        z: preconditioned residual, shape (slab, cell).
+        az: A z of this slab, shape (1, cell).
+        r: residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        slab: the slab.
+        inner: strides within a slab.
+    """
+    j, row_cells = unsigned(slab), row_length(inner, z.shape[1])
+    z_az, d_az, r_z, r_d = 0.0, 0.0, 0.0, 0.0
     for n in range(row_count(inner, z.shape[1])):
-        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
-        own, old = z.dtype.type(0.0), z.dtype.type(0.0)
-        for k in range(s, s + wide - EDGE - EDGE):
-            own += z[j, k] * az[0, k]
-            old += d[j, k] * az[0, k]
-            gain += np.float64(r[j, k]) * np.float64(z[j, k])
-            left += np.float64(r[j, k]) * np.float64(d[j, k])
-        all_own += own
-        all_old += old
-    return all_own, all_old, gain, left
+        s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+        row_z_az, row_d_az = z.dtype.type(0.0), z.dtype.type(0.0)
+        for k in range(s, s + row_cells - EDGE - EDGE):
+            row_z_az += z[j, k] * az[0, k]
+            row_d_az += d[j, k] * az[0, k]
+            r_z += np.float64(r[j, k]) * np.float64(z[j, k])
+            r_d += np.float64(r[j, k]) * np.float64(d[j, k])
+        z_az += row_z_az
+        d_az += row_d_az
+    return z_az, d_az, r_z, r_d
 
 
 @threaded_part
-def _measure(z, r, d, faces, place, inner, sums):
-    """Write each slab's sums of (z, A z), (d, A z), (r, z) and (r, d)."""
+def _measure(z, r, d, faces, level_layout, inner, sums):
+    """Write the products (z, A z), (d, A z), (r, z) and (r, d) of each slab to ``sums``; see ``_dots``.
+
+    Args:
+        z: preconditioned residual, shape (slab, cell).
+        r: residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        level_layout: row of the layout for that level; see ``slab``.
+        inner: strides within a slab.
+        sums: the products, shape (slab, 4).
+    """
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
-        first = PAD + signed(n) * block
+        block_start = PAD + signed(n) * block
         az = np.empty((1, z.shape[1]), z.dtype)
-        for j in range(first, min(first + block, end)):
-            apply_slabs(az, 0, z, j - 1, j, j + 1, faces, place, j, inner)
+        for j in range(block_start, min(block_start + block, end)):
+            apply_slabs(az, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
             sums[j, 0], sums[j, 1], sums[j, 2], sums[j, 3] = _dots(z, az, r, d, j, inner)
 
 
 @part
-def _mix(out, o, z, d, slab, a, b):
+def _mix(output, o, z, d, slab, a, b):
     o, j = unsigned(o), unsigned(slab)
     for k in range(unsigned(z.shape[1])):
-        out[o, k] = a * z[j, k] + b * d[j, k]
+        output[o, k] = a * z[j, k] + b * d[j, k]
 
 
 @part
@@ -80,65 +103,110 @@ def _rise(x, e, slab, alpha):
 
 
 @part
-def _lower(r, slab, q, alpha, inner):
-    """Subtract ``alpha`` times the one slab of ``q`` from a slab of ``r``; return its summed size."""
-    whole, j, wide = 0.0, unsigned(slab), row_length(inner, r.shape[1])
+def _subtract_scaled(r, slab, q, alpha, inner):
+    """Subtract ``alpha q`` from a slab of ``r`` and return the sum of its absolute values.
+
+    Args:
+        r: residual, shape (slab, cell).
+        slab: the slab.
+        q: values to subtract, shape (1, cell).
+        alpha: step length.
+        inner: strides within a slab.
+    """
+    slab_sum, j, row_cells = 0.0, unsigned(slab), row_length(inner, r.shape[1])
     for n in range(row_count(inner, r.shape[1])):
-        s = EDGE + (EDGE + n) * wide if len(inner) > 1 else EDGE
-        total = r.dtype.type(0.0)
-        for k in range(s, s + wide - EDGE - EDGE):
+        s = EDGE + (EDGE + n) * row_cells if len(inner) > 1 else EDGE
+        row_sum = r.dtype.type(0.0)
+        for k in range(s, s + row_cells - EDGE - EDGE):
             r[j, k] -= alpha * q[0, k]
-            total += abs(r[j, k])
-        whole += total
-    return whole
+            row_sum += abs(r[j, k])
+        slab_sum += row_sum
+    return slab_sum
 
 
 @threaded_part
-def _first_step(r, z, faces, place, alpha, inner, repeats, sums):
-    """Write ``r -= alpha A z`` and each slab's sum of |r| and largest |r|."""
+def _first_step(r, z, faces, level_layout, alpha, inner, repeats, sums):
+    """Write ``r -= alpha A z``, and the sum and the maximum of |r| of each slab.
+
+    Args:
+        r: residual, shape (slab, cell).
+        z: direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        level_layout: row of the layout for that level; see ``slab``.
+        alpha: step length.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: sum and maximum of each slab, shape (slab, 4).
+    """
     end = z.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
-        first = PAD + signed(n) * block
+        block_start = PAD + signed(n) * block
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
-        for j in range(first, min(first + block, end)):
-            apply_slabs(q, 0, z, j - 1, j, j + 1, faces, place, j, inner)
-            sums[j, 0] = _lower(r, j, q, alpha, inner)
+        for j in range(block_start, min(block_start + block, end)):
+            apply_slabs(q, 0, z, j - 1, j, j + 1, faces, level_layout, j, inner)
+            sums[j, 0] = _subtract_scaled(r, j, q, alpha, inner)
             sums[j, 1] = largest_size(r, j, inner, top)
             seal_slab(r, j, inner, repeats)
 
 
 @threaded_part
-def _step(r, z, d, faces, place, alpha, beta, inner, repeats, sums):
-    """Write ``r -= alpha A (z + beta d)`` and each slab's sum of |r| and largest |r|."""
-    end, one = z.shape[0] - PAD, z.dtype.type(1.0)
+def _step(r, z, d, faces, level_layout, alpha, beta, inner, repeats, sums):
+    """Write ``r -= alpha A (z + beta d)``, and the sum and the maximum of |r| of each slab.
+
+    Args:
+        r: residual, shape (slab, cell).
+        z: preconditioned residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        faces: face coefficients of the finest level along each axis.
+        level_layout: row of the layout for that level; see ``slab``.
+        alpha: step length.
+        beta: share of the last direction in the new one.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: sum and maximum of each slab, shape (slab, 4).
+    """
+    end, unity = z.shape[0] - PAD, z.dtype.type(1.0)
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):
         q, top = np.empty((1, z.shape[1]), z.dtype), np.empty(LANES, z.dtype)
         rows = np.empty((3, z.shape[1]), z.dtype)
-        low, mid, high = 0, 1, 2
-        first = PAD + signed(n) * block
-        for j in range(first - 1, min(first + block, end) + 1):
-            low, mid, high = mid, high, low
-            _mix(rows, high, z, d, j, one, beta)
-            if j > first:
+        lower_slab, mid, upper_slab = 0, 1, 2
+        block_start = PAD + signed(n) * block
+        for j in range(block_start - 1, min(block_start + block, end) + 1):
+            lower_slab, mid, upper_slab = mid, upper_slab, lower_slab
+            _mix(rows, upper_slab, z, d, j, unity, beta)
+            if j > block_start:
                 c = j - 1
-                apply_slabs(q, 0, rows, low, mid, high, faces, place, c, inner)
-                sums[c, 0] = _lower(r, c, q, alpha, inner)
+                apply_slabs(q, 0, rows, lower_slab, mid, upper_slab, faces, level_layout, c, inner)
+                sums[c, 0] = _subtract_scaled(r, c, q, alpha, inner)
                 sums[c, 1] = largest_size(r, c, inner, top)
                 seal_slab(r, c, inner, repeats)
 
 
 @threaded_part
-def _keep(x, e, z, d, alpha, beta, before, inner):
-    """Write ``e = z + beta d`` and ``x = alpha e + before d``, or ``x += alpha e`` if ``before`` is 0."""
-    one, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
+def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
+    """Write the new direction ``e = z + beta d`` and the solution ``x = alpha e + previous_alpha d``.
+
+    If ``previous_alpha`` is 0, the solution is ``x += alpha e``.
+
+    Args:
+        x: solution, shape (slab, cell).
+        e: new direction, shape (slab, cell).
+        z: preconditioned residual, shape (slab, cell).
+        d: last direction, shape (slab, cell).
+        alpha: step length along ``e``.
+        beta: share of the last direction in the new one.
+        previous_alpha: step length along ``d`` that is not yet in ``x``.
+        inner: strides within a slab.
+    """
+    unity, block = z.dtype.type(1.0), block_of(inner, x.shape[0], LEAST)
     for n in prange((x.shape[0] + block - 1) // block):
-        first = signed(n) * block
-        for j in range(first, min(first + block, x.shape[0])):
-            _mix(e, j, z, d, j, one, beta)
-            if before != 0:
-                _mix(x, j, z, d, j, alpha, alpha * beta + before)
+        block_start = signed(n) * block
+        for j in range(block_start, min(block_start + block, x.shape[0])):
+            _mix(e, j, z, d, j, unity, beta)
+            if previous_alpha != 0:
+                _mix(x, j, z, d, j, alpha, alpha * beta + previous_alpha)
             else:
                 _rise(x, e, j, alpha)
 
@@ -152,84 +220,99 @@ def _total(sums, column):
 
 
 @part
-def _most(sums, column):
-    most, k = 0.0, unsigned(column)
+def _max_of_column(sums, column):
+    maximum, k = 0.0, unsigned(column)
     for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
-        most = sums[j, k] if sums[j, k] > most else most
-    return most
+        maximum = sums[j, k] if sums[j, k] > maximum else maximum
+    return maximum
 
 
 @compiled
-def solve(x, d, q, store, layout, room, rects, inner, repeats, sums, mean_limit, max_limit, least, most):
-    """Solve for the right side ``B`` of level 0, in which the residual is left; ``x``, ``d`` and ``q`` are room.
+def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limit, max_limit, min_cycles, max_cycles):
+    """Solve for the right side ``B`` of level 0; on return ``B`` is the residual.
 
-    One iteration or two are what a step of the flow takes, so what they add up to is left to who reads it. It takes at
-    least ``least`` of them and at most ``most``.
+    A step of the flow takes one or two iterations, so the caller adds up their directions.
+
+    Args:
+        x: work array, shape (slab, cell).
+        d: direction, shape (slab, cell).
+        q: work array, shape (slab, cell).
+        store: values of all multigrid levels.
+        layout: of the levels; see ``slab``.
+        buffer: values of the patches; see ``patch``.
+        rects: the patches; see ``patch``.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: work array, shape (slab, 4).
+        mean_limit: mean residual at which the iteration stops.
+        max_limit: largest residual at which the iteration stops.
+        min_cycles: fewest iterations.
+        max_cycles: most iterations.
 
     Returns:
-        iterations, mean residual, largest residual, and the numbers ``a`` and ``b`` with which the solution is
+        iterations, mean residual, largest residual, and the factors ``a`` and ``b`` with which the solution is
         ``a d + b X``, where ``X`` is that of level 0.
     """
     r, z = level(store, layout, inner, B, 0), level(store, layout, inner, X, 0)
-    faces, place, real = faces_of(store, layout, inner, 0), layout[0], store.dtype.type
+    faces, level_layout, real = faces_of(store, layout, inner, 0), layout[0], store.dtype.type
     cells = 1
     for axis in range(len(inner) + 1):
-        cells *= place[1 + axis]
-    last, alpha, beta, before = 1.0, 0.0, 0.0, 0.0
-    begun, due, kept = d, False, False
-    mean, largest, best, since = 0.0, 0.0, np.inf, 0
+        cells *= level_layout[1 + axis]
+    d_ad, alpha, beta, previous_alpha = 1.0, 0.0, 0.0, 0.0
+    initial_d, is_pending, is_stored = d, False, False
+    mean, maximum, min_excess, stalled_cycles = 0.0, 0.0, np.inf, 0
     k = 0
-    while k < most and since < (STALLED if best <= NEARLY else PATIENCE):
+    while k < max_cycles and stalled_cycles < (STALLED if min_excess <= NEARLY else PATIENCE):
         if k >= 2:
-            _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
-            d, q, before, due, kept = q, d, 0.0, False, True
-        cycle(d if k == 0 else z, store, layout, room, rects, inner, repeats)
-        _measure(d if k == 0 else z, r, d, faces, place, inner, sums)
-        own, old, gain = _total(sums, 0), _total(sums, 1), _total(sums, 2)
-        turn = 0.0 if k == 0 else -old / last
-        last = own + turn * old
-        if last < PARALLEL * own:
-            turn, last = 0.0, own
-        if not last > 0:
+            _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
+            d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
+        cycle(d if k == 0 else z, store, layout, buffer, rects, inner, repeats)
+        _measure(d if k == 0 else z, r, d, faces, level_layout, inner, sums)
+        z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
+        turn = 0.0 if k == 0 else -d_az / d_ad
+        d_ad = z_az + turn * d_az
+        if d_ad < PARALLEL * z_az:
+            turn, d_ad = 0.0, z_az
+        if not d_ad > 0:
             break
-        alpha, beta = (gain + turn * _total(sums, 3)) / last, turn
+        alpha, beta = (r_z + turn * _total(sums, 3)) / d_ad, turn
         if k == 0:
-            _first_step(r, d, faces, place, real(alpha), inner, repeats, sums)
-            before = alpha
+            _first_step(r, d, faces, level_layout, real(alpha), inner, repeats, sums)
+            previous_alpha = alpha
         else:
-            _step(r, z, d, faces, place, real(alpha), real(beta), inner, repeats, sums)
-            due = True
+            _step(r, z, d, faces, level_layout, real(alpha), real(beta), inner, repeats, sums)
+            is_pending = True
         k += 1
-        before_last = mean, largest
-        mean, largest = _total(sums, 0) / cells, _most(sums, 1)
-        if k >= least and mean <= mean_limit and largest <= max_limit:
+        previous_residuals = mean, maximum
+        mean, maximum = _total(sums, 0) / cells, _max_of_column(sums, 1)
+        if k >= min_cycles and mean <= mean_limit and maximum <= max_limit:
             break
-        worst = max(mean / mean_limit, largest / max_limit)
-        if k > 2 and worst > WORSE * best and best <= NEARLY:
-            mean, largest = before_last
-            due = False
+        excess = max(mean / mean_limit, maximum / max_limit)
+        if k > 2 and excess > WORSE * min_excess and min_excess <= NEARLY:
+            mean, maximum = previous_residuals
+            is_pending = False
             break
-        since = 0 if worst < 0.8 * best else since + 1
-        best = min(best, worst)
-    if not kept:
-        return k, mean, largest, before + due * alpha * beta, due * alpha
-    if due:
-        _keep(x, q, z, d, real(alpha), real(beta), real(before), inner)
+        stalled_cycles = 0 if excess < 0.8 * min_excess else stalled_cycles + 1
+        min_excess = min(min_excess, excess)
+    if not is_stored:
+        return k, mean, maximum, previous_alpha + is_pending * alpha * beta, is_pending * alpha
+    if is_pending:
+        _keep(x, q, z, d, real(alpha), real(beta), real(previous_alpha), inner)
     for j in range(x.shape[0]):
-        copy_slab(begun, j, x, j)
-    return k, mean, largest, 1.0, 0.0
+        copy_slab(initial_d, j, x, j)
+    return k, mean, maximum, 1.0, 0.0
 
 
 @dataclass(slots=True)
 class Solve:
-    """How one pressure solve went."""
+    """Statistics of one pressure solve."""
 
     cycles: int
     """Iterations [-]."""
     mean: float
-    """Mean divergence left over [m/s per cell]."""
+    """Mean of the remaining divergence [m/s per cell]."""
     largest: float
-    """Largest divergence left over [m/s per cell]."""
+    """Largest remaining divergence [m/s per cell]."""
 
 
 def levels(cells: tuple[int, ...]) -> np.ndarray:
@@ -251,7 +334,12 @@ def levels(cells: tuple[int, ...]) -> np.ndarray:
 
 
 def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
-    """Return the store of a layout with all coefficients 1."""
+    """Return the store of a layout, in which all coefficients are 1 as in water without bodies.
+
+    Args:
+        layout: of the levels; see ``levels``.
+        dtype: precision of the fields.
+    """
     axes = layout.shape[1] // 3
     sizes = (layout[:, 1 : 1 + axes] + 2 * PAD).prod(axis=1)
     store = np.zeros(layout[-1, 0] + (FACES + axes) * sizes[-1], dtype)
@@ -262,12 +350,17 @@ def make_store(layout: np.ndarray, dtype: type) -> np.ndarray:
 
 
 def place_window(layout: np.ndarray, window: Window) -> None:
-    """Write the window (first and end along each axis, the last axis first, padded) and its coarser images."""
+    """Write a window and its coarser images to the layout of all levels.
+
+    Args:
+        layout: of the levels; see ``slab``.
+        window: padded indices, first and end along each axis, the last axis first.
+    """
     axes = layout.shape[1] // 3
-    first, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
+    start, end = ([value - PAD for value in window[k::2]] for k in (0, 1))
     for row in layout:
         cells = row[1 : 1 + axes].tolist()
-        inside = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(first, end, cells, strict=True)]
-        row[1 + axes :] = [value for pair in inside for value in pair]
-        if end[0] > first[0]:
-            first, end = [a // 2 - 1 for a in first], [(b + 1) // 2 + 1 for b in end]
+        bounds = [(max(a, 0) + PAD, min(b, n) + PAD) for a, b, n in zip(start, end, cells, strict=True)]
+        row[1 + axes :] = [value for pair in bounds for value in pair]
+        if end[0] > start[0]:
+            start, end = [a // 2 - 1 for a in start], [(b + 1) // 2 + 1 for b in end]

@@ -1,4 +1,4 @@
-"""Where a body is and how it moves: a pose, and motions that give a pose at every time."""
+"""Pose of a body, and motions: functions that return a pose for every time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,26 +13,28 @@ from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 
 TURNS = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
-"""For each axis of turning of a grid with so many axes, the first and the second axis that lie across it."""
+"""The planes of rotation for 2 and 3 axes: for each rotation axis, the first and the second axis of its plane."""
 
 
-def cross(one: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> tuple[Any, Any, Any]:
-    """Return the vector product of vectors of shape (3, ...), component by component."""
-    (a, b, c), (x, y, z) = one, other
+def cross(
+    first_vector: Sequence[float] | np.ndarray, second_vector: Sequence[float] | np.ndarray
+) -> tuple[Any, Any, Any]:
+    """Return the vector product of two vectors of shape (3, ...), component by component."""
+    (a, b, c), (x, y, z) = first_vector, second_vector
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
 def turned(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-    """Return vectors of shape (3, ...) turned by a rotation matrix, component by component."""
+    """Return vectors of shape (3, ...), rotated by a matrix of shape (3, 3), component by component."""
     x, y, z = vectors
-    one, two, three = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
-    return one, two, three
+    rotated_x, rotated_y, rotated_z = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
+    return rotated_x, rotated_y, rotated_z
 
 
 def length(parts: Sequence[float] | np.ndarray) -> float:
     """Return the length of a vector of one, two or three parts, in their unit."""
-    given = np.asarray(parts, float)
-    return abs(float(given[0])) if given.size == 1 else float(speeds(given))
+    vector = np.asarray(parts, float)
+    return abs(float(vector[0])) if vector.size == 1 else float(speeds(vector))
 
 
 def speeds(velocity: np.ndarray) -> np.ndarray:
@@ -45,12 +47,12 @@ def speeds(velocity: np.ndarray) -> np.ndarray:
 class Pose:
     """Position, attitude and their rates of a body's own frame.
 
-    In space the three angles are yaw, pitch and roll, which follow each other about the body's own axes
-    (``suchus.core.rotation``), and the three spins the angular velocity about the axes of the world.
+    In space the three angles are yaw, pitch and roll, which are successive rotations about the body's own axes
+    (``suchus.core.rotation``). The three spins are the angular velocity about the axes of the world.
     """
 
     position: tuple[float, ...] = (0.0, 0.0)
-    """Origin of the body's frame (x, y) or (x, y, z); without it, z is 0 in space [m]."""
+    """Origin of the body's frame, (x, y) or (x, y, z); two numbers in space mean z = 0 [m]."""
     angle: float = 0.0
     """Angle of the body's x axis, counter-clockwise about z: the yaw [rad]."""
     velocity: tuple[float, ...] = (0.0, 0.0)
@@ -67,16 +69,19 @@ class Pose:
     """In space, angular velocity about y [rad/s]."""
 
     def along(self, axes: int) -> "Pose":
-        """Return the same pose with as many numbers in position and velocity as there are axes.
+        """Return the same pose with position and velocity of a domain with 2 or 3 axes; a missing z is 0.
+
+        Args:
+            axes: number of axes of the domain, 2 or 3.
 
         Raises:
-            InvalidDesign: it has other than two or three, one that is not finite, or what only space has in the plane.
+            InvalidDesign: another number of components, an infinite number, or pitch or roll in the plane.
         """
         turns = self.angle + self.spin + self.pitch + self.roll + self.spin_x + self.spin_y
         if not isfinite(sum(self.position) + sum(self.velocity) + turns):
             self._refuse_endless()
         position, velocity = (
-            (*part, 0.0) if len(part) == 2 and axes == 3 else part for part in (self.position, self.velocity)
+            (*vector, 0.0) if len(vector) == 2 and axes == 3 else vector for vector in (self.position, self.velocity)
         )
         if len(position) != axes or len(velocity) != axes:
             raise InvalidDesign(
@@ -99,9 +104,9 @@ class Pose:
             InvalidDesign: naming them.
         """
         for name in ("position", "velocity", "angle", "spin", "pitch", "roll", "spin_x", "spin_y"):
-            given = getattr(self, name)
-            if not all(map(isfinite, given if isinstance(given, tuple) else (given,))):
-                raise InvalidDesign(f"{name} of a pose is {show(given)}; finite numbers are needed.")
+            quantity = getattr(self, name)
+            if not all(map(isfinite, quantity if isinstance(quantity, tuple) else (quantity,))):
+                raise InvalidDesign(f"{name} of a pose is {show(quantity)}; finite numbers are needed.")
 
     @property
     def in_plane(self) -> bool:
@@ -122,22 +127,33 @@ class Pose:
         return np.array([self.spin_x, self.spin_y, self.spin])
 
     def place(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the body's frame in the world, in space, component by component [m]."""
+        """Return points of the body's frame in the world frame, in space, component by component [m].
+
+        Args:
+            points: x, y and z in the body's frame, shape (3, ...) [m].
+        """
         x, y, z = (
-            part + at for part, at in zip(turned(self.matrix, points), self.along(3).position, strict=True)
+            coordinate + origin
+            for coordinate, origin in zip(turned(self.matrix, points), self.along(3).position, strict=True)
         )  # fmt: skip
         return x, y, z
 
     def seen(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the world in the body's frame, in space, component by component [m]."""
-        away = [part - at for part, at in zip(points, self.along(3).position, strict=True)]
-        return turned(self.matrix.T, away)
+        """Return points of the world frame in the body's frame, in space, component by component [m]."""
+        relative = [coordinate - origin for coordinate, origin in zip(points, self.along(3).position, strict=True)]
+        return turned(self.matrix.T, relative)
 
     def rates(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return the velocity that the rigid motion gives to points of the world, in space [m/s]."""
-        place = self.along(3)
-        away = [part - at for part, at in zip(points, place.position, strict=True)]
-        x, y, z = (own + part for own, part in zip(place.velocity, cross(place.spins, away), strict=True))
+        """Return the velocity of the rigid motion at points in space, component by component [m/s].
+
+        Args:
+            points: x, y and z in the world frame, shape (3, ...) [m].
+        """
+        pose = self.along(3)
+        relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
+        x, y, z = (
+            linear + rotational for linear, rotational in zip(pose.velocity, cross(pose.spins, relative), strict=True)
+        )
         return x, y, z
 
     def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -152,12 +168,17 @@ class Pose:
         return c * dx + s * dy, c * dy - s * dx
 
     def turn(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return directions of the body's frame in the world."""
+        """Return directions of the body's frame in the world frame, in the plane."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return c * x - s * y, s * x + c * y
 
     def carry(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the velocity that the rigid motion gives to points of the world [m/s]."""
+        """Return the velocity of the rigid motion at points in the plane [m/s].
+
+        Args:
+            x: points in the world frame [m].
+            y: points in the world frame [m].
+        """
         return (
             self.velocity[0] - self.spin * (y - self.position[1]),
             self.velocity[1] + self.spin * (x - self.position[0]),
@@ -165,7 +186,7 @@ class Pose:
 
 
 Motion = Callable[[float], Pose]
-"""A pose at every time [s]."""
+"""Pose as a function of the time [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,10 +214,11 @@ class Oscillation:
         heave, pitch = rate * time + self.phase, rate * time + self.pitch_phase
         return Pose(
             position=tuple(
-                mean + part * np.sin(heave) for mean, part in zip_longest(self.centre, self.heave, fillvalue=0.0)
+                mean + amplitude * np.sin(heave)
+                for mean, amplitude in zip_longest(self.centre, self.heave, fillvalue=0.0)
             ),
             angle=self.mean_angle + self.pitch * np.sin(pitch),
-            velocity=tuple(rate * part * np.cos(heave) for part in self.heave),
+            velocity=tuple(rate * amplitude * np.cos(heave) for amplitude in self.heave),
             spin=rate * self.pitch * np.cos(pitch),
         )
 
@@ -214,7 +236,7 @@ class Glide:
         """Return the pose at a time [s]."""
         return Pose(
             position=tuple(
-                start + part * time for start, part in zip_longest(self.start, self.velocity, fillvalue=0.0)
+                start + speed * time for start, speed in zip_longest(self.start, self.velocity, fillvalue=0.0)
             ),
             velocity=self.velocity,
         )

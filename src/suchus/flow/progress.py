@@ -1,4 +1,4 @@
-"""A progress line for long runs: how far, how many cells per second, how long still."""
+"""A progress bar for long runs: time reached, cells per second, remaining time."""
 
 from time import monotonic
 from types import TracebackType
@@ -7,14 +7,22 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 _QUIET = 2.0
-"""Wall-clock time before anything is shown [s]."""
+"""Wall-clock time before the bar appears [s]."""
 
 
 class Bar:
     """Shows a run's progress on the error stream, once it has lasted two seconds."""
 
-    def __init__(self, start: float, until: float, cells: int, *, show: bool) -> None:
-        self._start, self._until, self._cells, self._show = start, until, cells, show
+    def __init__(self, start: float, end_time: float, cells: int, *, show: bool) -> None:
+        """Prepare the progress bar.
+
+        Args:
+            start: time at the start of the run [s].
+            end_time: time at its end [s].
+            cells: cells of the grid [-].
+            show: whether the bar is shown at all.
+        """
+        self._start, self._end_time, self._cells, self._show = start, end_time, cells, show
         self._opened, self._began, self._steps = monotonic(), 0.0, -1
         self._progress: Progress | None = None
         self._task = TaskID(0)
@@ -26,12 +34,12 @@ class Bar:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave the last line standing."""
+        """Stop the progress bar and leave its last line on the screen."""
         if self._progress is not None:
             self._progress.stop()
 
     def move(self, time: float) -> None:
-        """Tell that a step has ended at a time [s]."""
+        """Update the progress bar after a step that ended at a time [s]."""
         self._steps += 1
         if self._steps == 0:  # the first step may have had kernels compiled
             self._began = monotonic()
@@ -44,6 +52,6 @@ class Bar:
                 console=Console(stderr=True), refresh_per_second=4,
             )  # fmt: skip
             self._progress.start()
-            self._task = self._progress.add_task("", total=self._until, speed=0.0)
+            self._task = self._progress.add_task("", total=self._end_time, speed=0.0)
         speed = self._steps * self._cells / max(monotonic() - self._began, 1e-9) / 1e6
         self._progress.update(self._task, completed=time, speed=speed)

@@ -23,21 +23,41 @@ from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
 
 @part
 def _divergence_slab(r, velocity, slab, mean, inner):
-    """Write ``-div u - mean`` along a slab."""
-    j, up = unsigned(slab), unsigned(len(inner))
-    first, end = run_of(inner, r.shape[1])
-    for k in range(first, end):
+    """Write ``-div u - mean`` to a slab of ``r``.
+
+    Args:
+        r: residual, shape (slab, cell).
+        velocity: shape (axis, slab, cell).
+        slab: the slab.
+        mean: mean over the domain, which is subtracted.
+        inner: strides within a slab.
+    """
+    j, slab_axis = unsigned(slab), unsigned(len(inner))
+    run_start, run_end = run_of(inner, r.shape[1])
+    for k in range(run_start, run_end):
         net = r.dtype.type(0)
         for d in range(len(inner)):
             net += velocity[d, j, k] - velocity[d, j, k + inner[d]]
-        r[j, k] = net + (velocity[up, j, k] - velocity[up, j + UNIT, k]) - mean
+        r[j, k] = net + (velocity[slab_axis, j, k] - velocity[slab_axis, j + UNIT, k]) - mean
 
 
 @threaded
-def residual(r, velocity, source, dinv, place, near, mean, inner, repeats, sums):
-    """Write ``source - div u - mean`` to ``r``; ``sums`` gets its summed size and largest size, slab by slab.
+def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, repeats, sums):
+    """Write the residual ``source - div u - mean`` of the pressure equation, and its sum and maximum slab by slab.
 
-    Cells that lie wholly inside the body get 0: no pressure acts there. ``source`` is an array of the window ``near``.
+    Cells that lie wholly inside the body get 0: no pressure acts there.
+
+    Args:
+        r: residual, shape (slab, cell).
+        velocity: shape (axis, slab, cell).
+        source: divergence of the bodies' own motion, an array of the window ``near_layout``.
+        dinv: inverse diagonal of the pressure equation, 0 inside the body.
+        level_layout: row of the layout for the finest level; see ``slab``.
+        near_layout: the window around the bodies; see ``slab``.
+        mean: see ``mean_residual``.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: summed and largest absolute value, shape (slab, 4).
     """
     end = r.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
@@ -46,12 +66,12 @@ def residual(r, velocity, source, dinv, place, near, mean, inner, repeats, sums)
         top = np.empty(LANES, r.dtype)
         for j in range(start, min(start + block, end)):
             _divergence_slab(r, velocity, j, mean, inner)
-            if meets(place, inner, j):
-                c, wide, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(place, inner)
-                (s, e), o = window_columns(place, inner), c - unsigned(near[len(inner) + 2])
+            if meets(level_layout, inner, j):
+                c, row_cells, (r0, r1) = unsigned(j), row_length(inner, r.shape[1]), window_rows(level_layout, inner)
+                (s, e), o = window_columns(level_layout, inner), c - unsigned(near_layout[len(inner) + 2])
                 for row in range(r0, r1):
-                    shift = near_shift(near, inner, row, wide)
-                    for i in range(row * wide + s, row * wide + e):
+                    shift = near_shift(near_layout, inner, row, row_cells)
+                    for i in range(row * row_cells + s, row * row_cells + e):
                         r[c, i] = r[c, i] + source[o, i - shift] if dinv[c, i] > 0 else 0
             seal_slab(r, j, inner, repeats)
             sums[j, 0] = summed_size(r, j, inner)
@@ -59,159 +79,209 @@ def residual(r, velocity, source, dinv, place, near, mean, inner, repeats, sums)
 
 
 @part
-def _mean_of_plane(u, v, source, place, near):
+def _mean_of_plane(u, v, source, level_layout, near_layout):
+    """Return the mean of ``source - div u`` in the plane; see ``mean_residual``."""
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
     total = 0.0
     for j in range(s, t):
         total += np.float64(u[j, s]) - np.float64(u[j, b])
     for i in range(s, b):
         total += np.float64(v[s, i]) - np.float64(v[t, i])
-    for j in range(place[3], place[4]):
-        for i in range(place[5], place[6]):
-            total += source[j - near[3], i - near[5]]
+    for j in range(level_layout[3], level_layout[4]):
+        for i in range(level_layout[5], level_layout[6]):
+            total += source[j - near_layout[3], i - near_layout[5]]
     return total / ((t - s) * (b - s))
 
 
 @part
-def _mean_in_space(velocity, source, place, near, inner):
-    end, wide, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
-    rows, columns = signed(row_count(inner, velocity.shape[2])), wide - 2 * PAD
+def _mean_in_space(velocity, source, level_layout, near_layout, inner):
+    """Return the mean of ``source - div u`` in space; see ``mean_residual``."""
+    end, row_cells, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
+    rows, columns = signed(row_count(inner, velocity.shape[2])), row_cells - 2 * PAD
     for row in range(PAD, rows + PAD):
         for j in range(PAD, end):
-            k = row * wide + PAD
+            k = row * row_cells + PAD
             total += np.float64(velocity[0, j, k]) - np.float64(velocity[0, j, k + columns])
-        for i in range(row * wide + PAD, row * wide + PAD + columns):
+        for i in range(row * row_cells + PAD, row * row_cells + PAD + columns):
             total += np.float64(velocity[2, PAD, i]) - np.float64(velocity[2, end, i])
     for j in range(PAD, end):
-        for i in range(PAD * wide + PAD, PAD * wide + PAD + columns):
-            total += np.float64(velocity[1, j, i]) - np.float64(velocity[1, j, i + rows * wide])
-    for j in range(place[4], place[5]):
-        for row in range(place[6], place[7]):
-            for i in range(place[8], place[9]):
-                total += source[j - near[4], (row - near[6]) * (near[9] - near[8] + 1) + i - near[8]]
+        for i in range(PAD * row_cells + PAD, PAD * row_cells + PAD + columns):
+            total += np.float64(velocity[1, j, i]) - np.float64(velocity[1, j, i + rows * row_cells])
+    for j in range(level_layout[4], level_layout[5]):
+        for row in range(level_layout[6], level_layout[7]):
+            for i in range(level_layout[8], level_layout[9]):
+                k = (row - near_layout[6]) * (near_layout[9] - near_layout[8] + 1) + i - near_layout[8]
+                total += source[j - near_layout[4], k]
     return total / ((end - PAD) * rows * columns)
 
 
 @compiled
-def mean_residual(velocity, source, place, near, inner):
-    """Return the mean of ``source - div u``: what flows in through the sides, and what the bodies push out."""
+def mean_residual(velocity, source, level_layout, near_layout, inner):
+    """Return the mean of ``source - div u``: the inflow through the sides and the volume that the bodies displace.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        source: divergence of the bodies' own motion, an array of the window ``near_layout``.
+        level_layout: row of the layout for the finest level; see ``slab``.
+        near_layout: the window around the bodies; see ``slab``.
+        inner: strides within a slab.
+    """
     if len(inner) == 1:
-        return _mean_of_plane(velocity[0], velocity[1], source, place, near)
-    return _mean_in_space(velocity, source, place, near, inner)
+        return _mean_of_plane(velocity[0], velocity[1], source, level_layout, near_layout)
+    return _mean_in_space(velocity, source, level_layout, near_layout, inner)
 
 
 @part
-def _add(out, o, d, z, slab, a, b):
+def _add(output, o, d, z, slab, a, b):
+    """Write ``a d + b z`` of one slab to slab ``o`` of ``output``."""
     o, j = unsigned(o), unsigned(slab)
     if b == 0:
         for k in range(unsigned(d.shape[1])):
-            out[o, k] = a * d[j, k]
+            output[o, k] = a * d[j, k]
     else:
         for k in range(unsigned(d.shape[1])):
-            out[o, k] = a * d[j, k] + b * z[j, k]
+            output[o, k] = a * d[j, k] + b * z[j, k]
 
 
 @part
-def _correct_plain(velocity, p, slab, x, low, mid, level, gain, start, stop, inner):
-    j, low, mid, up = unsigned(slab), unsigned(low), unsigned(mid), unsigned(len(inner))
+def _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, start, stop, inner):
+    """Correct velocity and pressure of cells ``start`` to ``stop`` of a slab, outside the window.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        p: pressure, shape (slab, cell).
+        slab: the slab.
+        x: pressure change of two slabs, shape (2, cell).
+        lower_slab: row of ``x`` for the slab below.
+        mid: row of ``x`` for the slab itself.
+        level: mean of ``x`` along the sides of the domain.
+        gain: factor from ``x`` to the pressure.
+        start: first cell.
+        stop: end of the cells.
+        inner: strides within a slab.
+    """
+    j, lower_slab, mid, slab_axis = unsigned(slab), unsigned(lower_slab), unsigned(mid), unsigned(len(inner))
     for k in range(start, stop):
         m = x[mid, k]
         for d in range(len(inner)):
             velocity[d, j, k] -= m - x[mid, k - inner[d]]
-        velocity[up, j, k] -= m - x[low, k]
+        velocity[slab_axis, j, k] -= m - x[lower_slab, k]
         p[j, k] += gain * (m - level)
 
 
 @part
-def _correct_body(velocity, p, slab, x, low, mid, passage, level, gain, start, stop, inner):
-    j, low, mid, up = unsigned(slab), unsigned(low), unsigned(mid), unsigned(len(inner))
+def _correct_body(velocity, p, slab, x, lower_slab, mid, passage, level, gain, start, stop, inner):
+    """Correct cells inside the window, where ``passage`` is the share of each face on which the pressure acts.
+
+    The other arguments are those of ``_correct_plain``.
+    """
+    j, lower_slab, mid, slab_axis = unsigned(slab), unsigned(lower_slab), unsigned(mid), unsigned(len(inner))
     for k in range(start, stop):
         m = x[mid, k]
         for d in range(len(inner)):
             velocity[d, j, k] -= passage[d, j, k] * (m - x[mid, k - inner[d]])
-        velocity[up, j, k] -= passage[up, j, k] * (m - x[low, k])
+        velocity[slab_axis, j, k] -= passage[slab_axis, j, k] * (m - x[lower_slab, k])
         p[j, k] += gain * (m - level)
 
 
 @part
-def _correct_slab(velocity, p, slab, x, low, mid, passage, place, level, gain, inner):
-    wide, (r0, r1), (w0, w1) = row_length(inner, p.shape[1]), window_rows(place, inner), window_columns(place, inner)
-    inside = meets(place, inner, slab)
+def _correct_slab(velocity, p, slab, x, lower_slab, mid, passage, level_layout, level, gain, inner):
+    """Correct velocity and pressure of one slab, inside and outside the window; see ``correct``."""
+    row_cells = row_length(inner, p.shape[1])
+    (r0, r1), (w0, w1) = window_rows(level_layout, inner), window_columns(level_layout, inner)
+    meets_window = meets(level_layout, inner, slab)
     for n in range(row_count(inner, p.shape[1])):
         row = n + EDGE if len(inner) > 1 else n
-        f, e = row * wide + EDGE, row * wide + wide - EDGE
-        if inside and r0 <= row < r1:
-            _correct_plain(velocity, p, slab, x, low, mid, level, gain, f, row * wide + w0, inner)
+        f, e = row * row_cells + EDGE, row * row_cells + row_cells - EDGE
+        if meets_window and r0 <= row < r1:
+            _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, f, row * row_cells + w0, inner)
             _correct_body(
-                velocity, p, slab, x, low, mid, passage, level, gain, row * wide + w0, row * wide + w1, inner
+                velocity, p, slab, x, lower_slab, mid, passage, level, gain, row * row_cells + w0, row * row_cells + w1,
+                inner,
             )  # fmt: skip
-            f = row * wide + w1
-        _correct_plain(velocity, p, slab, x, low, mid, level, gain, f, e, inner)
+            f = row * row_cells + w1
+        _correct_plain(velocity, p, slab, x, lower_slab, mid, level, gain, f, e, inner)
 
 
 @part
 def _along_sides(x, inner):
-    """Return the mean of the outermost cells of the domain; one in a corner counts for each of its sides."""
-    n, wide, total = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1])), 0.0
-    m = wide - PAD - 1
+    """Return the mean of ``x`` over the outermost cells of the domain.
+
+    A corner cell counts once for each of its sides.
+    """
+    n, row_cells, total = x.shape[0] - PAD - 1, signed(row_length(inner, x.shape[1])), 0.0
+    m = row_cells - PAD - 1
     if len(inner) == 1:
         for j in range(PAD, n + 1):
             total += np.float64(x[j, PAD]) + np.float64(x[j, m])
         for i in range(PAD, m + 1):
             total += np.float64(x[PAD, i]) + np.float64(x[n, i])
         return total / (2 * (n + m + 2 - 2 * PAD))
-    last, count = PAD + signed(row_count(inner, x.shape[1])) - 1, 0
+    last_row, count = PAD + signed(row_count(inner, x.shape[1])) - 1, 0
     for j in range(PAD, n + 1):
-        for row in range(PAD, last + 1):
-            total += np.float64(x[j, row * wide + PAD]) + np.float64(x[j, row * wide + m])
+        for row in range(PAD, last_row + 1):
+            total += np.float64(x[j, row * row_cells + PAD]) + np.float64(x[j, row * row_cells + m])
         for i in range(PAD, m + 1):
-            total += np.float64(x[j, PAD * wide + i]) + np.float64(x[j, last * wide + i])
-        count += 2 * (last + m + 2 - 2 * PAD)
-    for row in range(PAD, last + 1):
-        for i in range(row * wide + PAD, row * wide + m + 1):
+            total += np.float64(x[j, PAD * row_cells + i]) + np.float64(x[j, last_row * row_cells + i])
+        count += 2 * (last_row + m + 2 - 2 * PAD)
+    for row in range(PAD, last_row + 1):
+        for i in range(row * row_cells + PAD, row * row_cells + m + 1):
             total += np.float64(x[PAD, i]) + np.float64(x[n, i])
         count += 2 * (m + 1 - PAD)
     return total / count
 
 
 @threaded
-def correct(velocity, p, d, z, a, b, passage, place, inner, gain):
+def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
     """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
-    The pressure is pinned: the mean of what is added is zero along the sides. Without that it drifts, and single
-    precision has less and less room for what matters. Values on the domain's edges are corrected with a mirrored ``x``,
-    that is, left as they are.
+    The mean of the added pressure along the sides is zero. Without this condition the pressure drifts and single
+    precision resolves its differences less and less. Values on the edges of the domain are corrected with a mirrored
+    ``x``, which leaves them unchanged.
+
+    Args:
+        velocity: shape (axis, slab, cell).
+        p: pressure, shape (slab, cell).
+        d: first part of the pressure change, shape (slab, cell).
+        z: second part of it, shape (slab, cell).
+        a: factor of ``d``.
+        b: factor of ``z``.
+        passage: share of the pressure gradient that acts on each face, shape (axis, slab, cell).
+        level_layout: row of the layout for the finest level; see ``slab``.
+        inner: strides within a slab.
+        gain: factor from ``x`` to the pressure.
     """
     end = p.shape[0] - PAD
     block = block_of(inner, end - PAD, LEAST)
     level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
     for n in prange((end - PAD + block - 1) // block):
-        first = PAD + signed(n) * block
+        block_start = PAD + signed(n) * block
         x = np.empty((2, p.shape[1]), p.dtype)
-        low, mid = 0, 1
-        _add(x, mid, d, z, first - 1, a, b)
-        for j in range(first, min(first + block, end)):
-            low, mid = mid, low
+        lower_slab, mid = 0, 1
+        _add(x, mid, d, z, block_start - 1, a, b)
+        for j in range(block_start, min(block_start + block, end)):
+            lower_slab, mid = mid, lower_slab
             _add(x, mid, d, z, j, a, b)
-            _correct_slab(velocity, p, j, x, low, mid, passage, place, level, gain, inner)
+            _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
 
 
 @part
-def _speeds(out, velocity, slab, inner):
-    j, up = unsigned(slab), unsigned(len(inner))
-    first, end = run_of(inner, velocity.shape[2])
-    for k in range(first, end):
-        speed = out.dtype.type(0)
+def _speeds(output, velocity, slab, inner):
+    """Write the sum of the absolute velocity components of each cell of a slab to ``output``, shape (1, cell)."""
+    j, slab_axis = unsigned(slab), unsigned(len(inner))
+    run_start, run_end = run_of(inner, velocity.shape[2])
+    for k in range(run_start, run_end):
+        speed = output.dtype.type(0)
         for d in range(len(inner)):
             a, b = abs(velocity[d, j, k]), abs(velocity[d, j, k + inner[d]])
             speed += a if a > b else b
-        a, b = abs(velocity[up, j, k]), abs(velocity[up, j + UNIT, k])
-        out[0, k] = speed + (a if a > b else b)
+        a, b = abs(velocity[slab_axis, j, k]), abs(velocity[slab_axis, j + UNIT, k])
+        output[0, k] = speed + (a if a > b else b)
 
 
 @threaded
 def fastest(velocity, inner, sums):
-    """Write the largest sum of the components' sizes of every slab to ``sums[:, 0]``."""
+    """Write the largest sum of absolute velocity components in each slab to ``sums[:, 0]``."""
     end = velocity.shape[1] - PAD
     block = block_of(inner, end - PAD, LEAST)
     for n in prange((end - PAD + block - 1) // block):

@@ -1,4 +1,4 @@
-"""Values at chosen points: at one instant, and along a line or rake over time."""
+"""Velocity and pressure at chosen points: at one instant, or during a run along a line or rake."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ class Sample:
     velocity: np.ndarray
     """Velocity along each axis, shape (point, axis) [m/s]."""
     pressure: np.ndarray
-    """Pressure, zero on the average along the sides of the domain, shape (point,) [Pa]."""
+    """Pressure, whose mean along the sides of the domain is zero, shape (point,) [Pa]."""
 
 
 def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.ndarray:
@@ -36,55 +36,66 @@ def line(start: tuple[float, ...], end: tuple[float, ...], count: int) -> np.nda
 
 
 def read(water: Fluid, points: np.ndarray, frame: np.ndarray, density: float) -> Sample:
-    """Return velocity and pressure at points, linear between the nodes.
+    """Return velocity and pressure at points by linear interpolation between the nodes.
 
-    Inside a body and within a cell of its surface they are the body's as much as the water's.
+    Inside a body and within a cell of its surface, they are a mixture of the body's and the water's values.
 
     Args:
         water: the fields.
-        points: where, shape (point, axis), or one point (axis,) [m].
+        points: positions, shape (point, axis), or one point (axis,) [m].
         frame: position and velocity of the grid, shape (2, axis) [m, m/s].
         density: of the water [kg/m^3].
 
     Raises:
         InvalidDesign: a point that is not in the domain.
     """
-    where, axes = np.atleast_2d(np.asarray(points, float)), water.axes
-    if where.ndim != 2 or where.shape[1] != axes:
+    positions, axes = np.atleast_2d(np.asarray(points, float)), water.axes
+    if positions.ndim != 2 or positions.shape[1] != axes:
         raise InvalidDesign(
             f"the points have the shape {np.shape(points)}; give one row ({', '.join('xyz'[:axes])}) for each point."
         )
-    local = where - frame[0]
-    _check(water.layers[-1].grid, where, local, frame[0])
-    pressure, velocity = np.empty(len(where)), np.empty((axes, len(where)))
-    for layer in reversed(water.layers):  # what the finest has at a point counts
-        here = np.flatnonzero(_inside(layer.grid, local))
-        places, steps = padded(local[here].T, layer.grid), steps_of(layer.p)
-        found = np.empty(len(here))
-        interpolate(layer.p.reshape(-1), steps, places, found)
-        pressure[here] = found
-        for d, part in enumerate(layer.velocity):
+    local = positions - frame[0]
+    _check(water.layers[-1].grid, positions, local, frame[0])
+    pressure, velocity = np.empty(len(positions)), np.empty((axes, len(positions)))
+    for layer in reversed(water.layers):  # the finest layer that holds a point counts
+        indices = np.flatnonzero(_is_inside(layer.grid, local))
+        places, steps = padded(local[indices].T, layer.grid), steps_of(layer.p)
+        values = np.empty(len(indices))
+        interpolate(layer.p.reshape(-1), steps, places, values)
+        pressure[indices] = values
+        for d, component in enumerate(layer.velocity):
             on_faces = places.copy()
             on_faces[d] += 0.5
-            interpolate(part.reshape(-1), steps, on_faces, found)
-            velocity[d, here] = found
-    return Sample(points=where, velocity=velocity.T + frame[1], pressure=density * (pressure - water.level))
+            interpolate(component.reshape(-1), steps, on_faces, values)
+            velocity[d, indices] = values
+    return Sample(points=positions, velocity=velocity.T + frame[1], pressure=density * (pressure - water.level))
 
 
-def _inside(grid: Grid, local: np.ndarray) -> np.ndarray:
+def _is_inside(grid: Grid, local: np.ndarray) -> np.ndarray:
     """Return which points, shape (point, axis), lie in a grid."""
-    low = np.array(grid.origin)
-    return np.asarray(((local >= low) & (local <= low + grid.size)).all(axis=1))
+    low_corner = np.array(grid.origin)
+    return np.asarray(((local >= low_corner) & (local <= low_corner + grid.size)).all(axis=1))
 
 
-def _check(grid: Grid, where: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
-    outside = np.flatnonzero(~_inside(grid, local))
-    if outside.size:
-        low, high = np.array(grid.origin), np.array(grid.origin) + grid.size
-        point = ", ".join(f"{part:.4g}" for part in where[outside[0]])
+def _check(grid: Grid, positions: np.ndarray, local: np.ndarray, frame: np.ndarray) -> None:
+    """Refuse points outside the domain.
+
+    Args:
+        grid: cells of the whole domain.
+        positions: points in the world frame, shape (point, axis) [m].
+        local: the same points in the frame of the grid, shape (point, axis) [m].
+        frame: position of the grid in the world frame, shape (axis,) [m].
+
+    Raises:
+        InvalidDesign: naming a point and the bounds of the domain.
+    """
+    outside_indices = np.flatnonzero(~_is_inside(grid, local))
+    if outside_indices.size:
+        low_corner, high_corner = np.array(grid.origin), np.array(grid.origin) + grid.size
+        point = ", ".join(f"{coordinate:.4g}" for coordinate in positions[outside_indices[0]])
         ends = ", ".join(
-            f"{axis} = {first:.4g} to {last:.4g} m"
-            for axis, first, last in zip("xyz", low + frame, high + frame, strict=False)
+            f"{axis} = {lower_bound:.4g} to {upper_bound:.4g} m"
+            for axis, lower_bound, upper_bound in zip("xyz", low_corner + frame, high_corner + frame, strict=False)
         )
         raise InvalidDesign(f"the point ({point}) m is outside the domain {ends}; give points in it.")
 
@@ -97,12 +108,12 @@ class _Probed(Protocol):
 
 
 Place = np.ndarray | Callable[[float], np.ndarray]
-"""Points of shape (point, axis) [m], or those for every time [s]."""
+"""Points of shape (point, axis) [m], or a function of the time [s] that returns them."""
 
 
 @dataclass(slots=True)
 class Rake:
-    """Points at which velocity and pressure are noted during a run: ``simulation.run(..., watch=rake)``.
+    """Samples velocity and pressure at points during a run: ``simulation.run(..., watch=rake)``.
 
     Raises:
         InvalidDesign: in the run, if a point leaves the domain.
@@ -111,13 +122,13 @@ class Rake:
     points: Place
     """Positions of the points; a function of time for a rake that travels [m]."""
     every: float | None = None
-    """Interval of the notes [s]; None notes after every step."""
+    """Interval of the samples [s]; None samples after every step."""
     _times: list[float] = field(default_factory=list)
     _samples: list[Sample] = field(default_factory=list)
     _due: float = 0.0
 
     def __call__(self, sim: _Probed) -> None:
-        """Note the water at the points, if it is time."""
+        """Record the water at the points if the interval has passed."""
         if sim.time < self._due:
             return
         self._due = due_after(sim.time, self.every)
@@ -140,6 +151,6 @@ class Rake:
         return np.array([sample.pressure for sample in self._samples])
 
 
-def due_after(time: float, every: float | None) -> float:
-    """Return the next multiple of ``every`` after a time [s]; 0, which is always past, if that is None."""
-    return 0.0 if every is None else float((np.floor(time / every * (1 + 1e-12)) + 1) * every * (1 - 1e-12))
+def due_after(time: float, interval: float | None) -> float:
+    """Return the next multiple of an interval after a time [s]; 0, which has always passed, if the interval is None."""
+    return 0.0 if interval is None else float((np.floor(time / interval * (1 + 1e-12)) + 1) * interval * (1 - 1e-12))

@@ -1,4 +1,4 @@
-"""What a simulation tells: one row per time step."""
+"""The record of a simulation: one row for each time step."""
 
 from dataclasses import dataclass, field
 from math import isfinite
@@ -12,11 +12,8 @@ COLUMNS = (
     "pressure_x", "pressure_y", "shear_x", "shear_y", "torque", "power", "x", "y", "angle", "velocity_x", "velocity_y",
     "spin", "force_x", "force_y", "layer_error",
 )  # fmt: skip
-"""Values kept of each body at each step, in the order of the last axis of ``Record.bodies``.
-
-``layer_error`` is the estimated error of the force, over the force, by the cells across the boundary layer; see
-``resolution``.
-"""
+"""Quantities of each body at each step, in the order of the last axis of ``Record.bodies``. ``layer_error`` is the
+estimated relative error of the force, see ``resolution``."""
 
 SPACE_COLUMNS = (
     "torque_x", "torque_y", "torque", "power", "x", "y", "z", "angle", "pitch", "roll", "velocity_x", "velocity_y",
@@ -48,14 +45,14 @@ HEAD = 5
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coefficients:
-    """Force, torque and power of a body over those of a reference, means over the steps, each of shape (step,) [-]."""
+    """Force, torque and power of a body over those of a reference, mean over each step, each of shape (step,) [-]."""
 
     time: np.ndarray
-    """Middles of the steps, which the means belong to, shape (step,) [s]."""
+    """Times in the middle of the steps, to which the means belong, shape (step,) [s]."""
     drag: np.ndarray
     """Force along the stream over ``density speed^2 length / 2``, in space with the area for the length."""
     lift: np.ndarray
-    """Force across it, a quarter turn counter-clockwise from the drag, over the same."""
+    """Force across the stream, a quarter turn counter-clockwise from the drag, over the same reference."""
     moment: np.ndarray
     """Torque, counter-clockwise, over ``density speed^2 length^2 / 2``."""
     power: np.ndarray
@@ -75,7 +72,7 @@ class Record:
     cycles: np.ndarray
     """Multigrid cycles of the first and the last pressure solve of each step, shape (step, 2) [-]."""
     divergence: np.ndarray
-    """Largest divergence left over, in fastest speed per cell, shape (step,) [-]."""
+    """Largest remaining divergence, over the fastest speed per cell, shape (step,) [-]."""
     bodies: np.ndarray
     """The ``columns`` of each body, shape (step, body, column); see ``units``."""
     columns: tuple[str, ...] = COLUMNS
@@ -94,25 +91,33 @@ class Record:
     def units(self) -> dict[str, str]:
         """The unit of each column, as CF conventions write it; forces in the plane are per metre of depth."""
         force, torque = ("N", "N m") if self.axes == 3 else ("N m-1", "N")
-        own = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
-        own["power"] = "W" if self.axes == 3 else "W m-1"
-        return {n: own.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
+        unit_by_column = {**_UNITS, **dict.fromkeys(("torque", "torque_x", "torque_y"), torque)}
+        unit_by_column["power"] = "W" if self.axes == 3 else "W m-1"
+        return {n: unit_by_column.get(n, "m s-1" if n.startswith("velocity") else force) for n in self.columns}
 
     def column(self, name: str, body: str | int = 0) -> np.ndarray:
-        """Return one of the ``columns`` of one body, by its name or number, shape (step,).
+        """Return a time series of one body, shape (step,); see ``units``.
+
+        Args:
+            name: one of ``columns``.
+            body: its name or number.
 
         Raises:
-            UnknownName: there is no such column or body; it lists those that there are.
+            UnknownName: there is no such column or body; the message lists those that there are.
         """
         if name not in self.columns:
             raise UnknownName("column", str(name), self.columns)
         return self.bodies[:, self._number(body), self.columns.index(name)]
 
     def along(self, name: str, body: str | int = 0) -> np.ndarray:
-        """Return one of ``PART_COLUMNS`` of the parts of a divided body, front to back, shape (step, part).
+        """Return a time series of each part of a divided body, front to back, shape (step, part).
+
+        Args:
+            name: one of ``PART_COLUMNS``.
+            body: its name or number.
 
         Raises:
-            UnknownName: there is no such column or body; it lists those that there are.
+            UnknownName: there is no such column or body; the message lists those that there are.
             OutsideLimits: the body is not divided.
         """
         if name not in PART_COLUMNS:
@@ -120,10 +125,15 @@ class Record:
         number = self._number(body)
         if not any(self.divided[number:][:1]):
             raise OutsideLimits(f"body {self.names[number]!r} is not divided; give its Midline or Trunk some cuts.")
-        first = sum(self.divided[:number])
-        return self.parts[:, first : first + self.divided[number], PART_COLUMNS.index(name)]
+        start = sum(self.divided[:number])
+        return self.parts[:, start : start + self.divided[number], PART_COLUMNS.index(name)]
 
     def _number(self, body: str | int) -> int:
+        """Return the index of a body by its name or number.
+
+        Raises:
+            UnknownName: there is no such body.
+        """
         if isinstance(body, str) and body in self.names:
             return self.names.index(body)
         if isinstance(body, str) or not -len(self.names) <= body < len(self.names):
@@ -131,22 +141,32 @@ class Record:
         return body
 
     def force(self, body: str | int = 0) -> np.ndarray:
-        """Return the force on a body, mean over each step, from the momentum it exchanges, shape (step, axis).
+        """Return the force of the water on a body, mean over each step, shape (step, axis).
 
-        In N/m in the plane, in N in space.
+        The unit is N/m in the plane and N in space. The force is the momentum that body and water exchange.
+
+        Args:
+            body: its name or number.
         """
         return np.stack([self.column(f"force_{a}", body) for a in "xyz"[: self.axes]], axis=1)
 
     def torque(self, body: str | int = 0) -> np.ndarray:
-        """Return the torque on a body, mean over each step: about its centre of mass if it is free, else its origin.
+        """Return the torque of the water on a body, mean over each step.
 
-        In space about x, y and z, shape (step, 3) [N m], in the plane about z, shape (step, 1) [N].
+        The reference point is the centre of mass of a free body and the origin of another one. In space the torque is
+        about x, y and z, shape (step, 3) [N m]; in the plane about z, shape (step, 1) [N].
+
+        Args:
+            body: its name or number.
         """
         names = ("torque_x", "torque_y", "torque") if self.axes == 3 else ("torque",)
         return np.stack([self.column(name, body) for name in names], axis=1)
 
     def attitude(self, body: str | int = 0) -> np.ndarray:
-        """Return the attitude of a body in space at each step's end as unit quaternions wxyz, shape (step, 4) [-].
+        """Return the attitude of a body in space at the end of each step, unit quaternions wxyz, shape (step, 4) [-].
+
+        Args:
+            body: its name or number.
 
         Raises:
             OutsideLimits: in the plane.
@@ -154,7 +174,8 @@ class Record:
         if self.axes == 2:
             raise OutsideLimits("a body in the plane has no attitude but its angle; take column('angle').")
         angles = [self.column(name, body) for name in ("angle", "pitch", "roll")]
-        return np.array([rotation.from_angles(*each) for each in zip(*angles, strict=True)]).reshape(-1, 4)
+        quaternions = [rotation.from_angles(*step_angles) for step_angles in zip(*angles, strict=True)]
+        return np.array(quaternions).reshape(-1, 4)
 
     def coefficients(
         self,
@@ -181,8 +202,8 @@ class Record:
             OutsideLimits: a reference that is not a positive number, an area in the plane or none in space.
         """
         if (area is None) != (self.axes == 2):
-            what = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
-            raise OutsideLimits(f"the area of the reference is {area}: {what}.")
+            message = "a body in the plane has no area; leave it out" if area else "in space an area is needed; give it"
+            raise OutsideLimits(f"the area of the reference is {area}: {message}.")
         size = length if area is None else area
         for name, value, unit in (
             ("length", length, "m"), ("speed", speed, "m/s"), ("density", density, "kg/m3"), ("area", size, "m2"),
@@ -199,16 +220,19 @@ class Record:
         )  # fmt: skip
 
     def surface_force(self, body: str | int = 0) -> np.ndarray:
-        """Return pressure and friction integrated over a body's outline at each step's end, shape (step, 2) [N/m].
+        """Return the integral of pressure and friction over the outline of a body, shape (step, 2) [N/m].
 
-        Its error is that of ``resolution.ALONG_THE_SKIN``.
+        It belongs to the end of each step. ``resolution.ALONG_THE_SKIN`` states the error.
+
+        Args:
+            body: its name or number.
         """
         return np.stack(
             [self.column(f"pressure_{a}", body) + self.column(f"shear_{a}", body) for a in ("x", "y")], axis=1
         )
 
     def after(self, time: float) -> "Record":
-        """Return the steps that end after a time [s]."""
+        """Return the record of the steps that end after a time [s]."""
         k = self.time > time
         return Record(
             names=self.names, time=self.time[k], step=self.step[k], cycles=self.cycles[k],

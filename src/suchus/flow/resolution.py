@@ -1,18 +1,25 @@
-"""How well a grid carries the boundary layer of a body, and what that costs in its forces.
+"""Resolution of a body's boundary layer by a grid, and the resulting error of its forces.
 
-The layer is ``L / sqrt(Re)`` thick, and the estimate is ``0.14 n^-1.5`` of the force for ``n`` cells across it: a
-least-squares fit to what this solver's own forces were off by in cases with a better answer. n and the error: started
-cylinder at Re 3000 0.88 (48 cells a diameter), 20 % and 3.5, 2.6 %; at Re 550 2.05, 4.5 % and 4.1, 0.7 %; cylinder in a
-stream at Re 185 1.18, 9 % and 1.76, 5 %; NACA 0012 at Re 5000 0.91, 18 % and at Re 1000 2.0, 4 %. The fit is within a
-factor of 1.3 of each but the finest, which is better. The DFG channel's drag is ten times better.
+The boundary layer is ``L / sqrt(Re)`` thick. In the plane, the estimated error is ``0.14 n^-1.5`` of the force for
+``n`` cells across the layer. The estimate is a least-squares fit to errors of this solver in cases with a better
+reference:
 
-Of a blunt body in space it is ``0.09 n^-2.25``. The drag of a sphere, 20 diameters after its start, was too large, over
-its own limit on 16 to 32 cells a diameter: at Re 100 by 14.1, 5.9, 3.0 and 1.2 % with 0.80, 1.20, 1.60 and 2.40 cells,
-at Re 200 by 27, 13.1, 7.2 and 3.0 % with 0.57, 0.85, 1.13 and 1.70. This fit is within a factor of 1.25 of each. Of
-long and bending bodies in space less is known, and theirs is the estimate of the plane.
+* impulsively started cylinder at Re 3000: 20 % with n = 0.88 (48 cells a diameter), and 2.6 % with 3.5;
+* impulsively started cylinder at Re 550: 4.5 % with n = 2.05, and 0.7 % with 4.1;
+* cylinder in a stream at Re 185: 9 % with n = 1.18, and 5 % with 1.76;
+* NACA 0012: 18 % with n = 0.91 at Re 5000, and 4 % with 2.0 at Re 1000.
 
-Either is an estimate of the size, for flows around bodies whose layers are laminar and attached up to a corner or a
-wake; it says nothing about a wake that the grid cannot carry, nor about the domain.
+The fit is within a factor of 1.3 of each error except that of the finest grid, which is smaller. The error of the drag
+in the DFG channel is ten times smaller.
+
+For a blunt body in space, the estimate is ``0.09 n^-2.25``. The reference is the drag of a sphere, 20 diameters after
+its start, extrapolated from 16 to 32 cells a diameter. The drag was too large by 14.1, 5.9, 3.0 and 1.2 % at Re 100
+with 0.80, 1.20, 1.60 and 2.40 cells, and by 27, 13.1, 7.2 and 3.0 % at Re 200 with 0.57, 0.85, 1.13 and 1.70 cells. The
+fit is within a factor of 1.25 of each error. Less is known about long and bending bodies in space, which have the
+estimate of the plane.
+
+Both estimates hold for laminar layers that are attached up to a corner or a wake. They do not include the errors of an
+unresolved wake or of a small domain.
 """
 
 from math import inf, sqrt
@@ -40,15 +47,15 @@ ALONG_THE_SKIN = (
     f"both together are {100 * SKIN_SPHERE[0]:.0f} to {SKIN_SPHERE[1]:.0%} low with 16 to 8 cells a diameter. Forces "
     "from the momentum exchanged are not."
 )
-"""What is known of the error of ``Surface`` and ``Record.surface_force``, to stand beside each plot of them."""
+"""Statement of the error of ``Surface`` and ``Record.surface_force``, for the caption of each plot of them."""
 
 REFUSED = 0.2
-"""Estimated error of the force from which a grid is refused [-]."""
+"""Estimated relative error of the force above which a grid is refused [-]."""
 
 DOUBTED = 0.1
-"""Estimated error of the force from which a warning is given [-]."""
+"""Estimated relative error of the force above which a warning is issued [-]."""
 
-_AT_ONE, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
+_ERROR_AT_ONE_CELL, _ORDER = (0.14, 0.09), (1.5, 2.25)  # in the plane, of a blunt body in space
 
 
 def cells_across(length: float, speed: float, viscosity: float, cell: float) -> float:
@@ -65,13 +72,20 @@ def cells_across(length: float, speed: float, viscosity: float, cell: float) -> 
 
 
 def estimate(cells: float, *, blunt: bool = False) -> float:
-    """Return the estimated error of the force over the force for a number of cells across the layer.
+    """Return the estimated relative error of the force on a body [-].
 
-    ``blunt`` is whether it is that of a blunt body in space.
+    Args:
+        cells: across the boundary layer [-].
+        blunt: whether it is a blunt body in space.
     """
-    return 0.0 if cells == inf else _AT_ONE[blunt] * cells ** -_ORDER[blunt]
+    return 0.0 if cells == inf else _ERROR_AT_ONE_CELL[blunt] * cells ** -_ORDER[blunt]
 
 
 def needed(error: float, *, blunt: bool = False) -> float:
-    """Return the cells across the layer at which the estimate is ``error``; ``blunt`` as in ``estimate``."""
-    return float((_AT_ONE[blunt] / error) ** (1 / _ORDER[blunt]))
+    """Return the cells across the boundary layer at which the estimated error of the force has a value [-].
+
+    Args:
+        error: relative error of the force [-].
+        blunt: whether it is a blunt body in space.
+    """
+    return float((_ERROR_AT_ONE_CELL[blunt] / error) ** (1 / _ORDER[blunt]))

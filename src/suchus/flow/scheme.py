@@ -20,25 +20,31 @@ from suchus.flow.compiled import part
 from suchus.flow.grid import check_kinds
 
 TRIED = -1.0, 0.0, 3.0
-"""Uniform velocities that a scheme has to carry on as they are [m/s]."""
+"""Uniform velocities that a scheme must preserve [m/s]."""
 
 
 @part
 def median(a, b, c):
-    """Return the middle one of three numbers."""
-    low = a if a < b else b
-    high = a if a > b else b
-    capped = high if high < c else c
-    return low if low > capped else capped
+    """Return the median of three numbers."""
+    smaller = a if a < b else b
+    larger = a if a > b else b
+    capped = larger if larger < c else c
+    return smaller if smaller > capped else capped
 
 
 @part
 def limited_quick(upstream, centre, downstream):
-    """Return the face value: QUICK, kept monotone between its neighbours."""
+    """Return the velocity on a face by QUICK, limited so that it stays between its neighbours.
+
+    Args:
+        upstream: velocity at the second node upstream of the face.
+        centre: velocity at the first node upstream of the face.
+        downstream: velocity at the node downstream of the face.
+    """
     real = type(centre)
-    quick = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
+    quick_value = real(0.75) * centre + real(0.375) * downstream - real(0.125) * upstream
     steepest = real(10.0) * centre - real(9.0) * upstream
-    return median(quick, centre, median(steepest, centre, downstream))
+    return median(quick_value, centre, median(steepest, centre, downstream))
 
 
 def central(upstream, centre, downstream):  # noqa: ARG001
@@ -56,8 +62,8 @@ class Scheme:
     """An advection scheme."""
 
     face: Callable[..., Any]
-    """Function of the velocities at the nodes two before, before and behind a face [m/s], as the water comes: that on
-    the face. It is compiled by numba; ``type(centre)(0.5)`` is a half in the precision of the fields."""
+    """Function that returns the velocity on a face [m/s] from three nodes: the second and the first upstream of it, and
+    the one downstream. It is compiled by numba; ``type(centre)(0.5)`` is a half in the precision of the fields."""
 
     def __post_init__(self) -> None:
         check_kinds(self)
@@ -70,16 +76,16 @@ class Scheme:
         """
         compiled, name = numba.njit(self.face), self.name
         try:
-            found = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
+            face_values = [float(compiled(*(np.float32(value),) * 3)) for value in TRIED]
         except Exception as error:  # whatever a user's function raises, and numba's errors, which have no base but this
             raise InvalidDesign(
                 f"the advection scheme {name} cannot be used: {show(str(error).strip())}; it is a function "
                 f"of three numbers (upstream, centre, downstream) that numba compiles and that returns one."
             ) from error
-        for value, has in zip(TRIED, found, strict=True):
-            if not (isfinite(has) and abs(has - value) <= 1e-5 * abs(value)):
+        for value, face_value in zip(TRIED, face_values, strict=True):
+            if not (isfinite(face_value) and abs(face_value - value) <= 1e-5 * abs(value)):
                 raise InvalidDesign(
-                    f"the advection scheme {name} makes {has:.6g} m/s of water that moves at {value:g} m/s "
+                    f"the advection scheme {name} makes {face_value:.6g} m/s of water that moves at {value:g} m/s "
                     f"everywhere; shares of the three velocities must add up to 1."
                 )
 
@@ -90,10 +96,10 @@ class Scheme:
 
 
 QUICK = Scheme(limited_quick.py_func)
-"""Limited QUICK: of third order where the flow is smooth, without new extremes."""
+"""Limited QUICK: third order where the flow is smooth, without new extremes."""
 
 CENTRAL = Scheme(central)
-"""Central differences: of second order."""
+"""Central differences: second order."""
 
 UPWIND = Scheme(upwind)
-"""First-order upwind: to see what false diffusion is."""
+"""First-order upwind, to demonstrate numerical diffusion."""

@@ -1,4 +1,4 @@
-"""What is to be simulated: grid, water, sides and bodies, checked before anything runs."""
+"""The setup of a simulation: grid, water, sides and bodies, checked before anything runs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -25,12 +25,12 @@ from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 
 LAYER_CELLS = needed(REFUSED)
-"""Fewest cells across a boundary layer of thickness L / sqrt(Re), of a body that is not blunt and in space [-]."""
+"""Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
 
 
 LOOSEST = 0.01
-"""Greatest tolerance [-]: with it the drag of a cylinder at Reynolds number 40 shakes from step to step by 4 %, with a
-tenth of it by 0.2 %."""
+"""Greatest tolerance [-]. With it, the drag of a cylinder at Reynolds number 40 fluctuates from step to step by 4 %;
+with a tenth of it, by 0.2 %."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,48 +38,51 @@ class Setup:
     """A flow to be simulated.
 
     Raises:
-        InvalidDesign: on creation, for values that cannot be or that the grid cannot carry.
+        InvalidDesign: on creation, for values that are impossible or that the grid cannot resolve.
     """
 
     grid: Grid
-    """The cells, or of a patch in coarser ones the fine cells around the bodies; see ``Grid.patch``."""
+    """The cells of the domain; with ``around``, the fine cells of a patch around the bodies, see ``Grid.patch``."""
     around: Grid | None = None
-    """Coarser cells of the whole domain, in which ``grid`` is a patch; None lets ``grid`` be the whole domain."""
+    """Coarse cells of the whole domain, in which ``grid`` is a patch; None if ``grid`` is the whole domain."""
     viscosity: float
     """Kinematic viscosity of the water [m^2/s]."""
     density: float = 1.0
-    """Density of the water, 1 unless it is given: forces then come in units of speed squared times length [kg/m^3]."""
+    """Density of the water [kg/m^3]. With the default of 1, forces are in units of speed squared times length."""
     stream: tuple[float, float] | tuple[float, float, float] | Callable[[float], tuple[float, ...]] = (0.0, 0.0)
-    """Velocity of the far water (x, y) or (x, y, z), fixed or for every time; without it, that along z is 0 [m/s]."""
+    """Velocity of the far water, (x, y) or (x, y, z), constant or a function of the time; two numbers in space mean no
+    velocity along z [m/s]."""
     start: Callable[..., Sequence[np.ndarray]] | None = None
-    """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m], arrays of one
-    shape; None is that of the far stream. The first step takes out what it has of divergence [m/s]."""
+    """Velocity of the water at time 0 along every axis, a function of the coordinates x, y (and z) [m] that returns
+    arrays of their shape; None is that of the far stream. The first step removes its divergence [m/s]."""
     sides: Sides = field(default_factory=Sides)
-    """What happens on the sides of the domain."""
+    """Boundary conditions on the sides of the domain."""
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
     contact: BodyContact | None = None
-    """Force between bodies that nearly touch; None lets them run into each other."""
+    """Force between bodies that nearly touch; None lets them overlap."""
     follow: str | None = None
-    """Name of the body whose centre the grid travels with; None keeps the grid where it is."""
+    """Name of the body with whose centre the grid travels; None fixes the grid."""
     follow_axes: tuple[bool, bool] | tuple[bool, bool, bool] = (True, True)
-    """Whether the grid travels along x, y (and z); along z it stays if that is not given."""
+    """Whether the grid travels along x, y (and z); two entries in space mean that it does not travel along z."""
     scheme: Scheme = QUICK
-    """What carries the water's velocity on: limited QUICK, ``CENTRAL``, ``UPWIND`` or one of your own."""
+    """Advection scheme: limited QUICK, ``CENTRAL``, ``UPWIND`` or your own."""
     integrator: Integrator = HEUN
-    """How a step is taken: Heun's method, ``SHU_OSHER``, ``EULER`` or one of your own."""
+    """Time integrator: Heun's method, ``SHU_OSHER``, ``EULER`` or your own."""
     courant: float = 0.8
-    """Share of a cell that the water may cross in one step [-]."""
+    """Courant number: distance that the water crosses in one step, over a cell [-]."""
     step: float | None = None
     """Fixed time step, or None to choose it from ``courant`` [s]."""
     tolerance: float = 1e-5
-    """Mean divergence left over, in fastest speed per cell; the largest may be ten times that [-]."""
+    """Limit of the mean divergence, over the fastest speed per cell; the limit of the largest divergence is ten times
+    that [-]."""
     precision: Literal["single", "double"] = "single"
     """Precision of the fields; sums are always double."""
     coarse: bool = False
-    """Whether a Reynolds number that the grid cannot carry is let through, without a warning."""
+    """Whether a Reynolds number that the grid cannot resolve is allowed, without a warning."""
 
     def __post_init__(self) -> None:
+        """Check all values and their combinations."""
         check_kinds(self)
         for name in ("viscosity", "density", "tolerance"):
             value = getattr(self, name)
@@ -87,7 +90,7 @@ class Setup:
                 raise InvalidDesign(f"{name} is {value}; a positive number is needed.")
         if not 0 < self.courant <= 1:
             raise InvalidDesign(f"courant is {self.courant}; above 1 the time stepping explodes. Give 0 to 1, say 0.8.")
-        if not callable(self.stream) and not all(isfinite(part) for part in self.stream):
+        if not callable(self.stream) and not all(isfinite(component) for component in self.stream):
             raise InvalidDesign(f"stream is {self.stream} m/s; two finite numbers are needed.")
         if self.step is not None and not (isfinite(self.step) and self.step > 0):
             raise InvalidDesign(f"step is {self.step} s; a time step is positive. Give None to let the solver choose.")
@@ -104,8 +107,10 @@ class Setup:
             )
         bodies: Any = self.bodies
         if not isinstance(bodies, tuple) or not all(isinstance(b, Body | FreeBody) for b in bodies):
-            given = getattr(bodies, "__name__", type(bodies).__name__)
-            raise InvalidDesign(f"bodies is a {given}; give a tuple of Body and FreeBody, (body,) for a single one.")
+            type_name = getattr(bodies, "__name__", type(bodies).__name__)
+            raise InvalidDesign(
+                f"bodies is a {type_name}; give a tuple of Body and FreeBody, (body,) for a single one."
+            )
         if not callable(self.stream):
             self._check_stream(self.stream, "")
         names = [b.name for b in self.bodies]
@@ -114,7 +119,7 @@ class Setup:
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
-        if self.scheme != QUICK:  # what is tried is compiled
+        if self.scheme != QUICK:  # the check compiles the scheme
             self.scheme.check()
         if self.follow is not None:
             x, y, z = (*self.follow_axes, False)[:3]
@@ -125,7 +130,7 @@ class Setup:
         check_memory(self.grid, self.dtype)
 
     def _check_dimension(self) -> None:
-        """Refuse what is plane in a grid in space, and the reverse."""
+        """Refuse plane bodies in a grid in space, and bodies in space in a plane grid."""
         axes = self.grid.axes
         self.sides.check(axes)
         for body in self.bodies:
@@ -152,7 +157,7 @@ class Setup:
         return np.float32 if self.precision == "single" else np.float64
 
     def far(self, time: float) -> tuple[float, ...]:
-        """Return the velocity of the far water at a time, along every axis [m/s]."""
+        """Return the velocity of the far water at a time [s], along every axis [m/s]."""
         if callable(self.stream):
             stream = self.stream(time)
             self._check_stream(stream, f" at t = {time:.4g} s")
@@ -161,50 +166,56 @@ class Setup:
         return stream if len(stream) == self.grid.axes else (*stream, 0.0)
 
     def began(self, component: int, grid: Grid) -> np.ndarray | float:
-        """Return the water's velocity along an axis at time 0, on all faces of a grid across it [m/s].
+        """Return one component of the initial velocity of the water on all faces across its axis [m/s].
+
+        Args:
+            component: axis of the component.
+            grid: the cells whose faces are meant, with the padding.
 
         Raises:
-            InvalidDesign: ``start`` gives something that is no velocity there.
+            InvalidDesign: ``start`` returns something else than a velocity.
         """
         if self.start is None:
             return self.far(0.0)[component]
         ends = [n + 2 * PAD for n in grid.cells]
-        along = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
-        points = np.meshgrid(*along[::-1], indexing="ij")[::-1]
-        given = self.start(*points)
-        if len(given) != self.grid.axes:
-            raise InvalidDesign(f"start gives {len(given)} velocities; one along each of {self.grid.axes} axes counts.")
-        velocity = np.asarray(given[component], float)
+        coordinates = [(grid.faces if component == d else grid.centres)(0, end, d) for d, end in enumerate(ends)]
+        points = np.meshgrid(*coordinates[::-1], indexing="ij")[::-1]
+        velocities = self.start(*points)
+        if len(velocities) != self.grid.axes:
+            raise InvalidDesign(
+                f"start gives {len(velocities)} velocities; one along each of {self.grid.axes} axes counts."
+            )
+        velocity = np.asarray(velocities[component], float)
         if velocity.shape not in ((), points[0].shape) or not np.isfinite(velocity).all():
             raise InvalidDesign(
-                f"start gives {show(given[component])} along {'xyz'[component]}; a finite velocity for each point is "
-                f"needed [m/s], shape {points[0].shape}."
+                f"start gives {show(velocities[component])} along {'xyz'[component]}; a finite velocity for each point "
+                f"is needed [m/s], shape {points[0].shape}."
             )
         return velocity
 
-    def _check_stream(self, stream: Any, when: str) -> None:
+    def _check_stream(self, stream: Any, time_text: str) -> None:
         allowed = [(2,), (self.grid.axes,)]
         if np.shape(stream) not in allowed or not np.isfinite(np.asarray(stream, float)).all():
-            what = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
-            raise InvalidDesign(f"stream is {show(stream)}{when}; give {what} in m/s.")
+            needs = "two finite velocities (x, y)" if self.grid.axes == 2 else "finite velocities (x, y) or (x, y, z)"
+            raise InvalidDesign(f"stream is {show(stream)}{time_text}; give {needs} in m/s.")
 
     def check(self) -> dict[str, float]:
-        """Return, per body, the share of its length that is too thin for the grid.
+        """Return, for each body, the fraction of its length that is too thin for the grid.
 
         Raises:
             InvalidDesign: a body outside the domain, too thin everywhere, or a Reynolds number that the grid
-                cannot carry.
+                cannot resolve.
         """
-        thin = {}
+        thin_fractions = {}
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.of(body).pose(body.shape.mass(0.0))
             pose = pose.along(self.grid.axes)
             window = window_of(body, pose, self.grid, 0.0, self._mirrors)
             if isinstance(body, FreeBody):
                 self._check_weight(body, cuts(window, self.grid))
-            thin[body.name] = thin_share(body, self.grid, 0.0)
+            thin_fractions[body.name] = thin_share(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far(0.0), 0.0)
-        return thin
+        return thin_fractions
 
     @property
     def _mirrors(self) -> tuple[bool, ...]:
@@ -212,14 +223,18 @@ class Setup:
         sides = self.sides if self.around is None else sides_of(self.grid, self.around, self.sides)
         return sides.mirrors(self.grid.axes)
 
-    def _check_weight(self, body: FreeBody, cut: tuple[bool, ...]) -> None:
-        """Refuse a weight that would draw a body through a mirror that cuts it.
+    def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
+        """Refuse gravity that would move a body through a mirror that cuts it.
+
+        Args:
+            body: the body.
+            mirror_cuts: whether the mirror at the low and the high end of each axis cuts it.
 
         Raises:
             InvalidDesign: naming the axis.
         """
         for axis, pull in enumerate(body.gravity):
-            if pull and any(cut[2 * axis : 2 * axis + 2]):
+            if pull and any(mirror_cuts[2 * axis : 2 * axis + 2]):
                 name = "xyz"[axis]
                 raise InvalidDesign(
                     f"gravity of {body.name} is {body.gravity} m/s2, and a Mirror across {name} cuts it, where it must "
@@ -235,40 +250,47 @@ class Setup:
         *,
         slack: float = 1.0,
     ) -> float:
-        """Return the estimated error of a body's force by the cells across its boundary layer; see ``resolution``.
+        """Return the relative error of a body's force, estimated by the cells across its boundary layer [-].
+
+        See ``resolution``.
 
         Args:
             body: the body.
             markers: its outline or skin at that time.
             stream: velocity of the far water, in the frame of the markers [m/s].
-            time: when [s].
-            slack: factor on the speed that is let through [-].
+            time: at which it is estimated [s].
+            slack: factor by which the speed may exceed what the grid resolves [-].
 
         Raises:
-            InvalidDesign: the estimate is above ``REFUSED``, naming the cell that would carry it.
+            InvalidDesign: the estimate is above ``REFUSED``; the message names a sufficient cell.
         """
         extent = float(np.ptp(markers.points, axis=1).max())
         speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
-        cells, blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _blunt(body)
-        error, fewest = estimate(cells, blunt=blunt), needed(REFUSED, blunt=blunt)
-        if not self.coarse and cells * slack**0.5 < fewest:
+        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), _has_blunt_shape(body)
+        error, min_cells = estimate(cells, blunt=is_blunt), needed(REFUSED, blunt=is_blunt)
+        if not self.coarse and cells * slack**0.5 < min_cells:
             layer = cells * self.grid.cell
-            least = prod(self.grid.cells) * (fewest / cells) ** self.grid.axes / 1e6
-            size = f" (this domain then takes {least:.3g} million cells)" if self.grid.axes == 3 else ""
+            million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.axes / 1e6
+            size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.axes == 3 else ""
             raise InvalidDesign(
                 f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
-                f"{100 * error:.0f} %; take cells of at most {layer / fewest:.3g} m{size}, better "
-                f"{layer / needed(DOUBTED, blunt=blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
+                f"{100 * error:.0f} %; take cells of at most {layer / min_cells:.3g} m{size}, better "
+                f"{layer / needed(DOUBTED, blunt=is_blunt):.3g} m, a lower Reynolds number, or, in a Setup of your "
                 f"own, coarse=True to go on anyway."
             )
         return error
 
     def layer_warning(self, body: Body | FreeBody, error: float) -> Doubtful | None:
-        """Return what is to be said of an estimated error of a body's force, if anything is."""
+        """Return a warning about the estimated error of a body's force, or None if the error is small.
+
+        Args:
+            body: the body.
+            error: relative error of its force; see ``layer_error`` [-].
+        """
         if self.coarse or error <= DOUBTED:
             return None
-        cells, better = (needed(wanted, blunt=_blunt(body)) for wanted in (error, DOUBTED))
+        cells, better = (needed(target_error, blunt=_has_blunt_shape(body)) for target_error in (error, DOUBTED))
         times = ceil(100 * better / cells) / 100
         return Doubtful(
             f"the boundary layer of {body.name} is {cells:.2g} cells thin: its force may be off by some "
@@ -279,5 +301,5 @@ class Setup:
         )
 
 
-def _blunt(body: Body | FreeBody) -> bool:
+def _has_blunt_shape(body: Body | FreeBody) -> bool:
     return isinstance(body.shape, SpaceShape) and body.shape.blunt

@@ -21,7 +21,7 @@ from suchus.flow.pose import Pose
 
 @dataclass(slots=True)
 class Field:
-    """What a body says about the points of a window, each array of shape (y, x)."""
+    """Distance, normal and velocity of a body at the points of a window, each array of shape (y, x)."""
 
     distance: np.ndarray
     """Signed distance to the surface, negative inside [m]."""
@@ -30,13 +30,13 @@ class Field:
     normal_y: np.ndarray
     """Outward normal along y [-]."""
     velocity_x: np.ndarray
-    """Velocity of the body, carried on smoothly a few cells into the water, along x [m/s]."""
+    """Velocity of the body along x, extended smoothly a few cells into the water [m/s]."""
     velocity_y: np.ndarray
-    """The same along y [m/s]."""
+    """Velocity of the body along y, extended likewise [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
     part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
+    """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
     @property
     def normal(self) -> tuple[np.ndarray, ...]:
@@ -78,9 +78,13 @@ class Shape(ABC):
         """Return area, centre and moments in the body's own frame."""
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the line in the middle of a thin body, which no water passes, shape (2, point) [m].
+        """Return the line in the middle of a thin body, through which no water passes, shape (2, point) [m].
 
         None for a body that is never thin.
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
         """
         return None
 
@@ -90,12 +94,16 @@ class Shape(ABC):
         return True
 
 
-_ROUGH, _FEWEST = 256, 32
-"""Points by which the length of an outline is found, and those that markers are made of, at least [-]."""
+_COARSE_POINTS, _MIN_POINTS = 256, 32
+"""Points with which the length of an outline is measured, and fewest points of the markers [-]."""
 
 
 def positive(name: str, value: float) -> None:
     """Refuse a length that is not a positive number.
+
+    Args:
+        name: of the length, for the message.
+        value: the length [m].
 
     Raises:
         InvalidDesign: naming the value.
@@ -105,7 +113,7 @@ def positive(name: str, value: float) -> None:
 
 
 class Solid(Shape):
-    """A rigid shape: says its distance and outline in its own frame, and the pose does the rest."""
+    """A rigid shape, defined by its distance and outline in its own frame; the pose is applied here."""
 
     @abstractmethod
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -116,16 +124,16 @@ class Solid(Shape):
         """Return ``count`` points around the outline, counter-clockwise, about evenly spaced [m]."""
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
-        """Return the field on the points of a window."""
+        """Return distance, normal and velocity on the points of a window; see ``Shape``."""
         wx, wy = np.meshgrid(x, y)
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
         vx, vy = (np.broadcast_to(v, d.shape) for v in pose.carry(wx, wy))
         return Field(d, *pose.turn(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of the outline's edges."""
-        middle, normal, length = _edges(self, spacing)
-        points = np.stack(pose.to_world(*middle))
+        """Return markers at the centres of the outline's edges; see ``Shape``."""
+        centres, normal, length = _edges(self, spacing)
+        points = np.stack(pose.to_world(*centres))
         return Markers(
             points=points, share=length, velocities=np.stack(pose.carry(*points)), normals=np.stack(pose.turn(*normal)),
             spins=np.full((1, length.size), pose.spin), station=np.cumsum(length) - length / 2,
@@ -134,7 +142,7 @@ class Solid(Shape):
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        x, y = pose.to_world(*_ring(self, _ROUGH))
+        x, y = pose.to_world(*_ring(self, _COARSE_POINTS))
         return float(x.min()), float(x.max()), float(y.min()), float(y.max())
 
     def mass(self, time: float) -> Mass:
@@ -143,29 +151,37 @@ class Solid(Shape):
 
 
 def _ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return ``count`` points around the outline, which is rigid: they are kept, where the shape can be a key."""
+    """Return ``count`` points around the outline in the body's frame [m].
+
+    The outline is rigid. The points are cached if the shape is hashable.
+    """
     try:
-        return _kept_ring(shape, count)
+        return _cached_ring(shape, count)
     except TypeError:
         return shape.outline(count)
 
 
 @lru_cache(maxsize=64)
-def _kept_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _cached_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
     x, y = (np.array(line, float) for line in shape.outline(count))
     x.flags.writeable = y.flags.writeable = False
     return x, y
 
 
 def _edges(shape: Solid, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return middles, outward normals and lengths of the outline's edges in the body's frame, about evenly spaced."""
-    rough = np.stack(_ring(shape, _ROUGH))
-    around = float(np.hypot(*(np.roll(rough, -1, axis=1) - rough)).sum())
-    here = np.stack(_ring(shape, max(_FEWEST, int(np.ceil(around / spacing)))))
-    following = np.roll(here, -1, axis=1)
-    along = following - here
-    length = np.hypot(*along)
-    return (here + following) / 2, np.stack([along[1], -along[0]]) / length, length
+    """Return centres, outward normals and lengths of about evenly spaced edges of the outline, in the body's frame.
+
+    Args:
+        shape: the shape.
+        spacing: length of an edge [m].
+    """
+    coarse_ring = np.stack(_ring(shape, _COARSE_POINTS))
+    perimeter = float(np.hypot(*(np.roll(coarse_ring, -1, axis=1) - coarse_ring)).sum())
+    corners = np.stack(_ring(shape, max(_MIN_POINTS, int(np.ceil(perimeter / spacing)))))
+    next_corners = np.roll(corners, -1, axis=1)
+    edges = next_corners - corners
+    length = np.hypot(*edges)
+    return (corners + next_corners) / 2, np.stack([edges[1], -edges[0]]) / length, length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,15 +223,15 @@ class Ellipse(Solid):
         positive("width", self.width)
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal, by Newton's method on the foot point."""
-        px, py = (np.ascontiguousarray(part, float) for part in np.broadcast_arrays(x, y))
-        out = np.empty((3, px.size))
-        measure_ellipse(out, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
-        d, nx, ny = out.reshape(3, *px.shape)
+        """Return signed distance [m] and outward normal [-], by Newton's method for the nearest point."""
+        px, py = (np.ascontiguousarray(coordinate, float) for coordinate in np.broadcast_arrays(x, y))
+        fields = np.empty((3, px.size))
+        measure_ellipse(fields, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
+        d, nx, ny = fields.reshape(3, *px.shape)
         return d, nx, ny
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the ellipse, evenly spaced along it."""
+        """Return ``count`` points around the ellipse, evenly spaced along it [m]."""
         fine = np.linspace(0, 2 * np.pi, 8 * count + 1)
         x, y = self.length / 2 * np.cos(fine), self.width / 2 * np.sin(fine)
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
@@ -223,7 +239,10 @@ class Ellipse(Solid):
         return self.length / 2 * np.cos(turn), self.width / 2 * np.sin(turn)
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray:
-        """Return the longer axis as far as the ellipse is less wide there than the way to its tip is long."""
+        """Return the part of the longer axis at which the ellipse is narrower than it is far from its tip [m].
+
+        The shape is (2, 2).
+        """
         a, b = self.length / 2, self.width / 2
         reach = (a if a > b else b) * abs(a * a - b * b) / (a * a + b * b)
         tip = (reach, 0.0) if a > b else (0.0, reach)
@@ -250,7 +269,7 @@ class Plate(Solid):
             raise InvalidDesign(f"a plate {self.thick} m thick is longer than thick; give a length of at least that.")
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return signed distance and outward normal."""
+        """Return signed distance [m] and outward normal [-] at points of the body's frame."""
         half = (self.length - self.thick) / 2
         dx = x - np.clip(x, -half, half)
         r = np.hypot(dx, y)
@@ -259,14 +278,14 @@ class Plate(Solid):
         return r - self.thick / 2, dx / safe, np.where(flat, 1.0, y / safe)
 
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return points around the plate, evenly spaced."""
+        """Return ``count`` points around the plate, evenly spaced [m]."""
         r, half = self.thick / 2, (self.length - self.thick) / 2
         turn, flat = np.pi * r, 2 * half
         s = np.linspace(0, 2 * (turn + flat), count, endpoint=False)
         lap, second = s % (turn + flat), np.where(s >= turn + flat, -1.0, 1.0)
         angle = np.minimum(lap / r, np.pi) - np.pi / 2
-        along = np.maximum(lap - turn, 0.0)
-        return second * (half + r * np.cos(angle) - along), second * r * np.sin(angle)
+        flat_distance = np.maximum(lap - turn, 0.0)
+        return second * (half + r * np.cos(angle) - flat_distance), second * r * np.sin(angle)
 
     def centreline(self, time: float, pose: Pose) -> np.ndarray:
         """Return the line between the middles of the round ends."""

@@ -1,6 +1,6 @@
-"""What happens on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic.
+"""Boundary conditions on the sides of the domain, four in the plane and six in space: stream, walls, inflow, periodic.
 
-A kind of side is a subclass of ``Side`` that says what the water does there; your own is one too.
+A kind of side is a subclass of ``Side`` that defines the motion of the water there. You can write your own.
 """
 
 from collections.abc import Callable
@@ -15,71 +15,74 @@ from suchus.flow.grid import check_kinds
 
 
 class Side:
-    """A kind of side of the domain: as it stands, a wall without friction.
+    """A kind of side of the domain; this base class is a wall without friction.
 
-    A subclass says what is otherwise. Its methods are asked in every step, for the time at the step's end.
+    A subclass overrides what differs. Its methods are called in every step, for the time at the end of the step.
     """
 
     __slots__ = ()
 
     passes: ClassVar[bool] = False
-    """Whether water can go through the side; what is through it must leave by a side that ``opens``."""
+    """Whether water can go through the side; water that enters must leave by a side that ``opens``."""
     opens: ClassVar[bool] = False
-    """Whether as much water goes through as the others leave over, and the side's place does not count."""
+    """Whether the flow through the side balances that through the others; the position of such a side is arbitrary."""
     ends: ClassVar[bool] = True
-    """Whether the domain ends here; beyond the side of a patch it may go on in coarser cells."""
+    """Whether the domain ends here; beyond the side of a patch it may continue in coarser cells."""
     travels: ClassVar[tuple[bool, bool]] = False, True
-    """Whether a grid that travels may take the side along: across it, and along it."""
+    """Whether the side may travel with the grid: across itself, and along itself."""
 
     def into(self, time: float, *places: np.ndarray) -> np.ndarray | float:
-        """Return the velocity into the domain [m/s], a number or one for each place; asked if the side ``passes``.
+        """Return the velocity into the domain, a number or one for each point [m/s].
+
+        It is called only if the side ``passes``.
 
         Args:
-            time: when [s].
+            time: time [s].
             places: coordinates along the side, of one axis in the plane and of two in space, in the order x, y, z [m].
         """
         del time, places
         return 0.0
 
     def along(self, time: float, axes: int) -> tuple[float, ...] | None:
-        """Return the velocity of what the water sticks to, along the other axes [m/s]; None without friction.
+        """Return the velocity of the wall along the other axes [m/s]; None without friction.
 
         Args:
-            time: when [s].
+            time: time [s].
             axes: of the domain, 2 or 3.
         """
         del time, axes
         return None
 
     def carries(self, outward: float) -> float:
-        """Return the share of a step in which the water that comes is carried out [-].
+        """Return the fraction of a step in which the arriving water is carried out [-].
 
         Args:
-            outward: what share of the far stream's speed is across the side, positive outward [-].
+            outward: outward velocity of the far stream across the side, over its speed [-].
         """
         del outward
         return 0.0
 
 
 _LEAVES = 0.2, 0.4
-"""Shares of the stream's speed along the normal between which a Stream side begins to carry the wake out [-]."""
+"""Outward velocity of the far stream, over its speed, at which a Stream side begins to carry the wake out, and at which
+it does so fully [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stream(Side):
-    """Open water that moves with the far stream; where the stream leaves, the wake is carried out."""
+    """Open water that moves with the far stream; where the stream leaves, it carries the wake out."""
 
     unbounded: bool = True
-    """Whether, if all four sides are such, they also move as the flow moves there in an unbounded domain
-    (``openwater``, in space ``farfield``); False prescribes the far stream itself, which the body's displacement then
-    cannot widen. In space some of the six may be a Mirror."""
+    """Whether the sides, if all are such, move with the flow in an unbounded domain (``openwater``, in space
+    ``farfield``). False prescribes the far stream itself, so that the displacement of a body cannot widen it. In space
+    some of the six may be a Mirror."""
 
     passes: ClassVar[bool] = True
     opens: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
     def carries(self, outward: float) -> float:
-        """Return more, the more the far stream leaves here; see ``Side``."""
+        """Return the fraction, which rises with the outward velocity of the far stream; see ``Side``."""
         return min(max((outward - _LEAVES[0]) / (_LEAVES[1] - _LEAVES[0]), 0.0), 1.0)
 
 
@@ -90,7 +93,7 @@ class Slip(Side):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wall(Side):
-    """A wall that the water sticks to."""
+    """A wall with friction."""
 
     speed: float | tuple[float, float] = 0.0
     """Speed of the wall along itself, toward +x or +y; in space a pair along the other two axes, in the order x, y, z
@@ -109,8 +112,8 @@ class Inflow(Side):
     """Water that enters with a given profile."""
 
     profile: Callable[..., np.ndarray]
-    """Velocity into the domain [m/s] over the coordinate along the side [m]; in space over both, in the order x, y, z,
-    given as two arrays of the same shape."""
+    """Velocity into the domain [m/s] as a function of the coordinate along the side [m]; in space of both, two arrays
+    of one shape in the order x, y, z."""
 
     passes: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = False, False
@@ -121,21 +124,21 @@ class Inflow(Side):
         return np.asarray(self.profile(*places))
 
     def along(self, time: float, axes: int) -> tuple[float, ...]:
-        """Return that the water enters straight; see ``Side``."""
+        """Return zero: the water enters at a right angle; see ``Side``."""
         del time
         return (0.0,) * (axes - 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outflow(Side):
-    """Where the water leaves; what it carries goes out with the mean speed."""
+    """A side at which water leaves, carried out with the mean speed."""
 
     passes: ClassVar[bool] = True
     opens: ClassVar[bool] = True
     travels: ClassVar[tuple[bool, bool]] = True, True
 
     def carries(self, outward: float) -> float:
-        """Return that it always is; see ``Side``."""
+        """Return 1: the water is always carried out; see ``Side``."""
         del outward
         return 1.0
 
@@ -149,9 +152,9 @@ class Periodic(Side):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mirror(Side):
-    """A plane of symmetry, in space: beyond it lies the image of what is inside.
+    """A plane of symmetry in space, beyond which the flow is mirrored.
 
-    A body may be cut by it, if its middle lies on it and stays there; what the record says is then of the whole body.
+    It may cut a body whose centre lies on it and stays there; the record is then that of the whole body.
     """
 
 
@@ -181,11 +184,12 @@ class Sides:
     """Side at the largest z, of a grid in space."""
 
     def __post_init__(self) -> None:
+        """Check that periodic sides face each other and that water that enters can leave."""
         check_kinds(self)
-        for first, second in zip(NAMES[::2], NAMES[1::2], strict=True):
-            if isinstance(getattr(self, first), Periodic) != isinstance(getattr(self, second), Periodic):
+        for low_name, high_name in zip(NAMES[::2], NAMES[1::2], strict=True):
+            if isinstance(getattr(self, low_name), Periodic) != isinstance(getattr(self, high_name), Periodic):
                 raise InvalidDesign(
-                    f"of {first} and {second}, one side is periodic and the other is not; make both Periodic()."
+                    f"of {low_name} and {high_name}, one side is periodic and the other is not; make both Periodic()."
                 )
         plane, ends = self.around(2), (self.low, self.high)
         enters = any(isinstance(side, Inflow) for side in (*plane, *ends))
@@ -193,7 +197,10 @@ class Sides:
             raise InvalidDesign("water enters through an Inflow and cannot leave; make another side an Outflow().")
 
     def check(self, axes: int) -> None:
-        """Refuse sides that cannot be those of a domain with so many axes.
+        """Refuse sides that do not fit the number of axes of the domain.
+
+        Args:
+            axes: number of axes, 2 or 3.
 
         Raises:
             InvalidDesign: a mirror in the plane, or a side's speed of another dimension.
@@ -206,9 +213,9 @@ class Sides:
                 raise InvalidDesign(f"the speed of the {name} side along itself is {show(speed)} m/s; {needs}.")
 
     def check_travel(self, axes: int, travels: tuple[bool, bool, bool], body: str) -> None:
-        """Refuse sides that stand still in the world, if the grid travels and would take them along.
+        """Refuse sides with a fixed position in the world if the grid travels and would move them.
 
-        A side without friction may travel along itself, and open and periodic ones anywhere.
+        A side without friction may travel along itself. Open and periodic sides may travel in any direction.
 
         Args:
             axes: of the domain.
@@ -219,9 +226,9 @@ class Sides:
             InvalidDesign: a wall, an inflow or a mirror would travel.
         """
         for number, name in enumerate(NAMES[: 2 * axes]):
-            side, across = getattr(self, name), travels[number // 2]
+            side, travels_across = getattr(self, name), travels[number // 2]
             may_across, may_along = side.travels
-            if (across and not may_across) or (any(travels) and not may_along):
+            if (travels_across and not may_across) or (any(travels) and not may_along):
                 raise InvalidDesign(
                     f"the grid is to follow {body!r} and would take its {name} side along; the place of a side of the "
                     f"kind {type(side).__name__} is fixed: make it a Stream(), or leave follow None in a domain that "
@@ -244,9 +251,9 @@ class Sides:
 
     def unbounded(self, axes: int) -> bool:
         """Return whether the domain is unbounded, so that its sides move with the flow."""
-        every = self.around(axes)
-        open_sides = [isinstance(s, Stream) and s.unbounded for s in every]
-        return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, every, strict=True))
+        sides = self.around(axes)
+        open_sides = [isinstance(s, Stream) and s.unbounded for s in sides]
+        return any(open_sides) and all(o or isinstance(s, Mirror) for o, s in zip(open_sides, sides, strict=True))
 
     def repeats(self, axes: int) -> tuple[bool, ...]:
         """Return whether the domain is periodic, along each axis."""
@@ -257,6 +264,9 @@ class Sides:
         return tuple(isinstance(side, Mirror) for side in self.around(axes))
 
     def held(self, axes: int) -> tuple[tuple[bool, bool], ...]:
-        """Return whether the place of the low and of the high side counts, along each axis: of all but open ones."""
+        """Return whether the positions of the low and the high side are fixed, along each axis.
+
+        They are fixed for all but open sides.
+        """
         fixed = [not side.opens for side in self.around(axes)]
         return tuple(zip(fixed[::2], fixed[1::2], strict=True))

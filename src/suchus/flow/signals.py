@@ -18,27 +18,38 @@ def rises(time: np.ndarray, value: np.ndarray) -> np.ndarray:
 
 
 def frequency(time: np.ndarray, value: np.ndarray) -> float:
-    """Return the frequency of a periodic series from its rises through the mean [Hz].
+    """Return the frequency of a periodic series, from the times at which it rises through its mean [Hz].
+
+    Args:
+        time: times [s].
+        value: the series.
 
     Raises:
         NotConverged: fewer than three periods.
     """
-    at = rises(time, value)
-    if at.size < 4:
-        raise NotConverged(f"the series has {at.size} rises in {time[-1] - time[0]:.3g} s; run for at least 3 periods.")
-    return float((at.size - 1) / (at[-1] - at[0]))
+    crossings = rises(time, value)
+    if crossings.size < 4:
+        raise NotConverged(
+            f"the series has {crossings.size} rises in {time[-1] - time[0]:.3g} s; run for at least 3 periods."
+        )
+    return float((crossings.size - 1) / (crossings[-1] - crossings[0]))
 
 
 def last_periods(time: np.ndarray, value: np.ndarray, count: int) -> np.ndarray:
-    """Return which samples belong to the last ``count`` whole periods of ``value``, shape (step,).
+    """Return which samples belong to the last whole periods of a series, shape (step,).
+
+    Args:
+        time: times [s].
+        value: the series.
+        count: number of periods [-].
 
     Raises:
-        NotConverged: there are fewer.
+        NotConverged: the series has fewer periods.
     """
-    at = rises(time, value)
-    if at.size <= count:
-        raise NotConverged(f"the series has {max(at.size - 1, 0)} whole periods; {count} are asked for.")
-    return (time >= at[-1 - count]) & (time <= at[-1])
+    crossings = rises(time, value)
+    if crossings.size <= count:
+        raise NotConverged(f"the series has {max(crossings.size - 1, 0)} whole periods; {count} are asked for.")
+    return (time >= crossings[-1 - count]) & (time <= crossings[-1])
 
 
 def strouhal(time: np.ndarray, lift: np.ndarray, *, length: float, speed: float) -> float:
@@ -71,20 +82,25 @@ def morison(
 
 
 def noise(time: np.ndarray, value: np.ndarray, *, window: float) -> float:
-    """Return the rms distance from a cubic fitted over each ``window`` [s], over the series' own rms change [-].
+    """Return the noise of a series: the rms deviation from piecewise cubic fits, over the standard deviation [-].
+
+    Args:
+        time: times [s].
+        value: the series.
+        window: duration of a fit; fits begin every half of it [s].
 
     Raises:
         NotConverged: no window holds enough samples for a cubic, or the series never changes.
     """
-    rest = []
+    residuals = []
     for start in np.arange(time[0], time[-1] - window, window / 2) if value.size else ():
         k = (time >= start) & (time < start + window)
         if k.sum() > 6:
             t = (time[k] - start) / window
-            rest.append(value[k] - np.polyval(np.polyfit(t, value[k], 3), t))
-    if not rest or not np.ptp(value) > 0:
+            residuals.append(value[k] - np.polyval(np.polyfit(t, value[k], 3), t))
+    if not residuals or not np.ptp(value) > 0:
         raise NotConverged(
             f"a series of {value.size} samples has no noise to tell in windows of {window:.3g} s; give a changing "
             f"series of at least two windows with 7 samples each."
         )
-    return float(np.sqrt(np.mean(np.concatenate(rest) ** 2)) / np.std(value))
+    return float(np.sqrt(np.mean(np.concatenate(residuals) ** 2)) / np.std(value))

@@ -1,4 +1,4 @@
-"""A flow under way: steps, runs with progress and checkpoints, and shows its fields."""
+"""A running flow simulation: time steps, runs with progress and checkpoints, and access to the fields."""
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -43,20 +43,20 @@ from suchus.flow.watch import EVERY, Watch
 from suchus.flow.water import Fluid
 
 ADDED_EVERY = 8
-"""Steps after which a free body's added mass is computed anew [-]."""
+"""Steps between two computations of a free body's added mass [-]."""
 
 RATES_EVERY = 8
-"""Steps after which the rates of a bending body are compared with its positions anew [-]."""
+"""Steps between two comparisons of a bending body's rates with its positions [-]."""
 
 SLACK = 1.5
-"""Factor on the speed that a grid carries, from which a moving body stops a run [-]."""
+"""Factor by which a moving body may exceed the speed that the grid resolves before the run stops [-]."""
 
 OFFSET_CHANGE = 1e-3
-"""Change of the wall's offset from which bodies that stand still are placed anew [cells]: 0.04 % of a force."""
+"""Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
 def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is not made anew for each time that a step asks for it."""
+    """Return a body whose midline, if it has one, is cached for each time within a step."""
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -70,32 +70,42 @@ def _fastest_marker(markers: Markers) -> float:
 
 
 Watcher = Callable[["Simulation"], None]
-"""What looks at a simulation on its way."""
+"""Function that is called with the simulation during a run."""
 
 _CHANGING = ("time", "_last", "_speed", "_reference")
 
 LANDING = 16
-"""Steps before the end of a run over which the time step is evened out, so that the last one is no jolt [-]."""
+"""Steps before the end of a run over which the time step is evened out, so that the last step is not much shorter
+[-]."""
 
 
 class Simulation(Fields):
-    """A flow that starts with the water moving like the far stream and goes on step by step.
+    """A flow that starts with the velocity of the far stream and advances step by step.
 
     Attributes:
         setup: what is simulated.
-        time: how far it has come [s].
+        time: time reached [s].
         water: velocity and pressure.
-        thin: per body, the share of its length that is thinner than the kernel: no water passes it, but its force is
-            noisy.
+        thin: for each body, the fraction of its length that is thinner than the kernel: no water passes it, but its
+            force is noisy.
     """
 
     def __init__(self, setup: Setup, *, thread_count: int | None = None) -> None:
+        """Check the setup and place bodies and water at time 0.
+
+        Args:
+            setup: what is simulated.
+            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+
+        Raises:
+            InvalidDesign: bodies overlap, or see ``Setup.check``.
+        """
         self.setup = setup
         self.thin = setup.check()
         compile_ahead(setup.grid.axes, setup.dtype)
         self.time = 0.0
-        more = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
-        self.water = Fluid(setup.grid, *more) if setup.around is None else Nested(setup.grid, setup.around, *more)
+        options = setup.sides, setup.viscosity, setup.dtype, setup.scheme, setup.integrator
+        self.water = Fluid(setup.grid, *options) if setup.around is None else Nested(setup.grid, setup.around, *options)
         self.axes = setup.grid.axes
         self.frame = np.zeros((2, self.axes))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
@@ -110,7 +120,7 @@ class Simulation(Fields):
                 component[:] = setup.began(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
         self._placed = False
-        self._latest: _LatestStep | None = None
+        self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
@@ -118,70 +128,84 @@ class Simulation(Fields):
         self._speed = max([length(stream), 1e-12] + [_fastest_marker(m) for m in outlines])
         self._fastest = 0.0  # fastest water after the last step
         self._reference = 0.0  # fastest stream, body or wall so far
-        self._longest = inf  # of a first step, by how far it carries bodies that begin at rest
+        self._max_first_step = inf  # of a first step, by how far it carries bodies that begin at rest
         self.water.place(self._bodies, [self._in_frame(self.pose(b.name)) for b in self._bodies], 0.0)
         shared = self._watch.shared(self.water, 0.0)
         if shared is not None:
             raise InvalidDesign(shared)
-        for body, cut in zip(self._bodies, self.water.cut, strict=True):
+        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
             if isinstance(body, FreeBody) and body.free is None:
-                self.swimmers[body.name].go &= np.array(symmetric(cut))
+                self.swimmers[body.name].go &= np.array(symmetric(mirror_cuts))
         self._log.hold(self.water, outlines)
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
         )  # fmt: skip
-        self._watched = [told for b in self._bodies for told in self._told(b)]
+        self._watched = [consistency for b in self._bodies for consistency in self._consistencies_of(b)]
 
-    def _told(self, body: AnyBody) -> list[Consistency]:
-        """Return what is to be watched of a body's rates, after a first look at all that it gives."""
-        cell, found, changing = self.setup.grid.cell, [], []
+    def _consistencies_of(self, body: AnyBody) -> list[Consistency]:
+        """Return the checks that compare a body's prescribed rates with its positions during the run.
+
+        All prescribed functions are checked once at time 0. Functions that never change are not checked again.
+        """
+        cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
             pose = body.pose(0.0).along(self.axes)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
-            if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may turn in its place
+            if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may spin in place
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
-            found.append(
+            consistencies.append(
                 Consistency(
                     GivenMotion(body.name, lambda t: pose if fixed else body.pose(t).along(self.axes), reach), cell
                 )
             )
             changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
-            found.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
+            consistencies.append(Consistency(GivenMidline(body.name, body.shape.spine), cell, every=RATES_EVERY))
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
             links = GivenLinks(body.name, body.shape.motion, body.shape.reach)
-            found.append(Consistency(links, cell, every=RATES_EVERY))
+            consistencies.append(Consistency(links, cell, every=RATES_EVERY))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
-        for one in found:
-            first = one.longest(0.0, step)
-            self._longest = min(self._longest, first)
-            one.start(0.0, first)
-        return [one for one, does in zip(found, changing, strict=True) if does]
+        for consistency in consistencies:
+            first_step = consistency.longest(0.0, step)
+            self._max_first_step = min(self._max_first_step, first_step)
+            consistency.start(0.0, first_step)
+        return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
 
     # --- state -------------------------------------------------------------------------------------------------
 
     def pose(self, name: str, time: float | None = None) -> Pose:
-        """Return the pose of a body in the world, now or (unless it is free) at another time [s]."""
+        """Return the pose of a body in the world frame.
+
+        Args:
+            name: of the body.
+            time: another time than the present one, for a body that is not free [s].
+        """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
             return body.pose(self.time if time is None else time).along(self.axes)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
+        """Return a pose of the world frame in the frame of the grid."""
         position, velocity = (
-            tuple(a - b for a, b in zip(part, frame, strict=True))
-            for part, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
+            tuple(a - b for a, b in zip(vector, frame, strict=True))
+            for vector, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
         )
         return replace(pose, position=position, velocity=velocity)
 
     def _stream(self, time: float) -> tuple[float, ...]:
-        return tuple(float(part - own) for part, own in zip(self.setup.far(time), self.frame[1], strict=True))
+        """Return the velocity of the far water in the frame of the grid [m/s]."""
+        return tuple(
+            float(component - frame_component)
+            for component, frame_component in zip(self.setup.far(time), self.frame[1], strict=True)
+        )
 
     def _frame_velocity_at(self, time: float) -> None:
+        """Set the velocity of the grid to that of the body that it follows, at a time [s]."""
         if self.setup.follow is None:
             return
         name = self.setup.follow
@@ -199,7 +223,7 @@ class Simulation(Fields):
         """
         limit = self._limit(max(self._fastest if self._log.rows else self.water.fastest(), self._speed))
         if self.setup.step is None:
-            return self.setup.courant * (limit if self._log.rows else min(limit, self._longest))
+            return self.setup.courant * (limit if self._log.rows else min(limit, self._max_first_step))
         if self.setup.step > 1.2 * limit:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
@@ -209,14 +233,18 @@ class Simulation(Fields):
         return self.setup.step
 
     def _limit(self, fastest: float) -> float:
+        """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
         return self.setup.grid.cell / (fastest + 2 * self.axes * float(self.water.nu))
 
     def advance(self, dt: float | None = None) -> None:
-        """Advance by one step [s].
+        """Advance by one step.
+
+        Args:
+            dt: length of the step; None takes ``next_step`` [s].
 
         Raises:
-            Diverged: the fields are no longer finite or far too fast; the record's fields are the last good ones.
-            InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates are not those of its places.
+            Diverged: the fields are not finite or far too fast; the record's fields are those of the last valid step.
+            InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates do not match its positions.
             OutsideLimits: ``dt`` is not positive.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
@@ -226,8 +254,8 @@ class Simulation(Fields):
         dt = self.next_step() if dt is None else dt
         if not (isfinite(dt) and dt > 0):
             raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
-        for told in self._watched:
-            told.look(self.time, dt)
+        for consistency in self._watched:
+            consistency.look(self.time, dt)
         contacts = self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             swimmer.advance(self.time, dt, self.setup.density, contacts.get(name))
@@ -253,65 +281,79 @@ class Simulation(Fields):
                 for b, m in zip(self._bodies, markers, strict=True)
             ]
         )
-        ahead = max(length(self._stream(time)), self.water.imposed(time))
-        self._speed = max([self._speed, ahead] + [_fastest_marker(m) for m in markers])  # it may just start to move
+        side_speed = max(length(self._stream(time)), self.water.imposed(time))
+        marker_speeds = [_fastest_marker(m) for m in markers]  # a body may just start to move
+        self._speed = max([self._speed, side_speed, *marker_speeds])
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
         self.time, self._last = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
-        self._latest = _LatestStep(dt, poses, push, drift, self._log.held)
-        self._note(self._latest)
+        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.held)
+        self._note(self._latest_step)
         self._log.control(self.water, dt, push)
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
-        """Return the force and torque by contact on each body, in the middle of the next step [N/m, N]."""
+        """Return the contact force and torque on each body in the middle of the next step, by name [N/m, N].
+
+        Args:
+            dt: length of that step [s].
+        """
         setup = self.setup
         if setup.contact is None or not self.swimmers:
             return {}
         outlines, centres = [], []
         for body in self._bodies:
             outline = body.shape.markers(self.time, self.pose(body.name), setup.grid.cell)
-            ahead = 0.5 * dt
-            outlines.append(replace(outline, points=outline.points + ahead * outline.velocities))
+            half_step = 0.5 * dt
+            outlines.append(replace(outline, points=outline.points + half_step * outline.velocities))
             swimmer = self.swimmers.get(body.name)
-            centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + ahead * swimmer.rate[:2])
-        found = contact.forces(setup.contact, outlines, centres)
-        return dict(zip([b.name for b in self._bodies], found, strict=True))
+            centres.append(np.zeros(2) if swimmer is None else swimmer.place[:2] + half_step * swimmer.rate[:2])
+        contact_forces = contact.forces(setup.contact, outlines, centres)
+        return dict(zip([b.name for b in self._bodies], contact_forces, strict=True))
 
-    def _about(self, name: str, pose: Pose) -> tuple[float, ...]:
-        """Return the point that a body's torque is about, in the frame of the grid [m]."""
+    def _torque_point(self, name: str, pose: Pose) -> tuple[float, ...]:
+        """Return the reference point of a body's torque in the frame of the grid [m]."""
         if name not in self.swimmers:
             return pose.position
         return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
     def _note(self, step: "_LatestStep") -> None:
+        """Compute the forces of a step, give them to the free bodies, and append a row to the record.
+
+        Args:
+            step: the step, whose fields are those of the water now.
+        """
         water, setup, dt, poses, outlines = self.water, self.setup, step.dt, step.poses, self._outlines
         fastest = self._fastest = water.fastest()
-        about = [self._about(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
+        torque_points = [self._torque_point(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
         values, body_speed = [], 0.0
-        self._loads, along = self._log.reactions(water, outlines, about, dt, step.push, step.before), []
+        self._loads = self._log.reactions(water, outlines, torque_points, dt, step.push, step.contents_before)
+        part_values: list[float] = []
         for k, (body, markers, point, loads) in enumerate(
-            zip(self._bodies, outlines, about, self._loads, strict=True)
+            zip(self._bodies, outlines, torque_points, self._loads, strict=True)
         ):  # fmt: skip
             act = loads.whole
             load = sample(water, markers, setup.density).load(point) if water.axes == 2 else None
-            place = self.pose(body.name)
+            body_pose = self.pose(body.name)
             swimmer = self.swimmers.get(body.name)
             if swimmer is not None:
-                place = swimmer.place_and_rate
+                body_pose = swimmer.place_and_rate
                 swimmer.load = np.array([*act.force, *act.moment])
                 if swimmer.steps % ADDED_EVERY == 1 and swimmer.go.any():
-                    asked = swimmer.go if self.axes == 3 else None
-                    swimmer.take_added(added_mass(water, markers, point, setup.density, k, asked), self.time)
-            values += columns(load, act, step.drift, place, self._watch.errors[k])
-            along += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
+                    free_degrees = swimmer.go if self.axes == 3 else None
+                    swimmer.take_added(added_mass(water, markers, point, setup.density, k, free_degrees), self.time)
+            values += columns(load, act, step.drift, body_pose, self._watch.errors[k])
+            part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
             body_speed = max(body_speed, _fastest_marker(markers))
         self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
         self._reference = max(self._reference, length(water.border.stream), body_speed, water.imposed(self.time))
         solves = water.solves
         row = np.array(
-            [self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values, *along]
+            [
+                self.time, dt, solves[0].cycles, solves[-1].cycles, solves[-1].largest / self._speed, *values,
+                *part_values,
+            ]
         )  # fmt: skip
         good = dict(zip("uvw", water.before, strict=False))
         self._log.refuse_nonsense(fastest, self._reference, row, good)
@@ -320,93 +362,112 @@ class Simulation(Fields):
             self._watch.sides(water, self.time)
 
     def last(self, name: str) -> FlowLoads:
-        """Return what the water did to a body, and to each of its parts, in the last step.
+        """Return the force of the water on a body and on each of its parts in the last step.
+
+        Args:
+            name: of the body.
 
         Raises:
             UnknownName: there is no such body.
             OutsideLimits: no step has been taken since the simulation was set up or resumed.
         """
-        if self._latest is None:
+        if self._latest_step is None:
             raise OutsideLimits("the loads of the last step are asked for before any step was taken; call advance.")
         return self._loads[self._number(name)]
 
     @property
     def drift(self) -> np.ndarray:
         """Mean velocity of the grid in the last step, shape (axis,) [m/s]."""
-        return np.zeros(self.axes) if self._latest is None else self._latest.drift
+        return np.zeros(self.axes) if self._latest_step is None else self._latest_step.drift
 
-    def accelerate(self, more: Mapping[str, Twists]) -> None:
-        """Let bodies have moved otherwise at the end of the last step, and the water with them; see ``twist``.
+    def accelerate(self, twists: Mapping[str, Twists]) -> None:
+        """Change the velocities of bodies at the end of the last step, and let the water follow; see ``twist``.
 
-        ``more`` is added to the velocities of their parts. The last row of the record becomes that of the step as it
-        then was. What a ``Body`` is told from outside, its shape and motion, must from now on say the same.
+        The last row of the record is computed anew. From now on, the shape and motion of a ``Body``, which are
+        prescribed from outside, must match the new velocities.
+
+        Args:
+            twists: change of the velocity of each part, by name of the body.
 
         Raises:
             UnknownName: there is no such body.
-            InvalidDesign: a body has another number of parts than it is given motions of.
+            InvalidDesign: the number of twists is not the number of the body's parts.
             OutsideLimits: no step has been taken yet.
             Diverged: see ``advance``.
         """
-        if self._latest is None:
+        if self._latest_step is None:
             raise OutsideLimits("bodies are to be accelerated before any step was taken; call advance first.")
-        each = [none(len(rows), self.axes) for rows in self.water.rows]
-        for name, motion in more.items():
+        body_twists = [none(len(rows), self.axes) for rows in self.water.rows]
+        for name, motion in twists.items():
             number = self._number(name)
-            if motion.about.shape != each[number].about.shape:
+            if motion.about.shape != body_twists[number].about.shape:
                 raise InvalidDesign(
-                    f"{name} is given the motions of {len(motion.about)} parts, and it has {len(each[number].about)}; "
-                    f"give one for each part, from the first to the last."
+                    f"{name} is given the motions of {len(motion.about)} parts, and it has "
+                    f"{len(body_twists[number].about)}; give one for each part, from the first to the last."
                 )
-            each[number] = motion
-        accelerate(self.water, joined(each), self._latest.dt)
-        self._outlines = [moved_on(one, motion) for one, motion in zip(self._outlines, each, strict=True)]
+            body_twists[number] = motion
+        accelerate(self.water, joined(body_twists), self._latest_step.dt)
+        self._outlines = [
+            moved_on(outline, motion) for outline, motion in zip(self._outlines, body_twists, strict=True)
+        ]
         self.forget()
         self._log.rows.pop()
-        self._note(self._latest)
+        self._note(self._latest_step)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
-        """Return the added mass of a body for motions of its parts, the sides held.
+        """Return the generalised added mass of a body for motions of its parts; sides and other bodies stay fixed.
 
-        See ``added.generalised_added_mass``; the other bodies stay still.
+        Args:
+            name: of the body.
+            modes: motions of its parts, one a row of the matrix; see ``added.generalised_added_mass``.
 
         Raises:
             UnknownName: there is no such body.
-            NotConverged: the pressure solver got stuck.
+            NotConverged: the pressure solver did not converge.
         """
         number = self._number(name)
-        still = [none(len(rows), self.axes) for rows in self.water.rows]
-        whole = [joined([*still[:number], mode, *still[number + 1 :]]) for mode in modes]
-        return generalised_added_mass(self.water, self._outlines, whole, self.setup.density)
+        resting = [none(len(rows), self.axes) for rows in self.water.rows]
+        joined_modes = [joined([*resting[:number], mode, *resting[number + 1 :]]) for mode in modes]
+        return generalised_added_mass(self.water, self._outlines, joined_modes, self.setup.density)
 
     def _number(self, name: str) -> int:
+        """Return the index of a body by its name.
+
+        Raises:
+            UnknownName: there is no such body.
+        """
         names = [b.name for b in self._bodies]
         if name not in names:
             raise UnknownName("body", name, names or ("none",))
         return names.index(name)
 
     def forget(self) -> None:
-        """Ask bodies that bend anew from now on: what they are told from outside has become another."""
+        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, Remembered):
                 spine.forget()
 
     def snapshot(self) -> Snapshot:
-        """Return all that changes, in copies, to come back to with ``restore``."""
+        """Return a copy of the whole state, for ``restore``."""
         return take(self)
 
-    def restore(self, kept: Snapshot) -> None:
-        """Go back to a snapshot of this simulation; what follows is what followed it then, to the same bytes."""
-        give(self, kept)
+    def restore(self, snapshot: Snapshot) -> None:
+        """Return to a snapshot of this simulation; the next steps repeat those after the snapshot byte by byte.
+
+        Args:
+            snapshot: see ``snapshot``.
+        """
+        give(self, snapshot)
         self.forget()
-        self._latest = None
-        if kept.arrays["b"].size:
+        self._latest_step = None
+        if snapshot.arrays["b"].size:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
-            self.water.b[:] = kept.arrays["b"]
+            self.water.b[:] = snapshot.arrays["b"]
 
     def state(self) -> store.State:
-        """Return all that changes, for a checkpoint."""
+        """Return the whole state, for a checkpoint."""
         numbers = {key: np.array(getattr(self, key)) for key in _CHANGING}
         rows = np.array(self._log.rows).reshape(len(self._log.rows), -1)
         swimmers = {f"{n}.{key}": value for n, s in self.swimmers.items() for key, value in s.state().items()}
@@ -416,7 +477,11 @@ class Simulation(Fields):
         }  # fmt: skip
 
     def resume(self, state: store.State) -> None:
-        """Go on from the state of a checkpoint."""
+        """Continue from the state of a checkpoint.
+
+        Args:
+            state: see ``state``.
+        """
         for key in _CHANGING:
             setattr(self, key, float(state[key]))
         self.frame = state["frame"]
@@ -430,7 +495,7 @@ class Simulation(Fields):
         self.water.place(self._bodies, poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
-        self._placed = bool(self._log.rows)  # as in the run that goes on: not anew, with the offset of another step
+        self._placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
 
     # --- a run -------------------------------------------------------------------------------------------------
 
@@ -475,13 +540,13 @@ class Simulation(Fields):
         with Bar(self.time, until, cells, show=progress) as bar:
             try:
                 while self.time < until * (1 - 1e-12):
-                    self.advance(_even(self.next_step(), until - self.time))
+                    self.advance(_even_step(self.next_step(), until - self.time))
                     if until - self.time < 1e-6 * self._last:  # rounding must not leave a tiny last step
                         self.time = until
                     bar.move(self.time)
                     if watchers and (self.time >= due or self.time == until):
-                        for one in watchers:
-                            one(self)
+                        for watcher in watchers:
+                            watcher(self)
                         due = due_after(self.time, every)
                     saver.save(self)
             finally:
@@ -489,20 +554,28 @@ class Simulation(Fields):
         self._watch.sides(self.water, self.time)
         return self.record
 
-    def _refuse_past(self, until: float, what: str, remedy: str) -> None:
-        """Refuse a time that has passed.
+    def _refuse_past(self, end_time: float, subject: str, remedy: str) -> None:
+        """Refuse an end time that has already passed.
+
+        Args:
+            end_time: the end time [s].
+            subject: what ends then, for the message.
+            remedy: what to give instead, for the message.
 
         Raises:
             OutsideLimits: naming both times and the remedy.
         """
-        if until < self.time * (1 - 1e-12):
+        if end_time < self.time * (1 - 1e-12):
             raise OutsideLimits(
-                f"{what} has come to t = {self.time:.6g} s already and cannot end at {until:.6g} s; give a later time, "
-                f"or {remedy}."
+                f"{subject} has come to t = {self.time:.6g} s already and cannot end at {end_time:.6g} s; give a later "
+                f"time, or {remedy}."
             )
 
     def control(self, margin: float) -> None:
-        """Follow the momentum through a box ``margin`` [m] around the bodies; see ``control_forces``.
+        """Record the momentum balance of a box around the bodies from now on; see ``control_forces``.
+
+        Args:
+            margin: distance of the sides of the box from the bodies' window [m].
 
         Raises:
             InvalidDesign: a mirror cuts a body, so that no box goes around it.
@@ -510,16 +583,16 @@ class Simulation(Fields):
         if not self._placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
-        for body, cut in zip(self._bodies, self.water.cut, strict=True):
-            if any(cut):
+        for body, mirror_cuts in zip(self._bodies, self.water.cut, strict=True):
+            if any(mirror_cuts):
                 raise InvalidDesign(
                     f"a mirror cuts {body.name}, and a control volume goes all around bodies; take Record.force."
                 )
         k, window = round(margin / self.setup.grid.cell), self.water.window
         box = tuple(
             end
-            for first, last, cells in zip(window[::2], window[1::2], reversed(self.setup.grid.cells), strict=True)
-            for end in (max(first - k, PAD + 2), min(last + k, PAD + cells - 2))
+            for start, stop, cells in zip(window[::2], window[1::2], reversed(self.setup.grid.cells), strict=True)
+            for end in (max(start - k, PAD + 2), min(stop + k, PAD + cells - 2))
         )
         self._log.controls = [ControlVolume(box)]
 
@@ -531,9 +604,12 @@ class Simulation(Fields):
     # --- what there is to see ----------------------------------------------------------------------------------
 
     def surface(self, name: str | None = None) -> Surface:
-        """Return pressure and friction along a body's outline or over its skin, positions in the frame of the grid.
+        """Return pressure and friction along the outline or over the skin of a body, in the frame of the grid.
 
-        Of a body that mirrors cut it is the part inside the domain.
+        Only the part of a body inside the domain counts if mirrors cut it.
+
+        Args:
+            name: of the body; None takes the first one.
 
         Raises:
             UnknownName: there is no such body, or none at all.
@@ -544,13 +620,14 @@ class Simulation(Fields):
         body, grid = self._bodies[0 if name is None else names.index(name)], self.setup.grid
         skin = body.shape.markers(self.time, self._in_frame(self.pose(body.name)), grid.cell)
         if grid.axes == 3:
-            low = np.array(grid.origin)[:, None]
-            skin = skin.of(((skin.points >= low) & (skin.points <= low + np.array(grid.size)[:, None])).all(axis=0))
+            low_corner = np.array(grid.origin)[:, None]
+            high_corner = low_corner + np.array(grid.size)[:, None]
+            skin = skin.of(((skin.points >= low_corner) & (skin.points <= high_corner)).all(axis=0))
         return sample(self.water, skin, self.setup.density)
 
 
 class _LatestStep(NamedTuple):
-    """What is known of a step that was taken."""
+    """Data of the last step."""
 
     dt: float
     """Its length [s]."""
@@ -560,11 +637,16 @@ class _LatestStep(NamedTuple):
     """Uniform acceleration of the water [m/s^2]."""
     drift: np.ndarray
     """Mean velocity of the grid [m/s]."""
-    before: np.ndarray
-    """What the bodies' regions held when it began; see ``momentum.contents``."""
+    contents_before: np.ndarray
+    """Momentum in the bodies' regions at the start of the step; see ``momentum.contents``."""
 
 
-def _even(dt: float, left: float) -> float:
-    """Return the step that arrives in whole steps, once the end is near [s]."""
-    count = np.ceil(left / dt * (1 - 1e-9))
-    return float(left / count) if count <= LANDING else dt
+def _even_step(dt: float, remaining: float) -> float:
+    """Return the length of a step that divides the remaining time evenly near the end of a run [s].
+
+    Args:
+        dt: length of the step that the fields allow [s].
+        remaining: time to the end of the run [s].
+    """
+    count = np.ceil(remaining / dt * (1 - 1e-9))
+    return float(remaining / count) if count <= LANDING else dt

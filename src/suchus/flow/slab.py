@@ -1,18 +1,18 @@
 # mypy: disable-error-code="no-untyped-def, var-annotated"
 # (the kernels get their types from numba, once per precision and number of dimensions)
-"""How fields lie in memory: slabs, rows and strides, the same in two dimensions and in three.
+"""Memory layout of the fields: slabs, rows and strides, the same in two dimensions and in three.
 
 A field is an array (slab, cell of the slab), a vector field has the component before that. A *slab* is all cells with
 one index along the last axis: a row of a plane grid, a plane of a grid in space. ``inner`` are the strides along the
 axes within a slab, ``(1,)`` or ``(1, cells along a row)``: a tuple of ``np.uint64``, whose length is a part of its
 type. So ``for d in range(len(inner))`` inside a loop over cells is unrolled, and one kernel serves both.
 
-A ``place`` is a row of the multigrid's layout: where a level starts, its cells along the axes, the last axis first, and
-then the window around the bodies, first and end along each axis, the last axis first.
+A ``level_layout`` is a row of the multigrid's layout. It holds the offset of a level in memory, its cells along the
+axes (the last axis first), and then the window around the bodies, first and end along each axis, the last axis first.
 
-What counts around the bodies only is kept for the window alone, with the faces behind its last cells: a slab of such a
-*near* array has one cell more along each axis than the window. Which one, the ``near`` says, a place whose window may
-reach beyond mirrors, where that of a level ends.
+Quantities that matter only around the bodies are stored for the window alone, with the faces behind its last cells: a
+slab of such a *near* array has one cell more along each axis than the window. ``near_layout`` describes this window.
+It has the form of a ``level_layout``, but its window may reach beyond mirrors, where the window of a level ends.
 """
 
 import numpy as np
@@ -21,13 +21,13 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from suchus.flow.compiled import BLOCK, PAD, UNIT, part, unsigned
 
 EDGE = unsigned(PAD)
-"""``PAD``, as kernels count [-]."""
+"""``PAD`` as an unsigned integer, for the kernels [-]."""
 
 NONE = unsigned(0)
-"""Nothing, as kernels count [-]."""
+"""Zero as an unsigned integer, for the kernels [-]."""
 
 PLANES, LEAST = 16, 8
-"""Planes that one thread takes at a time, at most and, of a thin domain, at least [-]."""
+"""Planes that one thread takes at a time: the most, and the fewest in a thin domain [-]."""
 
 Strides = tuple[np.uint64, ...]
 """Strides along the axes of a slab [-]."""
@@ -39,24 +39,24 @@ def inner_strides(cells: tuple[int, ...]) -> Strides:
 
 
 @part
-def strides_like(inner, wide):
-    """Return the strides within a slab of rows that are ``wide`` cells long, as many as ``inner`` has."""
-    return tuple_setitem(inner, len(inner) - 1, wide if len(inner) > 1 else UNIT)
+def strides_like(inner, row_cells):
+    """Return the strides within a slab whose rows have ``row_cells`` cells, with as many axes as ``inner``."""
+    return tuple_setitem(inner, len(inner) - 1, row_cells if len(inner) > 1 else UNIT)
 
 
 @part
-def block_of(inner, count, least):
-    """Return how many of ``count`` slabs a thread takes at a time: in space an even number of such blocks, if it can.
+def block_of(inner, count, min_planes):
+    """Return how many slabs a thread takes at a time; in space the number of blocks is even where possible.
 
     Args:
         inner: strides within a slab.
-        count: slabs, those of one run of the loop.
-        least: planes of a block in space, at least.
+        count: slabs in the whole loop.
+        min_planes: fewest planes of a block in space.
     """
     if len(inner) == 1:
         return BLOCK
     blocks = 2 * ((count + 2 * PLANES - 1) // (2 * PLANES))
-    return max((count + blocks - 1) // blocks, least)
+    return max((count + blocks - 1) // blocks, min_planes)
 
 
 @part
@@ -73,7 +73,12 @@ def row_count(inner, length):
 
 @part
 def run_of(inner, length):
-    """Return first and end of the shortest run of cells that holds all cells of a slab that lie in the domain."""
+    """Return first and end of the shortest run of cells that holds all cells of a slab inside the domain.
+
+    Args:
+        inner: strides within a slab.
+        length: cells of a slab.
+    """
     margin = NONE
     for d in range(len(inner)):
         margin += EDGE * inner[d]
@@ -81,36 +86,43 @@ def run_of(inner, length):
 
 
 @part
-def meets(place, inner, slab):
+def meets(level_layout, inner, slab):
     """Return whether a slab meets the window."""
     w = len(inner) + 2
-    return place[w] <= slab < place[w + 1]
+    return level_layout[w] <= slab < level_layout[w + 1]
 
 
 @part
-def window_rows(place, inner):
+def window_rows(level_layout, inner):
     """Return first and end of the rows of a slab that meet the window."""
     w = len(inner) + 4
-    return (unsigned(place[w]), unsigned(place[w + 1])) if len(inner) > 1 else (NONE, UNIT)
+    return (unsigned(level_layout[w]), unsigned(level_layout[w + 1])) if len(inner) > 1 else (NONE, UNIT)
 
 
 @part
-def window_columns(place, inner):
+def window_columns(level_layout, inner):
     """Return first and end of the cells of a row that meet the window."""
     w = 3 * len(inner) + 2
-    return unsigned(place[w]), unsigned(place[w + 1])
+    return unsigned(level_layout[w]), unsigned(level_layout[w + 1])
 
 
 @part
-def near_strides(near, inner):
+def near_strides(near_layout, inner):
     """Return the strides within a slab of the arrays of a window."""
     w = 3 * len(inner) + 2
-    return strides_like(inner, unsigned(near[w + 1] - near[w] + 1))
+    return strides_like(inner, unsigned(near_layout[w + 1] - near_layout[w] + 1))
 
 
 @part
-def near_shift(near, inner, row, wide):
-    """Return by how much cells of a row come later in a slab than in one of the arrays of a window."""
-    w, first = 3 * len(inner) + 2, unsigned(near[len(inner) + 4]) if len(inner) > 1 else NONE
-    columns = unsigned(near[w + 1] - near[w] + 1)
-    return row * wide + unsigned(near[w]) - (row - first) * columns
+def near_shift(near_layout, inner, row, row_cells):
+    """Return the index of a cell in a slab minus its index in the slab of a near array, for the cells of a row.
+
+    Args:
+        near_layout: the window.
+        inner: strides within a slab.
+        row: the row.
+        row_cells: cells of a row of the slab.
+    """
+    w, first_row = 3 * len(inner) + 2, unsigned(near_layout[len(inner) + 4]) if len(inner) > 1 else NONE
+    columns = unsigned(near_layout[w + 1] - near_layout[w] + 1)
+    return row * row_cells + unsigned(near_layout[w]) - (row - first_row) * columns

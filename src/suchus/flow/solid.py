@@ -1,7 +1,7 @@
 # ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
-"""Shapes of bodies in space: a signed distance, a normal and a velocity at points, and points spread over the skin.
+"""Shapes of bodies in space: a signed distance, a normal and a velocity at points, and markers over the skin.
 
-Distances are negative inside; normals point into the water. What a plane shape says, ``shape`` has.
+Distances are negative inside; normals point into the water. See ``shape`` for shapes in the plane.
 """
 
 from abc import ABC, abstractmethod
@@ -16,37 +16,38 @@ from suchus.flow.mass import SpaceMass, tensor
 from suchus.flow.pose import Pose, turned
 from suchus.flow.shape import positive
 
-_FEWEST = 16
-"""Rings of points on a skin, at least [-]."""
+_MIN_RINGS = 16
+"""Fewest rings of markers on a skin [-]."""
 
 _RIM = 96
-"""Corners of the ellipse in the middle of a thin ellipsoid [-]."""
+"""Corners of the midsurface ellipse of a thin ellipsoid [-]."""
 
-_BLUNT = 2.0
-"""Longest over shortest axis of a body up to which its drag on a grid is off as a sphere's is [-]."""
+_MAX_BLUNT_RATIO = 2.0
+"""Ratio of the longest to the shortest axis up to which the error of a body's drag is that of a sphere [-]."""
 
 _ROUND = 1e-3
-"""Length of that ellipse, over the smallest half-axis, below which the ellipsoid is taken for round there [-]."""
+"""Length of the midsurface ellipse, over the smallest half-axis, below which the ellipsoid counts as round there
+[-]."""
 
 
 INSIDE = 1e-9
-"""Depth over a shape's size from which a point of its skin lies inside another one [-]."""
+"""Depth, over a shape's size, from which a point of its skin counts as inside another shape [-]."""
 
 
 @dataclass(slots=True)
 class SpaceField:
-    """What a body says about the points of a window in space, arrays of shape (z, y, x)."""
+    """Distance, normal and velocity of a body at the points of a window in space, arrays of shape (z, y, x)."""
 
     distance: np.ndarray
     """Signed distance to the surface, negative inside [m]."""
     normal: tuple[np.ndarray, ...]
     """Outward normal, along each axis [-]."""
     velocity: tuple[np.ndarray, ...]
-    """Velocity of the body, carried on smoothly a few cells into the water, along each axis [m/s]."""
+    """Velocity of the body along each axis, extended smoothly a few cells into the water [m/s]."""
     thickness: np.ndarray
     """Thickness of the body behind the nearest point of its surface, infinite where it is thick [m]."""
     part: np.ndarray | None = None
-    """Which of the body's parts a point belongs to, counted from 0; None for a body of one part [-]."""
+    """Index of the body's part to which a point belongs; None for a body of one part [-]."""
 
 
 class SpaceShape(ABC):
@@ -54,10 +55,10 @@ class SpaceShape(ABC):
 
     axes: ClassVar[int] = 3
     even: ClassVar[tuple[bool, bool, bool]] = (True, True, True)
-    """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
+    """Whether the planes through the origin across x, y and z are planes of symmetry."""
 
     jointed: ClassVar[bool] = False
-    """Whether its parts are rigid and turn against each other at joints."""
+    """Whether its parts are rigid and connected by joints."""
 
     @abstractmethod
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
@@ -92,9 +93,13 @@ class SpaceShape(ABC):
         return 1
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the surface in the middle of a thin body, which no water passes, in triangles.
+        """Return the surface in the middle of a thin body, through which no water passes, as triangles.
 
-        Shape (corner, axis, triangle) [m]; None for a body that is never thin.
+        The shape is (corner, axis, triangle) [m]. The surface is None for a body that is never thin.
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
         """
         return None
 
@@ -110,8 +115,12 @@ class SpaceShape(ABC):
 
 
 def is_blunt(axes: np.ndarray) -> bool:
-    """Return whether a body of these axes is about as long along each."""
-    return float(axes.max()) <= _BLUNT * float(axes.min())
+    """Return whether the longest of a body's axes is at most ``_MAX_BLUNT_RATIO`` times the shortest.
+
+    Args:
+        axes: lengths or half-axes, shape (3,) [m].
+    """
+    return float(axes.max()) <= _MAX_BLUNT_RATIO * float(axes.min())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,58 +144,62 @@ class Ellipsoid(SpaceShape):
         return 0.5 * np.array([self.length, self.width, self.height])
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """Return which points of its own frame lie inside, shape (3, ...) [m]."""
-        x, y, z = (part / half for part, half in zip(points, self.half, strict=True))
+        """Return which points of the body's frame lie inside, for points of shape (3, ...) [m]."""
+        x, y, z = (coordinate / half for coordinate, half in zip(points, self.half, strict=True))
         return np.asarray(x * x + y * y + z * z < 1 - INSIDE)
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
-        """Return the field on the points of a window."""
-        place = pose.along(3)
-        out = np.zeros((8, z.size, y.size, x.size))
-        out[7] = np.inf
+        """Return distance, normal and velocity on the points of a window; see ``SpaceShape``."""
+        pose_3d = pose.along(3)
+        fields = np.zeros((8, z.size, y.size, x.size))
+        fields[7] = np.inf
         cell = float(x[1] - x[0]) if x.size > 1 else float(reach)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_ellipsoid(
-            out, px, py, pz, np.ascontiguousarray(place.matrix), np.array(place.position), np.array(place.velocity),
-            place.spins, self.half, float(reach), cell,
+            fields, px, py, pz, np.ascontiguousarray(pose_3d.matrix), np.array(pose_3d.position),
+            np.array(pose_3d.velocity), pose_3d.spins, self.half, float(reach), cell,
         )  # fmt: skip
-        return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], out[6]), out[7])
+        return SpaceField(fields[0], (fields[1], fields[2], fields[3]), (fields[4], fields[5], fields[6]), fields[7])
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return points on rings about the body's z axis, each of which stands for the same part of a unit sphere."""
-        place, rings = pose.along(3), max(_FEWEST, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
+        """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
+        pose_3d, rings = pose.along(3), max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
         turn = (np.arange(2 * rings) + 0.5) * np.pi / rings
         sin = np.sqrt(1 - cos * cos)[:, None]
         unit = np.stack([sin * np.cos(turn), sin * np.sin(turn), np.broadcast_to(cos[:, None], (rings, turn.size))])
         unit = unit.reshape(3, -1)
         a = self.half[:, None]
-        share = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
-        points = np.stack(place.place(a * unit))
-        normals = np.stack(turned(place.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
-        spins = np.broadcast_to(place.spins[:, None], points.shape)
+        areas = float(np.prod(self.half)) * np.sqrt(((unit / a) ** 2).sum(axis=0)) * (4 * np.pi / unit.shape[1])
+        points = np.stack(pose_3d.place(a * unit))
+        normals = np.stack(turned(pose_3d.matrix, unit / a / np.sqrt(((unit / a) ** 2).sum(axis=0))))
+        spins = np.broadcast_to(pose_3d.spins[:, None], points.shape)
         return Markers(
-            points=points, share=share, velocities=np.stack(place.rates(points)), normals=normals, spins=spins
+            points=points, share=areas, velocities=np.stack(pose_3d.rates(points)), normals=normals, spins=spins
         )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
-        place = pose.along(3)
-        reach = np.sqrt(((place.matrix * self.half) ** 2).sum(axis=1)).tolist()
-        return tuple(p + way * r for p, r in zip(place.position, reach, strict=True) for way in (-1.0, 1.0))
+        pose_3d = pose.along(3)
+        reach = np.sqrt(((pose_3d.matrix * self.half) ** 2).sum(axis=1)).tolist()
+        return tuple(p + sign * r for p, r in zip(pose_3d.position, reach, strict=True) for sign in (-1.0, 1.0))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return an ellipse across the smallest axis, as far as its own axes are longer; a long one has none."""
-        thin, *longer = np.argsort(self.half)
-        excess = self.half**2 - self.half[thin] ** 2
-        across = self.half * excess / (self.half**2 + self.half[thin] ** 2)
-        if across[longer].min() <= _ROUND * self.half[thin]:
+        """Return an ellipse across the smallest axis, in triangles; None if that axis is not the only small one.
+
+        It is smaller than the ellipsoid's own cross-section and vanishes where the ellipsoid is round. See
+        ``SpaceShape``.
+        """
+        thin_axis, *long_axes = np.argsort(self.half)
+        excess = self.half**2 - self.half[thin_axis] ** 2
+        rim_half_axes = self.half * excess / (self.half**2 + self.half[thin_axis] ** 2)
+        if rim_half_axes[long_axes].min() <= _ROUND * self.half[thin_axis]:
             return None
         turn = np.linspace(0.0, 2 * np.pi, _RIM + 1)
         rim = np.zeros((3, turn.size))
-        rim[longer] = across[longer, None] * np.stack([np.cos(turn), np.sin(turn)])
-        rim, middle = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
-        return np.stack([np.broadcast_to(middle[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
+        rim[long_axes] = rim_half_axes[long_axes, None] * np.stack([np.cos(turn), np.sin(turn)])
+        rim, centre = np.array(pose.along(3).place(rim)), np.array(pose.along(3).position)
+        return np.stack([np.broadcast_to(centre[:, None], (3, _RIM)), rim[:, :-1], rim[:, 1:]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest axis."""
@@ -203,9 +216,9 @@ class Ellipsoid(SpaceShape):
 
     def mass(self, time: float) -> SpaceMass:
         """Return volume and moments; the centre is the origin."""
-        volume, none = self.volume(time), (0.0, 0.0, 0.0)
+        volume, zero = self.volume(time), (0.0, 0.0, 0.0)
         moments = tensor(np.diag(volume * self.half**2 / 5))
-        return SpaceMass(volume=volume, centre=none, centre_rate=none, moments=moments, swirl=none)
+        return SpaceMass(volume=volume, centre=zero, centre_rate=zero, moments=moments, swirl=zero)
 
 
 class Sphere(Ellipsoid):

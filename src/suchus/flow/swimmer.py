@@ -1,15 +1,15 @@
-"""Free bodies under way: three degrees of freedom in the plane, six in space.
+"""Free bodies in motion: three degrees of freedom in the plane, six in space.
 
-The pressure answers a body's acceleration at once, ``F = F0 - Ma a``; the added mass ``Ma`` comes from three or six
-solves of the pressure equation itself and goes to the left side, ``(M + Ma) a = F0``. Without it the coupling
-of a light body is unstable. A body's deformation carries no momentum of its own: its frame moves so that the
-centre of mass and the angular momentum change by outer forces alone: the water's, the body's weight less its buoyancy,
-its springs and dampers, and what else it is given.
+The pressure responds at once to a body's acceleration, ``F = F0 - Ma a``. The added mass ``Ma`` comes from three or
+six solves of the pressure equation and is moved to the left side, ``(M + Ma) a = F0``. Otherwise the coupling of a
+light body is unstable. The deformation of a body has no momentum of its own: the body's frame moves so that the centre
+of mass and the angular momentum change by external forces alone. These are the forces of the water, weight minus
+buoyancy, springs and dampers, and a force that the user gives.
 
-In space the attitude is a rotation vector, so that it is a rotation whatever a step adds to it. A step turns the body
-with the mean of the angular velocities at its start and end, and both follow from the angular momentum, which changes
-by the torque times the step and by nothing else: a body without torques keeps it to rounding, its energy has no drift,
-and the error of its attitude is of second order.
+In space the attitude is a rotation vector, which remains a rotation whatever a step adds to it. A step rotates the
+body by the mean of the angular velocities at its start and end. Both follow from the angular momentum, which changes
+by the torque times the step. A body without torques therefore keeps its angular momentum to rounding, its energy does
+not drift, and the error of its attitude is of second order.
 """
 
 from collections.abc import Sequence
@@ -25,17 +25,22 @@ from suchus.flow.mass import Mass, SpaceMass
 from suchus.flow.pose import Pose, turned
 
 
-def spread(given: Sequence[float], axes: int) -> np.ndarray:
-    """Return values for every degree of freedom: of three in space, those along z and about x and y are 0."""
-    if axes == 2 or len(given) == 6:
-        return np.array(given)
-    x, y, turn = given
+def spread(values: Sequence[float], axes: int) -> np.ndarray:
+    """Return values for all degrees of freedom; of three values in space, those along z and about x and y are 0.
+
+    Args:
+        values: along x and y and about z, or all six.
+        axes: of the domain, 2 or 3.
+    """
+    if axes == 2 or len(values) == 6:
+        return np.array(values)
+    x, y, turn = values
     return np.array([x, y, 0 * x, 0 * x, 0 * x, turn])
 
 
-def _lengthened(given: Sequence[float], axes: int) -> list[float]:
+def _lengthened(vector: Sequence[float], axes: int) -> list[float]:
     """Return a vector with as many components as there are axes."""
-    return [*given, *(0.0,) * (axes - len(given))]
+    return [*vector, *(0.0,) * (axes - len(vector))]
 
 
 def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
@@ -46,43 +51,47 @@ def _attitude(yaw: float, pitch: float, roll: float) -> np.ndarray:
 
 
 def _unwinding(vector: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Return the torque of a potential whose slope by the rotation vector is given, shape (3,).
+    """Return the torque of a potential that depends on the attitude, shape (3,).
 
     It is ``-J^-T slope``, where the rotation vector r changes by ``J^-1 dw`` as the body turns by dw.
     Source: Sola, Deray, Atchuthan 2018, arXiv:1812.01537, Eq. (146).
+
+    Args:
+        vector: rotation vector of the attitude [rad].
+        slope: gradient of the potential by the rotation vector.
     """
     angle = float(np.linalg.norm(vector))
-    share = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
+    curvature = 1 / 12 if angle < 1e-3 else (1 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
     twist = np.cross(vector, slope)
-    torque: np.ndarray = -(slope + 0.5 * twist + share * np.cross(vector, twist))
+    torque: np.ndarray = -(slope + 0.5 * twist + curvature * np.cross(vector, twist))
     return torque
 
 
 _CHANGING = ("place", "rate", "push", "load", "added", "momentum", "owed", "applied", "span", "steps")
 
 REPAID = 0.5
-"""Share of the momentum still owed that a step repays [-]; all at once rings."""
+"""Fraction of the momentum still owed that a step repays [-]; all at once excites oscillations."""
 
 MOST_ROUNDS = 40
-"""Rounds in which attitude and angular velocity at a step's end come to terms, at most [-]: each makes the error
-smaller by about the angle that the body turns in a step."""
+"""Most iterations in which attitude and angular velocity at the end of a step converge [-]. Each reduces the error by
+about the angle that the body turns in a step."""
 
-_SETTLED = 1e-14
-"""Change of the rates, over their size, at which they have [-]."""
+_RATE_TOLERANCE = 1e-14
+"""Relative change of the rates at which the iteration stops [-]."""
 
 
 @dataclass(slots=True)
 class Swimmer:
-    """A free body under way. Vectors are per degree of freedom, shape (3,) or (6,); in the plane per metre of depth."""
+    """State of a free body. Vectors are per degree of freedom, shape (3,) or (6,); in the plane per metre of depth."""
 
     body: FreeBody
-    """Which body."""
+    """The free body."""
     place: np.ndarray
     """Centre of mass and angle of the frame, in space its rotation vector [m, rad]."""
     rate: np.ndarray
     """Velocity of the centre, and angular momentum over the tensor of inertia [m/s, rad/s]."""
     go: np.ndarray
-    """Whether it may move in each degree of freedom."""
+    """Whether the body is free in each degree of freedom."""
     push: np.ndarray = field(init=False)
     """Acceleration in the last step [m/s^2, rad/s^2]."""
     load: np.ndarray = field(init=False)
@@ -92,13 +101,13 @@ class Swimmer:
     momentum: np.ndarray = field(init=False)
     """Momentum and angular momentum before the last step [kg/s, kg m/s; in space kg m/s, kg m^2/s]."""
     owed: np.ndarray = field(init=False)
-    """Momentum that the water and the other forces gave and the body has not got yet [kg/s, kg m/s]."""
+    """Momentum given by water and other forces that has not yet changed the body's motion [kg/s, kg m/s]."""
     applied: np.ndarray = field(init=False)
-    """Force and torque of all but the water in the last step [N/m, N]."""
+    """Force and torque in the last step, except those of the water [N/m, N]."""
     span: float = 0.0
     """Length of the last step [s]."""
     steps: int = 0
-    """Steps taken so far [-]."""
+    """Number of steps taken [-]."""
 
     def __post_init__(self) -> None:
         count = len(self.place)
@@ -107,7 +116,7 @@ class Swimmer:
 
     @classmethod
     def of(cls, body: FreeBody) -> "Swimmer":
-        """Return the body at its start."""
+        """Return a free body in its initial state."""
         axes = body.shape.axes
         if axes == 2:
             place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
@@ -129,14 +138,24 @@ class Swimmer:
         return rotation.angles(rotation.from_vector(place[3:])) if x or y else (z, 0.0, 0.0)
 
     def _matrix(self, place: np.ndarray) -> np.ndarray:
-        """Return the rotation matrix of the frame, in space; see ``Pose.matrix``."""
+        """Return the rotation matrix of the body's frame, shape (3, 3); see ``Pose.matrix``.
+
+        Args:
+            place: centre of mass and rotation vector [m, rad].
+        """
         if self._axes == 2:
             return np.eye(3)  # the plane's mass matrix does not depend on it
         x, y, z = place[3:].tolist()
         return rotation.turn(place[3:]) if x or y else Pose(angle=z).matrix
 
     def _pose(self, place: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> Pose:
-        """Return the pose in space with an attitude, the origin in the place."""
+        """Return the pose in space whose origin is the centre of mass.
+
+        Args:
+            place: centre of mass and rotation vector [m, rad].
+            velocity: of the centre of mass [m/s].
+            spins: angular velocity about x, y and z [rad/s].
+        """
         yaw, pitch, roll = self._angles(place)
         (x, y, z), (u, v, w), (p, q, r) = place[:3].tolist(), velocity.tolist(), spins.tolist()
         return Pose(
@@ -144,13 +163,17 @@ class Swimmer:
         )
 
     def pose(self, mass: Mass | SpaceMass) -> Pose:
-        """Return the pose of the body's frame, whose deformation it has taken out of the motion."""
+        """Return the pose of the body's frame, which recoils from the deformation of the body.
+
+        Args:
+            mass: mass properties of the present shape in the body's frame.
+        """
         if isinstance(mass, SpaceMass):
             matrix = self._matrix(self.place)
             spins = np.where(self.go[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
-            away, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
-            place = np.concatenate([self.place[:3] - away, self.place[3:]])
-            return self._pose(place, self.rate[:3] - drift - np.cross(spins, away), spins)
+            offset, drift = np.array(turned(matrix, mass.centre)), np.array(turned(matrix, mass.centre_rate))
+            place = np.concatenate([self.place[:3] - offset, self.place[3:]])
+            return self._pose(place, self.rate[:3] - drift - np.cross(spins, offset), spins)
         angle = self.place[2]
         c, s = np.cos(angle), np.sin(angle)
         spin = self.rate[2] - mass.swirl / mass.moment if self.go[2] else self.rate[2]
@@ -173,16 +196,21 @@ class Swimmer:
         return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
 
     def take_added(self, mass: np.ndarray, time: float) -> None:
-        """Take the added mass of a time [s]; NaN, in degrees of freedom that are not free alone, is nothing.
+        """Set the added mass.
+
+        Args:
+            mass: square matrix; NaN is allowed in locked degrees of freedom and counts as 0.
+            time: time of its computation, for the message [s].
 
         Raises:
-            Diverged: it is not finite in one that is free.
+            Diverged: it is not finite in a free degree of freedom.
         """
-        own = mass[np.ix_(self.go, self.go)]
-        if not np.isfinite(own).all():
+        free_mass = mass[np.ix_(self.go, self.go)]
+        if not np.isfinite(free_mass).all():
+            entry = free_mass[~np.isfinite(free_mass)][0]
             raise Diverged(
-                f"at t = {time:.4g} s the added mass of {self.body.name} is {own[~np.isfinite(own)][0]} in a degree of "
-                f"freedom in which it may move; take a finer grid around it, precision='double', or lock that degree.",
+                f"at t = {time:.4g} s the added mass of {self.body.name} is {entry} in a degree of freedom in which it "
+                f"may move; take a finer grid around it, precision='double', or lock that degree.",
                 time=time,
             )
         self.added = np.nan_to_num(mass)
@@ -197,10 +225,10 @@ class Swimmer:
             setattr(self, key, state[key] if state[key].ndim else state[key].item())
 
     def advance(self, time: float, dt: float, water_density: float, contact: np.ndarray | None = None) -> None:
-        """Advance by ``dt`` [s] under the water's forces of the last step and the other forces of this one.
+        """Advance by one step under the water's forces of the last step and the other forces of this one.
 
-        Springs and dampers act at the mean of the step's start and end, the other forces at a middle foreseen from
-        its start: neither adds energy.
+        Springs and dampers act at the mean of the step's start and end, the other forces at a midpoint extrapolated
+        from the start. Neither adds energy.
 
         Args:
             time: start of the step [s].
@@ -213,36 +241,37 @@ class Swimmer:
         """
         shape = self.body.shape
         density = water_density if self.body.density is None else self.body.density
-        now, then = shape.mass(time), shape.mass(time + dt)
+        start_mass, end_mass = shape.mass(time), shape.mass(time + dt)
         matrix = self._matrix(self.place)
-        before, slip = now.inertia(matrix), self._slip(now, matrix)
-        momentum = (density * before) @ self.rate
+        start_inertia, slip = start_mass.inertia(matrix), self._slip(start_mass, matrix)
+        momentum = (density * start_inertia) @ self.rate
         guess = self._foreseen(momentum, dt)
         self.momentum, self.span = momentum, dt
-        recoil = slip + self._slip(then, matrix)
-        outer, yielding = self._outer(time, dt, (density - water_density) * now.size, recoil)
+        recoil = slip + self._slip(end_mass, matrix)
+        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.size, recoil)
         if contact is not None:
             outer = outer + contact
         rate = self.rate
-        for count in range(MOST_ROUNDS):  # in the plane the first is the last; in space it takes the attitude for fixed
-            after = then.inertia(matrix)
-            grown = after - before
-            grown[: self._axes] = 0
-            force = guess - (density * grown / dt) @ self.rate + outer
-            whole = density * after + self.added + np.diag(yielding)
-            push = self._accelerated(whole, force if self.steps else force - guess - outer)
-            last, rate = rate, self.rate + dt * push
+        for count in range(MOST_ROUNDS):  # one is exact in the plane; in space the first assumes a fixed attitude
+            end_inertia = end_mass.inertia(matrix)
+            inertia_change = end_inertia - start_inertia
+            inertia_change[: self._axes] = 0
+            force = guess - (density * inertia_change / dt) @ self.rate + outer
+            total_inertia = density * end_inertia + self.added + np.diag(yielding)
+            push = self._accelerated(total_inertia, force if self.steps else force - guess - outer)
+            previous_rate, rate = rate, self.rate + dt * push
             place = self._moved(dt * 0.5 * (self.rate + rate) - dt * 0.5 * recoil)
-            if self._axes == 2 or (count and np.abs(rate - last).max() <= _SETTLED * np.abs(rate).max()):
+            rate_change = np.abs(rate - previous_rate).max()
+            if self._axes == 2 or (count and rate_change <= _RATE_TOLERANCE * np.abs(rate).max()):
                 break
             matrix = self._matrix(place)
-            recoil = slip + self._slip(then, matrix)
+            recoil = slip + self._slip(end_mass, matrix)
         self.applied = outer - yielding * push
         self.place, self.rate, self.push = place, rate, push
         self.steps += 1
 
     def _foreseen(self, momentum: np.ndarray, dt: float) -> np.ndarray:
-        """Return the water's force that is expected of a step, were the body not to accelerate, and note what is owed.
+        """Return the water's force expected in a step without acceleration, and update the momentum still owed.
 
         Args:
             momentum: of the body now [kg/s, kg m/s; in space kg m/s, kg m^2/s].
@@ -251,24 +280,24 @@ class Swimmer:
         guess: np.ndarray = self.load + self.added @ self.push
         if self.steps:
             self.owed = self.owed + self.span * (self.load + self.applied) - (momentum - self.momentum)
-        if self.steps > 1:  # the second step itself repays the jolt of the start
-            # Extrapolating instead feeds every ripple of the force back into the motion. The last step's force comes
-            # a step late; what the body therefore did not get, it gets little by little. Without that an eel, whose
-            # added mass aside is ten times its own, sways several times too much.
+        if self.steps > 1:  # the second step compensates the sudden start by itself
+            # The force of the last step is one step late. The missing momentum is repaid gradually. Otherwise an eel,
+            # whose lateral added mass is ten times its own mass, sways several times too much. An extrapolation of the
+            # force would instead amplify its fluctuations.
             guess = guess + REPAID * self.owed / dt
         return guess
 
-    def _accelerated(self, whole: np.ndarray, force: np.ndarray) -> np.ndarray:
-        """Return the acceleration in the degrees of freedom that are free, 0 in the others.
+    def _accelerated(self, total_inertia: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Return the acceleration in the free degrees of freedom, and 0 in the others.
 
         Args:
-            whole: mass of the body and added mass, with what springs and dampers add, a square matrix.
-            force: that acts on a body that does not accelerate; in the first step neither the water's force nor the
-                added mass is known, so that it is what a change of the inertia asks for.
+            total_inertia: mass of the body and added mass, with the terms of springs and dampers, a square matrix.
+            force: on a body that does not accelerate. In the first step, water force and added mass are not known: the
+                force is then that of the change of inertia.
         """
         push = np.zeros(self.place.size)
         if self.steps or self._axes == 3:
-            push[self.go] = np.linalg.solve(whole[np.ix_(self.go, self.go)], force[self.go])
+            push[self.go] = np.linalg.solve(total_inertia[np.ix_(self.go, self.go)], force[self.go])
         return push
 
     def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
@@ -277,7 +306,11 @@ class Swimmer:
         return slip
 
     def _moved(self, step: np.ndarray) -> np.ndarray:
-        """Return the place after a step, in space a turn by a rotation vector."""
+        """Return the place after a displacement; in space the rotations are composed.
+
+        Args:
+            step: displacement and rotation vector [m, rad].
+        """
         place = self.place + step
         if step[3:5].any() or (self.place[3:5].any() and step[3:].any()):  # else about z alone
             turn = rotation.multiply(rotation.from_vector(step[3:]), rotation.from_vector(self.place[3:]))
@@ -285,57 +318,67 @@ class Swimmer:
         return place
 
     def _outer(self, time: float, dt: float, weight: float, recoil: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the mean over a step of all forces but the water's, and by how much an acceleration lessens them.
+        """Return the mean of all external forces except the water's over a step, and their decrease per acceleration.
 
-        The first is that of a body that does not accelerate [N/m, N], [kg/m, kg m].
+        The force is that on a body that does not accelerate [N/m, N]; the decrease is the diagonal of a matrix [kg/m,
+        kg m].
 
         Args:
             time: start of the step [s].
             dt: length of the step [s].
-            weight: mass of the body less that of the water it displaces [kg/m].
-            recoil: velocity of the frame at start and end that the deformation takes away, summed [m/s, rad/s].
+            weight: mass of the body minus that of the displaced water [kg/m].
+            recoil: velocity of the frame due to the deformation, sum of start and end [m/s, rad/s].
 
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.
         """
         body, axes = self.body, self._axes
-        middle = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
+        mid_place = self._moved(0.5 * dt * (self.rate - 0.5 * recoil))
         stiff, viscous = spread(body.springs, axes), spread(body.dampers, axes)
         pull = _lengthened(body.gravity, axes)
-        outer = weight * np.array([*pull, *np.zeros(middle.size - axes)]) - self._held(middle, stiff)
+        outer = weight * np.array([*pull, *np.zeros(mid_place.size - axes)]) - self._held(mid_place, stiff)
         outer = outer - viscous * self.rate
         if body.force is not None:
-            given = body.force(time + 0.5 * dt, self._state(middle))
+            force = body.force(time + 0.5 * dt, self._state(mid_place))
             sizes = [(3,)] if axes == 2 else [(3,), (6,)]
-            if np.shape(given) not in sizes or not np.isfinite(np.asarray(given, float)).all():
+            if np.shape(force) not in sizes or not np.isfinite(np.asarray(force, float)).all():
                 raise InvalidDesign(
-                    f"the force of {body.name} at t = {time:.4g} s is {show(given)}; give three finite numbers, the "
+                    f"the force of {body.name} at t = {time:.4g} s is {show(force)}; give three finite numbers, the "
                     f"force along x and y in N/m and the torque in N (in space N and N m, or six numbers: forces along "
                     f"and torques about x, y and z)."
                 )
-            outer = outer + spread(np.asarray(given, float).tolist(), axes)
+            outer = outer + spread(np.asarray(force, float).tolist(), axes)
         return outer, 0.5 * dt * viscous + 0.25 * dt**2 * stiff
 
-    def _held(self, middle: np.ndarray, stiff: np.ndarray) -> np.ndarray:
-        """Return what the springs pull back with in a place."""
+    def _held(self, mid_place: np.ndarray, stiff: np.ndarray) -> np.ndarray:
+        """Return the elastic force of the springs, positive along the displacement [N/m, N].
+
+        Args:
+            mid_place: place of the body [m, rad].
+            stiff: stiffness of each degree of freedom.
+        """
         body = self.body
         if self._axes == 2:
             slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
-            return np.asarray(stiff * (middle - slack))
+            return np.asarray(stiff * (mid_place - slack))
         if body.anchor is None:
             slack = np.array([*_lengthened(body.start, 3), *_attitude(body.angle, body.pitch, body.roll)])
         else:
             x, y, z, yaw, pitch, roll = self._anchor(body.anchor)
             slack = np.array([x, y, z, *_attitude(yaw, pitch, roll)])
-        away = stiff * (middle - slack)
+        spring_force = stiff * (mid_place - slack)
         if stiff[3:].any():
-            turn = rotation.multiply(rotation.from_vector(middle[3:]), rotation.from_vector(-slack[3:]))
-            vector = rotation.to_vector(turn, middle[3:] - slack[3:])
-            away[3:] = -_unwinding(vector, stiff[3:] * vector)
-        return np.asarray(away)
+            turn = rotation.multiply(rotation.from_vector(mid_place[3:]), rotation.from_vector(-slack[3:]))
+            vector = rotation.to_vector(turn, mid_place[3:] - slack[3:])
+            spring_force[3:] = -_unwinding(vector, stiff[3:] * vector)
+        return np.asarray(spring_force)
 
     def _anchor(self, anchor: Sequence[float]) -> list[float]:
-        """Return the anchor as six numbers; of three, the others are those of the start."""
+        """Return the anchor of the springs as six numbers; of three, the others are those of the start.
+
+        Args:
+            anchor: x, y and yaw, or x, y, z, yaw, pitch and roll [m, rad].
+        """
         if len(anchor) == 6:
             return list(anchor)
         x, y, turn = anchor

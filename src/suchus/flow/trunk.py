@@ -1,4 +1,4 @@
-"""A body in space given by its midline and elliptic sections along it: fish, robots, fins."""
+"""A body in space that is defined by its midline and the elliptic sections along it: fish, robots, fins."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from suchus.flow.pose import Pose, turned
 from suchus.flow.sections import PAINTED, paint_sections, paint_turned_sections
 from suchus.flow.solid import SpaceField, SpaceShape
 
-_FEWEST = 12
-"""Points around a section, at least [-]."""
+_MIN_POINTS = 12
+"""Fewest points around a section [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,16 +33,16 @@ class Trunk(SpaceShape):
     even: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
 
     spine: Callable[[float], MidlineState]
-    """The midline at every time, with the half-widths in the plane [s]."""
+    """The midline as a function of the time [s], with the half-widths in its plane."""
     half_height: np.ndarray
-    """Half of the height across the plane at the stations, shape (station,) [m]."""
+    """Half of the height across the plane at each station, shape (station,) [m]."""
     cuts: tuple[float, ...] = ()
-    """Arc lengths at which the body is divided into the parts that ``Record.along`` tells of, from the first station
-    [m]."""
+    """Arc lengths from the first station that divide the body into the parts of ``Record.along`` [m]."""
     deforms: bool = True
     """Whether the midline changes with time; False saves work."""
 
     def __post_init__(self) -> None:
+        """Check the half-heights and the cuts."""
         heights = self.half_height
         if heights.ndim != 1 or not np.isfinite(heights).all() or (heights < 0).any():
             raise InvalidDesign(
@@ -62,20 +62,29 @@ class Trunk(SpaceShape):
         return len(self.cuts) + 1
 
     def placed(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
-        """Return the midline at a time [s] in the plane z = 0 of a frame, and the frame's pose in the world.
+        """Return the midline at a time in the plane z = 0 of a frame, and the pose of that frame in the world.
 
         The frame of a body that turns about z alone has the axes of the world.
 
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+
         Raises:
-            InvalidDesign: it has other stations than the half-heights.
+            InvalidDesign: the midline has another number of stations than the half-heights.
         """
-        spine, place = self._spine(time), pose.along(3)
-        if not place.in_plane:
-            return spine, place
-        up, rate = place.position[2], place.velocity[2]
-        return spine.placed(pose), Pose(position=(0.0, 0.0, up), velocity=(0.0, 0.0, rate))
+        spine, pose_3d = self._spine(time), pose.along(3)
+        if not pose_3d.in_plane:
+            return spine, pose_3d
+        height, rate = pose_3d.position[2], pose_3d.velocity[2]
+        return spine.placed(pose), Pose(position=(0.0, 0.0, height), velocity=(0.0, 0.0, rate))
 
     def _spine(self, time: float) -> MidlineState:
+        """Return the midline at a time [s].
+
+        Raises:
+            InvalidDesign: it has another number of stations than the half-heights.
+        """
         spine = self.spine(time)
         if spine.x.size != self.half_height.size:
             raise InvalidDesign(
@@ -85,97 +94,113 @@ class Trunk(SpaceShape):
         return spine
 
     def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
-        """Return the field on the points of a window."""
+        """Return distance, normal, velocity and part on the points of a window; see ``SpaceShape``."""
         spine, frame = self.placed(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
-        out = np.zeros((PAINTED, z.size, y.size, x.size))
-        out[0], out[6] = reach, np.inf
+        fields = np.zeros((PAINTED, z.size, y.size, x.size))
+        fields[0], fields[6] = reach, np.inf
         rows = np.stack([*spine.rows, self.half_height, spine.swell, spine.arc])
-        given = out, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
-        part = out[7] if self.cuts else None
+        arguments = fields, rows, np.cos(spine.heading), np.sin(spine.heading), np.array(self.cuts)
+        part_index = fields[7] if self.cuts else None
         if pose.in_plane:
-            paint_sections(*given, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
-            lift = np.full(out[0].shape, frame.velocity[2])
-            return SpaceField(out[0], (out[1], out[2], out[3]), (out[4], out[5], lift), out[6], part)
+            paint_sections(*arguments, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
+            lift = np.full(fields[0].shape, frame.velocity[2])
+            normal, velocity = (fields[1], fields[2], fields[3]), (fields[4], fields[5], lift)
+            return SpaceField(fields[0], normal, velocity, fields[6], part_index)
         matrix = np.ascontiguousarray(frame.matrix)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        paint_turned_sections(*given, px, py, pz, matrix, np.array(frame.position), float(reach))
+        paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
         rigid = frame.rates((x, y[:, None], z[:, None, None]))
-        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (out[4], out[5], 0 * out[5])), strict=True))
-        return SpaceField(out[0], turned(matrix, out[1:4]), (u, v, w), out[6], part)
+        u, v, w = (a + b for a, b in zip(rigid, turned(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True))
+        return SpaceField(fields[0], turned(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of patches between stations, as many around as the widest section needs."""
+        """Return markers at the centres of patches between the stations.
+
+        The widest section determines the number of patches around the body.
+        """
         spine, frame = self.placed(time, pose)
         return in_world(self._skin(spine, spacing), frame)
 
     def _skin(self, spine: MidlineState, spacing: float) -> Markers:
-        """Return the same in the frame of a midline."""
-        wide, high = (np.concatenate([[0.0], part, [0.0]]) for part in (spine.half_width, self.half_height))
+        """Return the markers of ``markers`` in the frame of a midline.
+
+        Args:
+            spine: the midline.
+            spacing: about the distance of the markers [m].
+        """
+        half_widths, half_heights = (
+            np.concatenate([[0.0], half_axis, [0.0]]) for half_axis in (spine.half_width, self.half_height)
+        )
         station = np.clip(np.arange(-1, spine.x.size + 1), 0, spine.x.size - 1)  # the ends' faces too
-        largest = float(np.hypot(spine.half_width, self.half_height).max())
-        angle = np.linspace(0.0, 2 * np.pi, max(_FEWEST, int(np.ceil(2 * np.pi * largest / spacing))) + 1)
-        aside = np.outer(wide, np.cos(angle))
+        max_radius = float(np.hypot(spine.half_width, self.half_height).max())
+        angle = np.linspace(0.0, 2 * np.pi, max(_MIN_POINTS, int(np.ceil(2 * np.pi * max_radius / spacing))) + 1)
+        lateral_offset = np.outer(half_widths, np.cos(angle))
         nx, ny = -np.sin(spine.heading)[station, None], np.cos(spine.heading)[station, None]
         corner = np.stack([
-            spine.x[station, None] + aside * nx, spine.y[station, None] + aside * ny,
-            np.outer(high, np.sin(angle)),
+            spine.x[station, None] + lateral_offset * nx, spine.y[station, None] + lateral_offset * ny,
+            np.outer(half_heights, np.sin(angle)),
         ])  # fmt: skip
         turn = spine.heading_rate[station, None]
         swell = np.outer(np.concatenate([[0.0], spine.swell, [0.0]]), np.cos(angle))
         rate = np.stack([
-            spine.x_rate[station, None] + swell * nx - turn * aside * ny,
-            spine.y_rate[station, None] + swell * ny + turn * aside * nx,
-            np.zeros(aside.shape),
+            spine.x_rate[station, None] + swell * nx - turn * lateral_offset * ny,
+            spine.y_rate[station, None] + swell * ny + turn * lateral_offset * nx,
+            np.zeros(lateral_offset.shape),
         ])  # fmt: skip
-        first, second = corner[:, 1:, 1:] - corner[:, :-1, :-1], corner[:, 1:, :-1] - corner[:, :-1, 1:]
-        square = np.cross(first, second, axis=0)
+        first_diagonal = corner[:, 1:, 1:] - corner[:, :-1, :-1]
+        second_diagonal = corner[:, 1:, :-1] - corner[:, :-1, 1:]
+        square = np.cross(first_diagonal, second_diagonal, axis=0)
         size = np.sqrt((square**2).sum(axis=0))
-        arc = np.broadcast_to(spine.arc[station, None], aside.shape)
-        at = _middles(arc[None])[0]
-        part = np.searchsorted(self.cuts, at.ravel(), side="right") if self.cuts else None
+        arc = np.broadcast_to(spine.arc[station, None], lateral_offset.shape)
+        arc_centres = _patch_centres(arc[None])[0]
+        part_index = np.searchsorted(self.cuts, arc_centres.ravel(), side="right") if self.cuts else None
         spins = np.zeros(square.shape)
-        spins[2] = _middles(np.broadcast_to(turn, aside.shape)[None])[0]
+        spins[2] = _patch_centres(np.broadcast_to(turn, lateral_offset.shape)[None])[0]
         return Markers(
-            points=_middles(corner).reshape(3, -1), share=0.5 * size.ravel(),
-            velocities=_middles(rate).reshape(3, -1),
-            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part,
+            points=_patch_centres(corner).reshape(3, -1), share=0.5 * size.ravel(),
+            velocities=_patch_centres(rate).reshape(3, -1),
+            normals=(square / np.maximum(size, 1e-300)).reshape(3, -1), spins=spins.reshape(3, -1), part=part_index,
         )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
-        """Return the box around the body."""
+        """Return the smallest box around the body: x0, x1, y0, y1, z0, z1 [m]."""
         spine, frame = self.placed(time, pose)
         if pose.in_plane:
-            outline, middle = ring(spine.rows), frame.position[2]
+            outline, height = ring(spine.rows), frame.position[2]
             ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
-            high = float(self.half_height.max())
-            return (*ends, middle - high, middle + high)
-        middles, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
-        aside = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
-        across, up = spine.half_width * (matrix[:, :2] @ aside), np.outer(matrix[:, 2], self.half_height)
-        far = np.hypot(across, up)  # how far each section reaches along the world's axes
-        low, top = (middles - far).min(axis=1).tolist(), (middles + far).max(axis=1).tolist()
-        return tuple(end for pair in zip(low, top, strict=True) for end in pair)
+            half_height = float(self.half_height.max())
+            return (*ends, height - half_height, height + half_height)
+        centres, matrix = np.array(frame.place((spine.x, spine.y, 0 * spine.x))), frame.matrix
+        lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
+        lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
+        vertical_extent = np.outer(matrix[:, 2], self.half_height)
+        extent = np.hypot(lateral_extent, vertical_extent)  # how far each section reaches along the world's axes
+        lower_bounds, upper_bounds = (centres - extent).min(axis=1).tolist(), (centres + extent).max(axis=1).tolist()
+        return tuple(end for pair in zip(lower_bounds, upper_bounds, strict=True) for end in pair)
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
-        """Return the longer axes of the sections, as far as a section is less wide than the way to its tip is long.
+        """Return the longer axes of the sections, where a section is narrower than it is far from the ends of the body.
 
-        Round sections have none, nor have the body's round ends.
+        Round sections have no such surface. See ``SpaceShape``.
         """
         spine, frame = self.placed(time, pose)
-        wide, high, arc = spine.half_width, self.half_height, spine.arc
-        slim = np.minimum(wide, high) < np.minimum(arc, arc[-1] - arc)
-        square = np.maximum(wide**2 + high**2, np.finfo(float).tiny)
-        excess = np.where(slim, (high**2 - wide**2) / square, 0.0)
-        up, aside = high * np.maximum(excess, 0.0), wide * np.maximum(-excess, 0.0)
-        across = np.stack([-aside * np.sin(spine.heading), aside * np.cos(spine.heading), up])
-        middle = np.stack([spine.x, spine.y, 0 * spine.x])
-        both = ((up[1:] > 0) & (up[:-1] > 0)) | ((aside[1:] > 0) & (aside[:-1] > 0))
-        if not both.any():
+        half_width, half_height, arc = spine.half_width, self.half_height, spine.arc
+        is_slim = np.minimum(half_width, half_height) < np.minimum(arc, arc[-1] - arc)
+        square = np.maximum(half_width**2 + half_height**2, np.finfo(float).tiny)
+        excess = np.where(is_slim, (half_height**2 - half_width**2) / square, 0.0)
+        vertical, lateral = half_height * np.maximum(excess, 0.0), half_width * np.maximum(-excess, 0.0)
+        rim_offset = np.stack([-lateral * np.sin(spine.heading), lateral * np.cos(spine.heading), vertical])
+        centre_line = np.stack([spine.x, spine.y, 0 * spine.x])
+        has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
+        if not has_surface.any():
             return None
-        low, top = (np.array(frame.place(middle + way * across)) for way in (-1.0, 1.0))
-        pairs = [(low[:, :-1], low[:, 1:], top[:, :-1]), (low[:, 1:], top[:, 1:], top[:, :-1])]
-        return np.ascontiguousarray(np.concatenate([np.stack(pair)[:, :, both] for pair in pairs], axis=2))
+        lower_rim, upper_rim = (np.array(frame.place(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
+        pairs = [
+            (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
+            (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
+        ]
+        return np.ascontiguousarray(np.concatenate([np.stack(pair)[:, :, has_surface] for pair in pairs], axis=2))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length and the smaller axis of the section at the stations."""
@@ -191,14 +216,25 @@ class Trunk(SpaceShape):
         return of_trunk(self._spine(time).rows, self.half_height)
 
     def at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return where the midline is at arc lengths [m], in the world, shape (point, 3) [m]."""
+        """Return points of the midline in the world frame, shape (point, 3) [m].
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+            arc: arc lengths of the points [m].
+        """
         spine, frame = self.placed(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
         return np.column_stack(frame.place((x, y, 0 * x)))
 
 
 def in_world(skin: Markers, frame: Pose) -> Markers:
-    """Return a skin whose points and velocities are those of a frame in the world, where the frame moves."""
+    """Return markers in the world frame, with the velocity of the moving frame added.
+
+    Args:
+        skin: markers in a frame.
+        frame: pose of that frame.
+    """
     points = np.array(frame.place(skin.points))
     velocities = np.array(turned(frame.matrix, skin.velocities)) + frame.rates(points)
     return Markers(
@@ -208,8 +244,8 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
     )  # fmt: skip
 
 
-def _middles(corners: np.ndarray) -> np.ndarray:
+def _patch_centres(corners: np.ndarray) -> np.ndarray:
     """Return the means over the four corners of each patch, shape (..., station - 1, angle - 1)."""
     pairs = corners[:, 1:] + corners[:, :-1]
-    middles: np.ndarray = 0.25 * (pairs[:, :, 1:] + pairs[:, :, :-1])
-    return middles
+    centres: np.ndarray = 0.25 * (pairs[:, :, 1:] + pairs[:, :, :-1])
+    return centres

@@ -1,9 +1,9 @@
-"""Rigid motions of bodies and of their parts, and what the water does when they are accelerated within a step.
+"""Rigid motions of bodies and of their parts, and the response of the water to a velocity change within a step.
 
-A step of the flow sees a motion that was foreseen. When forces say that the bodies were accelerated otherwise, the
-water need not go through the step again: to first order in the step it is given the potential flow of the difference,
-which takes one solve of the pressure equation. The immersion holds the share ``1 - mu0`` of each face with the body in
-both stages of a step, so that this is what a step with the other acceleration would have done.
+A step of the flow takes an extrapolated motion of the bodies. If the forces then require another acceleration, the
+step is not repeated: to first order in the step, the water gets the potential flow of the difference, which takes one
+solve of the pressure equation. The immersion fixes the fraction ``1 - mu0`` of each face to the body in both stages of
+a step. The result is therefore that of a step with the other acceleration.
 """
 
 from collections.abc import Sequence
@@ -17,94 +17,113 @@ from suchus.flow.pose import TURNS
 from suchus.flow.water import Fluid
 
 SOLVED = 1e-4
-"""Mean divergence that ``accelerate`` leaves over, relative to the largest change of a body's velocity [-]."""
+"""Limit of the mean divergence in ``accelerate``, over the largest change of a body's velocity [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Twists:
-    """Rigid motions of parts, one a row: velocities, or what is added to them.
+    """Rigid motions of parts, one a row: velocities, or changes of velocity.
 
-    A body that is not divided is one part; one that bends is as many rigid pieces as it has parts.
+    A body that is not divided is one part. A bending body is approximated by as many rigid pieces as it has parts.
     """
 
     about: np.ndarray
-    """Points of the parts that ``linear`` is the velocity of, in the frame of the grid, shape (part, axis) [m]."""
+    """Reference points of the parts, whose velocity is ``linear``, in the frame of the grid, shape (part, axis) [m]."""
     linear: np.ndarray
     """Velocities of these points, shape (part, axis) [m/s]."""
     angular: np.ndarray
     """Angular velocities, about z in the plane and about x, y and z in space, shape (part, 1) or (part, 3) [rad/s]."""
 
-    def at(self, part: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Return the velocities of points, shape (axis, point), of parts, shape (point,): the same shape [m/s]."""
-        out = self.linear.T[:, part].astype(float)
-        off = points - self.about.T[:, part]
+    def at(self, part_index: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Return the velocities of points, shape (axis, point) [m/s].
+
+        Args:
+            part_index: part that each point belongs to, shape (point,).
+            points: the points, shape (axis, point) [m].
+        """
+        velocities = self.linear.T[:, part_index].astype(float)
+        lever = points - self.about.T[:, part_index]
         for turn, (a, b) in zip(self.angular.T, TURNS[len(points)], strict=True):
-            out[a] -= off[b] * turn[part]
-            out[b] += off[a] * turn[part]
-        return out
+            velocities[a] -= lever[b] * turn[part_index]
+            velocities[b] += lever[a] * turn[part_index]
+        return velocities
 
     def at_origin(self) -> np.ndarray:
         """Return the velocities that the parts have at the origin of the frame, shape (part, axis) [m/s]."""
         return self.at(np.arange(len(self.about)), np.zeros(self.about.T.shape)).T
 
     def __mul__(self, factor: float) -> "Twists":
-        """Return the same motions, so many times as fast."""
+        """Return the twists multiplied by a factor."""
         return replace(self, linear=factor * self.linear, angular=factor * self.angular)
 
 
 def none(rows: int, axes: int) -> Twists:
-    """Return parts that rest."""
+    """Return zero twists of parts at rest.
+
+    Args:
+        rows: number of parts.
+        axes: of the domain, 2 or 3.
+    """
     turns = len(TURNS[axes])
     return Twists(
         about=np.zeros((rows, axes)), linear=np.zeros((rows, axes)), angular=np.zeros((rows, turns))
     )  # fmt: skip
 
 
-def joined(each: Sequence[Twists]) -> Twists:
-    """Return the motions of several bodies, one after the other."""
+def joined(twists: Sequence[Twists]) -> Twists:
+    """Return the twists of several bodies in one object, body after body."""
     return Twists(
-        about=np.concatenate([one.about for one in each]), linear=np.concatenate([one.linear for one in each]),
-        angular=np.concatenate([one.angular for one in each]),
+        about=np.concatenate([twist.about for twist in twists]),
+        linear=np.concatenate([twist.linear for twist in twists]),
+        angular=np.concatenate([twist.angular for twist in twists]),
     )  # fmt: skip
 
 
 class HeldFaces(NamedTuple):
-    """Faces across one axis that the bodies hold in part, each array of shape (face,) but for the points."""
+    """Faces across one axis that belong to the bodies in part; arrays of shape (face,) except for the points."""
 
     place: np.ndarray
-    """Which of the window's faces they are, counted in the order of its array [-]."""
+    """Flat indices of the faces in an array of the window [-]."""
     row: np.ndarray
-    """Part that each belongs to [-]."""
+    """Part to which each face belongs [-]."""
     points: np.ndarray
-    """Their middles, in the frame of the grid, shape (axis, face) [m]."""
+    """Centres of the faces in the frame of the grid, shape (axis, face) [m]."""
     held: np.ndarray
-    """Share of each that moves with the body, ``1 - mu0`` [-]."""
+    """Fraction of each face that moves with the body, ``1 - mu0`` [-]."""
     closed: np.ndarray
-    """Share that the pressure does not act on, ``1 - passage`` [-]."""
+    """Fraction of each face on which the pressure does not act, ``1 - passage`` [-]."""
 
 
 def held_faces(water: Fluid) -> list[HeldFaces]:
-    """Return the faces that the placed bodies hold, axis by axis; those beyond mirrors are left out."""
-    here, axes, grid, found = water.here, water.axes, water.grid, []
-    inside = np.ones([s.stop - s.start for s in here], bool)
-    for cut in water.cut:
-        leave_images(inside, cut)
-    ends = [(s.start, s.stop) for s in reversed(here)]
+    """Return the faces that belong to the bodies at least in part, one entry for each axis.
+
+    Faces beyond mirrors are left out.
+    """
+    window, axes, grid, faces = water.here, water.axes, water.grid, []
+    is_inside = np.ones([s.stop - s.start for s in window], bool)
+    for mirror_cuts in water.cut:
+        leave_images(is_inside, mirror_cuts)
+    ends = [(s.start, s.stop) for s in reversed(window)]
     for c in range(axes):
-        held, closed = (1 - share[c][here].astype(np.float64) for share in (water.mu0, water.passage))
-        index = np.flatnonzero(((held > 0) | (closed > 0)) & inside)
+        body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
+        index = np.flatnonzero(((body_fraction > 0) | (closed > 0)) & is_inside)
         lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(axes)]
-        places = np.unravel_index(index, held.shape)
+        places = np.unravel_index(index, body_fraction.shape)
         points = np.stack([lines[d][places[axes - 1 - d]] for d in range(axes)])
         row = water.owners[c].ravel()[index].astype(np.intp)
-        found.append(HeldFaces(index, row, points, held.ravel()[index], closed.ravel()[index]))
-    return found
+        faces.append(HeldFaces(index, row, points, body_fraction.ravel()[index], closed.ravel()[index]))
+    return faces
 
 
-def leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
-    """Set to nothing what lies beyond the mirrors that cut a body."""
-    for k, is_cut in enumerate(cut):
-        lines = np.moveaxis(share, share.ndim - 1 - k // 2, 0)
+def leave_images(values: np.ndarray, mirror_cuts: tuple[bool, ...]) -> None:
+    """Set values beyond the mirrors that cut a body to 0.
+
+    Args:
+        values: on the faces of a window, the last axis first.
+        mirror_cuts: whether the mirror at the low and the high end of each axis cuts the body.
+    """
+    for k, is_cut in enumerate(mirror_cuts):
+        lines = np.moveaxis(values, values.ndim - 1 - k // 2, 0)
         if is_cut and k % 2 == 0:
             lines[0] = 0
         elif is_cut:
@@ -112,61 +131,70 @@ def leave_images(share: np.ndarray, cut: tuple[bool, ...]) -> None:
 
 
 def rise(water: Fluid, x: np.ndarray, faces: HeldFaces, axis: int) -> np.ndarray:
-    """Return how much a field at the cells rises across faces, shape (face,)."""
-    low = [s.start for s in water.here]
-    behind = [place + first for place, first in zip(np.unravel_index(faces.place, _shape(water)), low, strict=True)]
-    before = [place - (n == water.axes - 1 - axis) for n, place in enumerate(behind)]
-    return x[tuple(behind)].astype(np.float64) - x[tuple(before)]
+    """Return the difference of a field between the cells behind and before faces, shape (face,).
+
+    Args:
+        water: the water, for its window.
+        x: field at the cells of the padded grid.
+        faces: the faces across an axis.
+        axis: that axis.
+    """
+    low_corner = [s.start for s in water.here]
+    cell_behind = [
+        index + start for index, start in zip(np.unravel_index(faces.place, _shape(water)), low_corner, strict=True)
+    ]
+    cell_before = [index - (n == water.axes - 1 - axis) for n, index in enumerate(cell_behind)]
+    return x[tuple(cell_behind)].astype(np.float64) - x[tuple(cell_before)]
 
 
 def _shape(water: Fluid) -> tuple[int, ...]:
     return tuple(s.stop - s.start for s in water.here)
 
 
-def accelerate(water: Fluid, more: Twists, dt: float) -> None:
-    """Let the bodies' velocities at the end of the last step be others, and the water have followed all through it.
+def accelerate(water: Fluid, twists: Twists, dt: float) -> None:
+    """Change the velocities of the bodies at the end of the last step, with the response of the water in that step.
 
-    On return velocity and pressure, the bodies' velocity and what the immersion gave are those of a step to whose end
-    the bodies came with velocities that are ``more``. The sides stay as they are.
+    On return, the fields are those of a step in which the bodies reached the changed velocities: velocity and pressure,
+    the bodies' velocity, and the sums of the immersion. The sides are not changed.
 
     Args:
         water: after a step.
-        more: what is added to the velocity of each part; of all parts of all bodies.
+        twists: change of the velocity of each part, for all parts of all bodies.
         dt: length of the step [s].
 
     Raises:
-        NotConverged: the pressure solver got stuck.
+        NotConverged: the pressure solver did not converge.
     """
     axes, h, faces = water.axes, water.grid.cell, held_faces(water)
-    changes = [more.at(part.row, part.points)[c] for c, part in enumerate(faces)]
-    largest = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
-    if largest == 0.0:
+    changes = [twists.at(axis_faces.row, axis_faces.points)[c] for c, axis_faces in enumerate(faces)]
+    max_change = max((float(np.abs(change).max(initial=0.0)) for change in changes), default=0.0)
+    if max_change == 0.0:
         return
     shape, count = _shape(water), len(water.given)
-    given = np.zeros((axes, *shape))
-    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
-        given[c].ravel()[part.place] = part.held * change
-    x = water.press(given, dt, SOLVED * largest)
+    velocity_change = np.zeros((axes, *shape))
+    for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
+        velocity_change[c].ravel()[axis_faces.place] = axis_faces.held * change
+    x = water.press(velocity_change, dt, SOLVED * max_change)
     energy, turns = axes + len(TURNS[axes]), TURNS[axes]
     sums = np.zeros_like(water.given)
     corner = np.array(water.grid.origin)
-    lever = replace(more, about=more.about - corner)
-    # half of the step's mean velocity is new, of all that was given before
-    before, spin = water.given, h * more.angular
-    sums[:, energy] += 0.5 * (lever.at_origin() * before[:, :axes]).sum(axis=1)
-    sums[:, energy] += 0.5 * (spin * before[:, axes:energy]).sum(axis=1)
-    for c, (part, change) in enumerate(zip(faces, changes, strict=True)):
-        gained = part.held * change + part.closed * rise(water, x, part, c)
-        sums[:, c] += np.bincount(part.row, gained, count)
+    lever = replace(twists, about=twists.about - corner)
+    # the mean velocity of the step changes by half of the velocity change, which acts on the previous sums too
+    previous_sums, spin = water.given, h * twists.angular
+    sums[:, energy] += 0.5 * (lever.at_origin() * previous_sums[:, :axes]).sum(axis=1)
+    sums[:, energy] += 0.5 * (spin * previous_sums[:, axes:energy]).sum(axis=1)
+    for c, (axis_faces, change) in enumerate(zip(faces, changes, strict=True)):
+        gained = axis_faces.held * change + axis_faces.closed * rise(water, x, axis_faces, c)
+        sums[:, c] += np.bincount(axis_faces.row, gained, count)
         for n, (a, b) in enumerate(turns):
             if c in (a, b):
-                off = (part.points[b if c == a else a] - corner[b if c == a else a]) / h
-                sums[:, axes + n] += np.bincount(part.row, (-off if c == a else off) * gained, count)
-        mean = water.mean[c].ravel()[part.place].astype(np.float64)
-        sums[:, energy] += np.bincount(part.row, (mean + 0.5 * change) * gained, count)
-        moved = water.b[c].ravel()
-        moved[part.place] += change.astype(water.dtype)
-        water.mean[c].ravel()[part.place] += (0.5 * change).astype(water.dtype)
+                offset = (axis_faces.points[b if c == a else a] - corner[b if c == a else a]) / h
+                sums[:, axes + n] += np.bincount(axis_faces.row, (-offset if c == a else offset) * gained, count)
+        mean = water.mean[c].ravel()[axis_faces.place].astype(np.float64)
+        sums[:, energy] += np.bincount(axis_faces.row, (mean + 0.5 * change) * gained, count)
+        body_velocity = water.b[c].ravel()
+        body_velocity[axis_faces.place] += change.astype(water.dtype)
+        water.mean[c].ravel()[axis_faces.place] += (0.5 * change).astype(water.dtype)
     if len(water.given) > len(water.rows):
         water.pressed += water.pressures(x, 1.0)
     water.spread(sums, x, 1.0)
@@ -180,9 +208,14 @@ def part_of(outline: Markers) -> np.ndarray:
     return outline.part.astype(np.intp)
 
 
-def moved_on(outline: Markers, more: Twists) -> Markers:
-    """Return the skin of one body whose parts move faster, by twists of this body's parts alone."""
+def moved_on(outline: Markers, twists: Twists) -> Markers:
+    """Return the markers of one body with the velocity change of its parts added.
+
+    Args:
+        outline: the markers.
+        twists: change of the velocity of each part of this body.
+    """
     row = part_of(outline)
-    velocities = outline.velocities + more.at(row, outline.points)
-    spins = outline.spins + more.angular[row].T
+    velocities = outline.velocities + twists.at(row, outline.points)
+    spins = outline.spins + twists.angular[row].T
     return replace(outline, velocities=velocities, spins=spins)

@@ -1,4 +1,4 @@
-"""Where a flow in space turns: the second invariant of the velocity's gradient, and lambda 2."""
+"""Vortices of a flow in space: the second invariant of the velocity gradient, and lambda 2."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ def velocity_gradient(velocity: np.ndarray, h: float) -> np.ndarray:
         velocity: at the cell centres, shape (3, z, y, x) [m/s].
         h: cell [m].
     """
-    return np.stack([np.stack(np.gradient(part, h)[::-1]) for part in velocity])
+    return np.stack([np.stack(np.gradient(component, h)[::-1]) for component in velocity])
 
 
 def second_invariant(velocity: np.ndarray, h: float) -> np.ndarray:
@@ -27,8 +27,8 @@ def second_invariant(velocity: np.ndarray, h: float) -> np.ndarray:
     Source: Hunt, Wray and Moin 1988, Center for Turbulence Research, CTR-S88, 193.
     """
     slope = velocity_gradient(velocity, h)
-    found: np.ndarray = -0.5 * np.einsum("ij...,ji...->...", slope, slope)
-    return found
+    invariant: np.ndarray = -0.5 * np.einsum("ij...,ji...->...", slope, slope)
+    return invariant
 
 
 def lambda2(velocity: np.ndarray, h: float) -> np.ndarray:
@@ -41,6 +41,6 @@ def lambda2(velocity: np.ndarray, h: float) -> np.ndarray:
     Source: Jeong and Hussain 1995, J. Fluid Mech. 285, 69.
     """
     slope = np.moveaxis(velocity_gradient(velocity, h), (0, 1), (-2, -1))
-    turned = np.swapaxes(slope, -1, -2)
-    strain, spin = 0.5 * (slope + turned), 0.5 * (slope - turned)
+    transpose = np.swapaxes(slope, -1, -2)
+    strain, spin = 0.5 * (slope + transpose), 0.5 * (slope - transpose)
     return np.linalg.eigvalsh(strain @ strain + spin @ spin)[..., 1]

@@ -1,4 +1,4 @@
-"""What a simulation warns of, once each: thin layers, bodies in each other, and vortices at a side that cannot move."""
+"""Warnings of a simulation, once each: thin boundary layers, overlapping bodies, and vortices at fixed sides."""
 
 from dataclasses import dataclass, field
 from warnings import warn
@@ -12,30 +12,33 @@ from suchus.flow.sides import Stream
 from suchus.flow.water import Fluid
 
 EVERY = 256
-"""Steps after which the sides are looked at, and at a run's end [-]."""
+"""Steps between two checks of the sides; they are also checked at the end of a run [-]."""
 
 STRONG = 0.05
-"""Vorticity at a side, over the largest in the domain, that is too strong for the side to be held [-]."""
+"""Vorticity at a fixed side, over the largest in the domain, above which a warning is issued [-]."""
 
 SHARED = 0.5
-"""Depth from which two bodies lie in each other [cells]: what a grid hardly tells from bodies that touch."""
+"""Depth above which two bodies overlap [cells]; the grid hardly distinguishes less from contact."""
 
 FELT = 0.02
-"""Speed that the vortex gives a cell at the side, over the fastest water, below which nothing is said [-]."""
+"""Speed that the vortex induces in a cell at the side, over the fastest water, below which no warning is issued [-]."""
 
 
 def vorticity_size(velocity: np.ndarray) -> np.ndarray:
-    """Return the summed sizes of the vorticity's components beside the low corners of the cells [m/s per cell].
+    """Return the sum of the absolute vorticity components at the low corners of the cells [m/s per cell].
 
     The shape is one less than the cells along each axis of the grid, the last axis first.
+
+    Args:
+        velocity: padded velocity, shape (axis, ...) [m/s].
     """
-    axes, here = len(velocity), slice(PAD + 1, -PAD)
+    axes, interior = len(velocity), slice(PAD + 1, -PAD)
 
-    def shifted(part: np.ndarray, axis: int) -> np.ndarray:
+    def shifted(component: np.ndarray, axis: int) -> np.ndarray:
         """Return the values one cell lower along an axis."""
-        return part[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else here for n in range(axes))]
+        return component[tuple(slice(PAD, -PAD - 1) if axes - 1 - n == axis else interior for n in range(axes))]
 
-    inner = (here,) * axes
+    inner = (interior,) * axes
     total: np.ndarray = np.zeros(velocity[0][inner].shape, velocity.dtype)
     for d in range(axes):
         for e in range(d):
@@ -46,16 +49,20 @@ def vorticity_size(velocity: np.ndarray) -> np.ndarray:
 
 @dataclass(slots=True)
 class Watch:
-    """Warns once of each thing."""
+    """Issues each warning once."""
 
     setup: Setup
     """Set-up of the simulation."""
     errors: list[float] = field(default_factory=list)
-    """Estimated error of each body's force now [-]."""
-    _said: set[str] = field(default_factory=set)
+    """Present estimated error of each body's force [-]."""
+    _issued_keys: set[str] = field(default_factory=set)
 
     def layers(self, errors: list[float]) -> None:
-        """Note the estimated errors of all bodies' forces; warn of a body whose error is large."""
+        """Store the estimated errors of all bodies' forces and warn of those that are large.
+
+        Args:
+            errors: relative error for each body; see ``Setup.layer_error`` [-].
+        """
         self.errors = errors
         for body, error in zip(self.setup.bodies, errors, strict=True):
             warning = self.setup.layer_warning(body, error)
@@ -63,13 +70,18 @@ class Watch:
                 self._say(f"layer {body.name}", warning)
 
     def shared(self, water: Fluid, time: float) -> str | None:
-        """Return what is to be said of two bodies that lie in each other at a time [s], if any do."""
+        """Return a message about two bodies that overlap, or None.
+
+        Args:
+            water: the water with the placed bodies.
+            time: time, for the message [s].
+        """
         depth, pair = water.overlap
         if depth <= SHARED * water.grid.cell:
             return None
-        one, other = (self.setup.bodies[k].name for k in pair)
+        first_name, second_name = (self.setup.bodies[k].name for k in pair)
         return (
-            f"at t = {time:.4g} s {one} and {other} lie {depth:.3g} m deep in each other, "
+            f"at t = {time:.4g} s {first_name} and {second_name} lie {depth:.3g} m deep in each other, "
             f"{depth / water.grid.cell:.2g} cells: the water meets the nearer surface alone, so that neither's force "
             f"is its own. Move them apart, keep free bodies apart by a BodyContact, or make one shape of them (union, "
             f"difference)."
@@ -82,31 +94,39 @@ class Watch:
             self._say(f"overlap {water.overlap.bodies}", text)
 
     def sides(self, water: Fluid, time: float) -> None:
-        """Warn of vortices at a side that is held to the far stream, which they should move."""
+        """Warn of vortices at a side that is fixed to the far stream although the vortices should move it.
+
+        Args:
+            water: the water after a step.
+            time: time, for the message [s].
+        """
         water = water.layers[-1]
-        held = [
+        fixed_edges = [
             edge for edge in water.border.edges
             if isinstance(edge.side, Stream) and not edge.unbounded and edge.leaves < 0.5
         ]  # fmt: skip
-        if not held:
+        if not fixed_edges:
             return
         inner = (slice(PAD + 1, -PAD),) * water.axes
         spin = vorticity_size(water.velocity)
-        largest, fastest = float(spin.max()), max(float(np.abs(part[inner]).max()) for part in water.velocity)
-        for edge in held:
+        max_vorticity = float(spin.max())
+        fastest = max(float(np.abs(component[inner]).max()) for component in water.velocity)
+        for edge in fixed_edges:
             lines = edge.across(spin)
-            near = lines[:2] if edge.low else lines[-2:]
-            at = float(near.max())
-            if at > STRONG * largest and at > FELT * fastest:
+            outer_lines = lines[:2] if edge.low else lines[-2:]
+            side_vorticity = float(outer_lines.max())
+            if side_vorticity > STRONG * max_vorticity and side_vorticity > FELT * fastest:
+                percent = 100 * side_vorticity / max_vorticity
                 self._say(
                     f"side {edge.name}",
                     f"at t = {time:.4g} s there is a vortex at the {edge.name} side of the domain "
-                    f"({100 * at / largest:.0f} % of the largest vorticity), which is held to the far stream and turns "
-                    f"it back. Enlarge the domain there, or leave all four sides Stream(), which then move as in an "
-                    f"unbounded domain.",
+                    f"({percent:.0f} % of the largest vorticity), which is held to the far stream and turns it back. "
+                    f"Enlarge the domain there, or leave all four sides Stream(), which then move as in an unbounded "
+                    f"domain.",
                 )
 
-    def _say(self, key: str, what: str | Doubtful) -> None:
-        if key not in self._said:
-            self._said.add(key)
-            warn(what if isinstance(what, Doubtful) else Doubtful(what), stacklevel=5)
+    def _say(self, key: str, message: str | Doubtful) -> None:
+        """Issue a warning once for each key."""
+        if key not in self._issued_keys:
+            self._issued_keys.add(key)
+            warn(message if isinstance(message, Doubtful) else Doubtful(message), stacklevel=5)

@@ -30,71 +30,77 @@ from suchus.flow.slab import inner_strides
 from suchus.flow.solid import SpaceShape
 
 MOST_CYCLES = 60
-"""Iterations of the pressure solver before it counts as stuck [-]."""
+"""Most iterations of the pressure solver [-]."""
 
 MOST_ROUNDS = 12
-"""Rounds in which the first step and the water around the domain come to terms [-]."""
+"""Most rounds in which the first step and the water around the domain converge [-]."""
 
 SKIPPED = 0.01
-"""Residual over its limit below which nothing is solved [-]; at 1 whole steps pass so, and the force of the next one
-that does not carries what was left over."""
+"""Residual over its limit below which the pressure is not solved [-]. With 1, whole steps would skip the solve, and
+their residual would appear in the force of the next step."""
 
 STUCK = 1000.0
-"""Residual over its limit above which a solve has failed; below, rounding stopped it short [-]."""
+"""Residual over its limit above which a solve has failed; below it, rounding has stopped the solve [-]."""
 
 
-def _inflow(given: np.ndarray, axis: int) -> np.ndarray:
-    """Return what flows into the cells of a window through their faces across an axis, that axis first."""
-    faces = np.moveaxis(given, axis, 0)
-    return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (given.ndim - 1)]
+def _inflow(velocity: np.ndarray, axis: int) -> np.ndarray:
+    """Return the inflow into the cells of a window through their faces across an axis, that axis first.
+
+    Args:
+        velocity: on the faces of the window.
+        axis: index of the axis in the array.
+    """
+    faces = np.moveaxis(velocity, axis, 0)
+    return (faces[:-1] - faces[1:])[:, *(slice(None, -1),) * (velocity.ndim - 1)]
 
 
 class PlannedStage(NamedTuple):
-    """A stage of an integrator at work: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
+    """A stage of an integrator: ``out = keep blend + (1 - keep) B[base + dt (f(rate) + push - grad p)]``.
 
     B is the immersion, f advection and diffusion. All fields are velocities, shape (axis, ...) [m/s].
     """
 
     out: np.ndarray
-    """Where the result goes."""
+    """Velocity at the end of the stage, which is written."""
     blend: np.ndarray
-    """What it is mixed with."""
+    """Velocity that is blended with it."""
     base: np.ndarray
     """Velocity that the stage starts from."""
     rate: np.ndarray
     """Velocity at which advection and diffusion are taken."""
     keep: float
-    """Share of ``blend`` [-]."""
+    """Fraction of ``blend`` [-]."""
     dt: float
-    """How far it goes from ``base`` [cells per (m/s)]."""
+    """Length of the stage from ``base`` [cells per (m/s)]."""
     beyond: Any = None
     """The same stage of the coarser water around a patch; see ``nest``."""
 
     @property
     def solved(self) -> float:
-        """How long the pressure that is solved for acts on ``out`` [cells per (m/s)]."""
+        """Duration for which the solved pressure acts on ``out`` [cells per (m/s)]."""
         return (1 - self.keep) * self.dt
 
 
 class Fluid:
-    """Velocity and pressure on a grid, and the bodies as the equations see them.
+    """Velocity and pressure on a grid, and the bodies as coefficients of the equations.
 
     Attributes:
         velocity: on the faces before the cells along each axis, shape (axis, ...) [m/s].
         p: pressure over density at the cell centres [m^2/s^2].
-        mu0: share of the fluid on these faces, shape (axis, ...) [-].
+        mu0: fraction of the fluid on these faces, shape (axis, ...) [-].
         mu1: half the first moment of the kernel along each axis on these faces, in the window, shape
             (face's axis, axis, ...) [cells].
         b: velocity of the bodies on these faces, in the window, shape (axis, ...) [m/s].
-        source: divergence of the bodies' own motion, times the body's share, in the window [m/s per cell].
-        window: padded cell indices around the bodies; a cell beyond a mirror that cuts one is one of them.
+        source: divergence of the bodies' own motion, times the body's fraction, in the window [m/s per cell].
+        window: padded cell indices around the bodies; it includes a cell beyond a mirror that cuts one.
         cut: for each body, which mirrors cut it; see ``body.cuts``.
-        rows: for each body the rows of its parts, where sums are kept; one for a body that is not divided.
+        rows: for each body the rows of its parts in arrays of sums; one for a body that is not divided.
         owners: for each component, the row of the part that is nearest to the points of the window.
-        given: what the immersion gave to the water in the last step, per row; see ``momentum.collect``.
-        pressed: what the pressure did inside bodies that are divided in the last step, per row; see ``pressures``.
-        solves: how the pressure solves of the last step went, one a stage.
-        overlap: the two bodies that lie deepest in each other.
+        given: momentum and energy given to the water by the immersion in the last step, per row; see
+            ``momentum.collect``.
+        pressed: integral of the pressure inside divided bodies in the last step, per row; see ``pressures``.
+        solves: statistics of the pressure solves of the last step, one a stage.
+        overlap: the two bodies that overlap most.
         least: fewest iterations of a pressure solve.
     """
 
@@ -102,6 +108,16 @@ class Fluid:
         self, grid: Grid, sides: Sides, viscosity: float, dtype: type, scheme: Scheme = QUICK,
         integrator: Integrator = HEUN,
     ) -> None:  # fmt: skip
+        """Allocate the fields of water at rest without bodies.
+
+        Args:
+            grid: the cells.
+            sides: sides of the domain.
+            viscosity: kinematic viscosity [m^2/s].
+            dtype: precision of the fields.
+            scheme: advection scheme.
+            integrator: time integrator.
+        """
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
         self.axes, self.repeats = grid.axes, sides.repeats(grid.axes)
@@ -131,7 +147,7 @@ class Fluid:
         self._sums = np.zeros((shape[0], 4))
         self._near = self._layout[0].copy()
         self._look_at((PAD,) * (2 * self.axes))
-        self._laid = self.window  # that of the levels
+        self._level_window = self.window  # that of the levels
         self.cut: list[tuple[bool, ...]] = []
         self.offset = 0.0
         self.solves: list[poisson.Solve] = []
@@ -163,40 +179,51 @@ class Fluid:
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
         """Return a field or values of the window as the kernels see them: slabs, and components before them."""
-        ahead = a.ndim - self.axes
-        return a.reshape(*a.shape[: ahead + 1], -1)
+        component_axes = a.ndim - self.axes
+        return a.reshape(*a.shape[: component_axes + 1], -1)
 
     def _look_at(self, window: Window) -> None:
-        """Make room for what counts around the bodies only: kernel moments, velocity, divergence and bare update."""
+        """Set the window around the bodies and allocate its arrays.
+
+        These are kernel moments, body velocity, source and bare update.
+
+        Args:
+            window: padded indices, first and end along each axis, the last axis first.
+        """
         self.window: Window = window
         self._near[1 + self.axes :] = window
-        shape = tuple(end - first + 1 for first, end in zip(window[::2], window[1::2], strict=True))
+        shape = tuple(end - start + 1 for start, end in zip(window[::2], window[1::2], strict=True))
         self.mu1: np.ndarray = np.zeros((self.axes, self.axes, *shape), self.dtype)
         self.b: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
         self._raw: np.ndarray = np.zeros((self.axes, *shape), self.dtype)
         self.source: np.ndarray = np.zeros(shape, self.dtype)
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
-        """Return values of another window, shape (axis, ...), in the present one, 0 where that one does not reach."""
-        out = np.zeros_like(self.b)
-        both = [
+        """Return values of another window in the present one, shape (axis, ...), 0 outside the other window.
+
+        Args:
+            values: on the faces of the other window, shape (axis, ...).
+            window: the other window.
+        """
+        result = np.zeros_like(self.b)
+        overlaps = [
             (max(a, c), min(b, d) + 1)
             for a, b, c, d in zip(window[::2], window[1::2], self.window[::2], self.window[1::2], strict=True)
         ]
-        to, source = (
-            tuple(slice(max(a - first, 0), max(b - first, 0)) for (a, b), first in zip(both, w[::2], strict=True))
+        target, source = (
+            tuple(slice(max(a - start, 0), max(b - start, 0)) for (a, b), start in zip(overlaps, w[::2], strict=True))
             for w in (self.window, window)
         )
-        if all(a < b for a, b in both):
-            out[:, *to] = values[:, *source]
-        return out
+        if all(a < b for a, b in overlaps):
+            result[:, *target] = values[:, *source]
+        return result
 
     @property
     def carried(self) -> np.ndarray:
         """Velocity of the bodies times their share on the faces before the cells, shape (axis, ...) [m/s]."""
-        out = np.zeros_like(self.velocity)
-        out[:, *self.here] = (1 - self.mu0[:, *self.here]) * self.b
-        return out
+        weighted_velocity = np.zeros_like(self.velocity)
+        weighted_velocity[:, *self.here] = (1 - self.mu0[:, *self.here]) * self.b
+        return weighted_velocity
 
     @property
     def here(self) -> tuple[slice, ...]:
@@ -237,7 +264,7 @@ class Fluid:
         self.offset = float(state["offset"])
         self.border.resume(state)
 
-    def _part(self, kind: int) -> np.ndarray:
+    def _level_view(self, kind: int) -> np.ndarray:
         return self._views[kind]
 
     @property
@@ -248,11 +275,16 @@ class Fluid:
     @property
     def arrays(self) -> float:
         """Memory of all fields in arrays of the padded grid [-]."""
-        own = [a for a in vars(self).values() if isinstance(a, np.ndarray) and a.dtype == self.dtype]
-        return sum(a.size for a in own) / self.p.size
+        fields = [a for a in vars(self).values() if isinstance(a, np.ndarray) and a.dtype == self.dtype]
+        return sum(a.size for a in fields) / self.p.size
 
     def place(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
-        """Write the bodies into the equations as they are at a time [s].
+        """Write the bodies at a time into the equations of the water.
+
+        Args:
+            bodies: the bodies.
+            poses: their poses in the frame of the grid.
+            time: time [s].
 
         Raises:
             InvalidDesign: a body reaches out of the domain.
@@ -262,35 +294,35 @@ class Fluid:
         windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
         self.cut, new = [cuts(window, self.grid) for window in windows], unite(windows, self.axes)
         self._clear(old)
-        was = self.b
+        old_velocity = self.b
         self._look_at(new)
-        around = [w for w in (old, new) if w[1] > w[0]]
+        filled_windows = [w for w in (old, new) if w[1] > w[0]]
         self.rows = rows_of(bodies)
         self.given = np.zeros((sum(map(len, self.rows)), sums_of(self.axes)))
         self.pressed = np.zeros((len(self.given), 1 + self.axes))
         self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
-        if not around:
+        if not filled_windows:
             return
-        moved = new != self._laid
-        if moved:
-            self._laid = ()
+        has_moved = new != self._level_window
+        if has_moved:
+            self._level_window = ()
             poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
-            self.mean = list(0.5 * ((self._in_window(was, old) if new != old else was) + self.b))
+            self.mean = list(0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b))
             self._widening(bodies)
-        if moved:
-            poisson.place_window(self._layout, unite(around, self.axes))
+        if has_moved:
+            poisson.place_window(self._layout, unite(filled_windows, self.axes))
         multigrid.coarsen(self._store, self._layout, self.inner)
-        if moved:
+        if has_moved:
             poisson.place_window(self._layout, new)
-            self._laid = new
+            self._level_window = new
             self._patches = patch.rects(self._layout, self.repeats)
             self._room = patch.room_for(self._room, self._patches)
         multigrid.spread(self._store, self._layout, self._room, self._patches, self.inner)
 
     def _widening(self, bodies: list[AnyBody]) -> None:
-        """Write what ``source`` is for the mean of the step's start and end; bodies that do not bend have none."""
+        """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
         self.widening = np.zeros_like(self.source)
         self._widens = not all(body.shape.rigid for body in bodies)
         if self._widens:
@@ -298,45 +330,60 @@ class Fluid:
             fill_source(widening, mean, mu0, self._layout[0], self._near, self.inner)
 
     def _clear(self, window: Window) -> None:
-        here = self._here(window)
-        for share in (self.mu0, self.passage):
-            share[:, *here] = 1
+        """Set the coefficients of a window to those of water without bodies."""
+        slices = self._here(window)
+        for fraction in (self.mu0, self.passage):
+            fraction[:, *slices] = 1
 
     def _measure(self, bodies: list[AnyBody], poses: list[Pose], time: float) -> None:
-        h, grid, here = self.grid.cell, self.grid, self._here(self.window)
+        """Compute the kernel moments, the velocity and the source of the bodies in the window.
+
+        Args:
+            bodies: the bodies.
+            poses: their poses in the frame of the grid.
+            time: time [s].
+        """
+        h, grid, slices = self.grid.cell, self.grid, self._here(self.window)
         self.overlap = Overlap(0.0, (0, 0))
-        ends = [(s.start, s.stop) for s in reversed(here)]
+        ends = [(s.start, s.stop) for s in reversed(slices)]
         for c in range(self.axes):
             points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.axes)]
             f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
             self.overlap = max(self.overlap, overlap)
-            near, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
-            mu0: np.ndarray = np.empty(near.size, self.dtype)
-            mu1: np.ndarray = np.empty((self.axes, near.size), self.dtype)
-            fill(near.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
-            self.mu0[c][here] = self.passage[c][here] = mu0.reshape(near.shape)
-            self.mu1[c] = mu1.reshape(self.axes, *near.shape)
+            distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
+            mu0: np.ndarray = np.empty(distance.size, self.dtype)
+            mu1: np.ndarray = np.empty((self.axes, distance.size), self.dtype)
+            fill(distance.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
+            self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
+            self.mu1[c] = mu1.reshape(self.axes, *distance.shape)
             self.b[c] = f.velocity[c]
-        first = [grid.centres(*ends[d], d)[0] for d in range(self.axes)]
+        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.axes)]
         for body, pose in zip(bodies, poses, strict=True):
-            self._close(body.shape, pose, time, first)
+            self._close(body.shape, pose, time, first_centre)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
         fill_source(source, b, mu0, self._layout[0], self._near, self.inner)
 
-    def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first: list[float]) -> None:
-        """Let no pressure act through the middle of a thin body; ``first`` is the middle of the window's first cell."""
-        h, here = self.grid.cell, self._here(self.window)
+    def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first_centre: list[float]) -> None:
+        """Set the pressure to act on no face through the middle of a thin body.
+
+        Args:
+            shape: shape of the body.
+            pose: its pose in the frame of the grid.
+            time: time [s].
+            first_centre: centre of the first cell of the window, x first [m].
+        """
+        h, slices = self.grid.cell, self._here(self.window)
         if isinstance(shape, SpaceShape):
             triangles = shape.midsurface(time, pose)
             if triangles is not None:
                 for c in range(3):
-                    close_surface(self.passage[c][here], c, triangles, np.array(first), h)
+                    close_surface(self.passage[c][slices], c, triangles, np.array(first_centre), h)
             return
         centreline = shape.centreline(time, pose)
         if centreline is not None:
-            x, y = first
-            close(self.passage[0][here], centreline[0], centreline[1], x - h, y, h)
-            close(self.passage[1][here].T, centreline[1], centreline[0], y - h, x, h)
+            x, y = first_centre
+            close(self.passage[0][slices], centreline[0], centreline[1], x - h, y, h)
+            close(self.passage[1][slices].T, centreline[1], centreline[0], y - h, x, h)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
@@ -359,51 +406,70 @@ class Fluid:
         On return the velocity is divergence-free to ``limits`` outside the bodies and fits the sides.
         """
         span, force = self._begin(dt, stream, push, time)
-        first, plan = self.border.steps == 1 and self._learns, self._plan(span)
-        start = self.p.copy() if first else self.p
+        is_first, plan = self.border.steps == 1 and self._learns, self._plan(span)
+        start = self.p.copy() if is_first else self.p
         self._stages(plan, force, limits)
-        if first:  # a body that starts at once moves the far water at once
+        if is_first:  # an impulsively started body moves the far water at once
             for _ in range(MOST_ROUNDS):
-                if self._settled(plan[-1], limits):
+                if self._is_first_step_converged(plan[-1], limits):
                     break
-                self._again(start)
+                self._reset_first_step(start)
                 self._stages(plan, force, limits)
         self._swap()
 
     def _begin(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], time: float
     ) -> tuple[float, tuple[float, ...]]:
-        """Prepare the sides for a step; return its length [cells per (m/s)] and the push on a cell [(m/s)^2]."""
+        """Prepare the sides for a step.
+
+        Args:
+            dt: time step [s].
+            stream: velocity of the far water at the end of the step [m/s].
+            push: uniform acceleration of the water [m/s^2].
+            time: of the end of the step [s].
+
+        Returns:
+            length of the step [cells per (m/s)] and the acceleration times the cell [(m/s)^2].
+        """
         real, h = self.dtype, self.grid.cell
         span = real(dt / h)
         self.border.prepare(self.velocity, self.window, float(span), stream, time)
-        return span, tuple(real(part * h) for part in push)
+        return span, tuple(real(component * h) for component in push)
 
     def _plan(self, span: float) -> list[PlannedStage]:
-        """Return the stages of a step of a length [cells per (m/s)]; with Heun's method two."""
-        plan, last, rooms = [], self.velocity, (self._corrected, self._predicted)
+        """Return the stages of a step; Heun's method has two.
+
+        Args:
+            span: length of the step [cells per (m/s)].
+        """
+        plan, previous, buffers = [], self.velocity, (self._corrected, self._predicted)
         stages = self.integrator.stages
-        for left, stage in zip(reversed(range(len(stages))), stages, strict=True):
-            out, dt = rooms[left % 2], self.dtype(stage.span) * span
-            plan.append(PlannedStage(out, last, self.velocity, last, self.dtype(stage.keep), dt))
-            last = out
+        for remaining, stage in zip(reversed(range(len(stages))), stages, strict=True):
+            result, dt = buffers[remaining % 2], self.dtype(stage.span) * span
+            plan.append(PlannedStage(result, previous, self.velocity, previous, self.dtype(stage.keep), dt))
+            previous = result
         return plan
 
     def _stages(self, plan: list[PlannedStage], push: tuple[float, ...], limits: tuple[float, float]) -> None:
-        """Take the stages of a step, each immersed and its divergence projected out.
+        """Take the stages of a step; each is immersed and then made divergence-free.
 
-        On return ``_corrected`` is the velocity at the step's end, ``p`` its pressure, and ``given`` what the immersion
-        gave to the water.
+        On return ``_corrected`` is the velocity at the end of the step, ``p`` its pressure, and ``given`` the sums of
+        the immersion.
+
+        Args:
+            plan: the stages.
+            push: uniform acceleration of the water times the cell [(m/s)^2].
+            limits: mean and largest divergence that may be left [m/s per cell].
         """
         self.solves = []
         self.given[:] = 0
         self.pressed[:] = 0
-        for k, (taken, weight) in enumerate(zip(plan, self.integrator.weights, strict=True)):
+        for k, (stage, weight) in enumerate(zip(plan, self.integrator.weights, strict=True)):
             if k > 0:
                 self._hear(plan[k - 1])
-            self._take(taken, push, limits)
-            self._collect(taken, weight)
-        if len(plan) == 1:  # else the sides would go on from what they have never seen
+            self._take(stage, push, limits)
+            self._collect(stage, weight)
+        if len(plan) == 1:  # with a single stage, the water beyond the sides is updated here
             self._hear(plan[0])
 
     def _take(self, stage: PlannedStage, push: tuple[float, ...], limits: tuple[float, float]) -> None:
@@ -412,75 +478,91 @@ class Fluid:
         self._project(stage.out, stage.solved, limits)
 
     def _hear(self, stage: PlannedStage) -> float:
-        """Let the water beyond the sides know what a stage came to; return by how much it moves them [m/s]."""
+        """Update the water beyond the sides after a stage; return the largest change of their velocity [m/s]."""
         return self.border.update_induced(stage.out, self.window)
 
     @property
     def _learns(self) -> bool:
-        """Whether water beyond the sides, or around a patch, has to come to terms with a first step."""
+        """Whether water beyond the sides, or around a patch, has to converge in the first step."""
         return self.border.water is not None
 
-    def _settled(self, last: PlannedStage, limits: tuple[float, float]) -> bool:
-        """Return whether the first step would be the same again, whose last stage is given."""
-        return self._hear(last) <= limits[1]
+    def _is_first_step_converged(self, last_stage: PlannedStage, limits: tuple[float, float]) -> bool:
+        """Return whether a repetition of the first step would not change it; updates the water beyond the sides.
 
-    def _again(self, start: np.ndarray) -> None:
-        """Make ready to take the first step once more, from the pressure that it started with."""
+        Args:
+            last_stage: last stage of the step.
+            limits: mean and largest divergence that may be left [m/s per cell].
+        """
+        return self._hear(last_stage) <= limits[1]
+
+    def _reset_first_step(self, start: np.ndarray) -> None:
+        """Prepare a repetition of the first step, with the pressure with which it started."""
         self.p[:] = start
 
     def _swap(self) -> None:
-        """Let the velocity be that at the step's end."""
+        """Make the velocity at the end of the step the present one."""
         self.velocity, self._corrected = self._corrected, self.velocity
 
     def _advance(self, stage: PlannedStage, push: tuple[float, ...]) -> None:
-        """On return ``out`` of the stage is what ``PlannedStage`` says, and fits the sides; its divergence is left."""
-        out, blend, base, rate = (self._flat(a) for a in stage[:4])
-        place, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
+        """Write the velocity of a stage, immersed and with its sides filled; its divergence is not yet removed.
+
+        Args:
+            stage: the stage; its ``out`` is written.
+            push: uniform acceleration of the water times the cell [(m/s)^2].
+        """
+        result, blend, base, rate = (self._flat(a) for a in stage[:4])
+        level_layout, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
         self._advance_all(
-            out, blend, base, rate, p, raw, place, self._near, self.inner, self.repeats, stage.dt, self.nu, push,
-            stage.keep,
+            result, blend, base, rate, p, raw, level_layout, self._near, self.inner, self.repeats, stage.dt, self.nu,
+            push, stage.keep,
         )  # fmt: skip
         if self.window[1] > self.window[0]:
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.axes):
                 immerse(
-                    out[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner, stage.dt,
-                    stage.keep,
+                    result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near, self.inner,
+                    stage.dt, stage.keep,
                 )  # fmt: skip
         self.border.fill(stage.out)
 
     def _mirror_raw(self) -> None:
-        """Fill the bare update beyond the mirrors that cut bodies with its image."""
-        for k, cut in enumerate(cuts(self.window, self.grid)):
-            if not cut:
+        """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
+        for k, is_cut in enumerate(cuts(self.window, self.grid)):
+            if not is_cut:
                 continue
-            axis, low = k // 2, k % 2 == 0
+            axis, is_low = k // 2, k % 2 == 0
             start = self.window[2 * (self.axes - 1 - axis)]
             for c, component in enumerate(self._raw):
                 planes = np.moveaxis(component, self.axes - 1 - axis, 0)
                 n = self.grid.cells[axis] + PAD - start
                 if c == axis:  # across the mirror, which lies on these faces
-                    face, image, source = (PAD - start, PAD - 1 - start, PAD + 1 - start) if low else (n, n + 1, n - 1)
+                    low_planes = PAD - start, PAD - 1 - start, PAD + 1 - start
+                    face, image, source = low_planes if is_low else (n, n + 1, n - 1)
                     planes[face], planes[image] = 0, -planes[source]
                 else:
-                    image, source = (PAD - 1 - start, PAD - start) if low else (n, n - 1)
+                    image, source = (PAD - 1 - start, PAD - start) if is_low else (n, n - 1)
                     planes[image] = planes[source]
 
     def _collect(self, stage: PlannedStage, weight: float) -> None:
-        """Add what the immersion gave in this stage, by the share that it has in the step."""
+        """Add the momentum and energy that the immersion gave to the water in a stage to ``given``.
+
+        Args:
+            stage: the stage after its projection.
+            weight: share of the stage in the step [-].
+        """
         if self.window[1] <= self.window[0]:
             return
-        dt, keep, near, inner = float(stage.dt), float(stage.keep), self._near, self.inner
+        dt, keep, near_layout, inner = float(stage.dt), float(stage.keep), self._near, self.inner
         sums, p = np.zeros_like(self.given), self._flat(self.p)
-        out, blend, raw, passage, mu1 = (
+        result, blend, raw, passage, mu1 = (
             self._flat(a) for a in (stage.out, stage.blend, self._raw, self.passage, self.mu1)
         )
         owners = [self._flat(owner) for owner in self.owners]
         for c, mean in enumerate(self.mean):
             collect(
-                sums, out[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near, inner, dt,
-                keep,
+                sums, result[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near_layout,
+                inner, dt, keep,
             )  # fmt: skip
         self.spread(sums, self.p, dt)
         self.given += weight * (sums + self.across(self.p, dt))
@@ -488,16 +570,26 @@ class Fluid:
             self.pressed += self.pressures(self.p, weight * dt)
 
     def spread(self, sums: np.ndarray, p: np.ndarray, weight: float) -> None:
-        """Take from the energy of rows what a pressure, times a weight, does as bodies that bend widen inside."""
+        """Subtract the work of a pressure on the widening inside bending bodies from the energy in ``sums``.
+
+        Args:
+            sums: see ``given``.
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
+        """
         if not self._widens:
             return
         flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
         dilatation_work(sums, *flat, self._near, self.inner, weight)
 
     def across(self, p: np.ndarray, weight: float) -> np.ndarray:
-        """Return what takes away that a pressure, times a weight, pushes links apart inside; see ``momentum.parted``.
+        """Return the correction for the force with which a pressure pushes linked parts apart inside the bodies.
 
-        Its shape is that of ``given``; nothing of bodies that have no joints.
+        Its shape is that of ``given``; it is 0 for bodies without joints. See ``momentum.parted``.
+
+        Args:
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
         """
         sums = np.zeros_like(self.given)
         if self._jointed and self.window[1] > self.window[0]:
@@ -507,10 +599,14 @@ class Fluid:
         return sums
 
     def pressures(self, p: np.ndarray, weight: float) -> np.ndarray:
-        """Return what a pressure, times a weight, does inside each row's region, shape (row, 1 + axis).
+        """Return integral and first moments of a pressure inside the region of each part, shape (row, 1 + axis).
 
-        It is summed over the cells by the bodies' share of them; then come its first moments from the grid's corner
-        [that of pressure and weight, and times cells].
+        The integral is a sum over the cells, weighted by the bodies' fraction of each. Moments are taken from the
+        corner of the grid [unit of pressure times weight; the same times cells].
+
+        Args:
+            p: pressure over density at the cells.
+            weight: factor of the pressure.
         """
         sums = np.zeros_like(self.pressed)
         if self.window[1] > self.window[0]:
@@ -519,7 +615,10 @@ class Fluid:
         return sums
 
     def contents(self) -> np.ndarray:
-        """Return what the region of each part of each placed body holds, shape (row, ``momentum.contents_of``)."""
+        """Return momentum, volume and first moments inside the region of each part of each placed body.
+
+        The shape is (row, ``momentum.contents_of``).
+        """
         sums = np.zeros((len(self.given), contents_of(self.axes)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
@@ -528,94 +627,118 @@ class Fluid:
         return sums
 
     def _project(self, velocity: np.ndarray, dt: float, limits: tuple[float, float]) -> None:
-        """On return the divergence of ``velocity`` is that of the bodies, to ``limits``; ``p`` has what that took."""
-        r, u, source, place = self._part(multigrid.B), self._flat(velocity), self._flat(self.source), self._layout[0]
-        mean = mean_residual(u, source, place, self._near, self.inner)
+        """Make the divergence of a velocity that of the bodies, and add the pressure that this takes to ``p``.
+
+        Args:
+            velocity: shape (axis, ...), which is changed [m/s].
+            dt: duration for which the pressure acts [cells per (m/s)].
+            limits: mean and largest divergence that may be left [m/s per cell].
+        """
+        r, level_layout = self._level_view(multigrid.B), self._layout[0]
+        u, source = self._flat(velocity), self._flat(self.source)
+        mean = mean_residual(u, source, level_layout, self._near, self.inner)
         residual(
-            r, u, source, self._part(multigrid.DINV), place, self._near, self.dtype(mean), self.inner, self.repeats,
-            self._sums,
+            r, u, source, self._level_view(multigrid.DINV), level_layout, self._near, self.dtype(mean), self.inner,
+            self.repeats, self._sums,
         )  # fmt: skip
         sums = self._sums[PAD:-PAD]
         cells = prod(self.grid.cells)
-        went = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
-        if went.mean > SKIPPED * limits[0] or went.largest > SKIPPED * limits[1]:
-            went, parts = self._solve(limits)
-            x, gain = (self._d, self._part(multigrid.X)), self.dtype(1 / dt)
-            correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), place, self.inner, gain)
+        solve = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
+        if solve.mean > SKIPPED * limits[0] or solve.largest > SKIPPED * limits[1]:
+            solve, parts = self._solve(limits)
+            x, gain = (self._d, self._level_view(multigrid.X)), self.dtype(1 / dt)
+            correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), level_layout, self.inner, gain)
             self._seal(self.p)
             self.border.fill(velocity)
-        self.solves.append(went)
+        self.solves.append(solve)
 
     def _seal(self, x: np.ndarray) -> None:
-        """Fill the cells beside the domain with those inside it, or with those at its other end."""
-        for axis, again in zip(reversed(range(self.axes)), self.repeats, strict=True):
+        """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
+        for axis, is_periodic in zip(reversed(range(self.axes)), self.repeats, strict=True):
             lines, n = x.swapaxes(axis, 0), x.shape[axis]
-            lines[PAD - 1] = lines[n - PAD - 1 if again else PAD]
-            lines[n - PAD] = lines[PAD if again else n - PAD - 1]
+            lines[PAD - 1] = lines[n - PAD - 1 if is_periodic else PAD]
+            lines[n - PAD] = lines[PAD if is_periodic else n - PAD - 1]
 
-    def potential(self, given: np.ndarray, limit: float) -> np.ndarray:
-        """Return the pressure that answers a body acceleration given on the faces of the window, shape (axis, ...).
+    def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
+        """Return the pressure of the water's response to an acceleration of the bodies.
 
         The result is a work array: use it before the next call.
 
-        Raises:
-            NotConverged: the pressure solver got stuck.
-        """
-        return self._answering(given, None, limit)
+        Args:
+            acceleration: on the faces of the window, shape (axis, ...).
+            limit: mean divergence that may be left.
 
-    def _answering(self, given: np.ndarray, through: np.ndarray | None, limit: float) -> np.ndarray:
-        """Return ``potential``, also of what flows in through the sides, given as a velocity of the whole grid."""
-        r = self._part(multigrid.B)
+        Raises:
+            NotConverged: the pressure solver did not converge.
+        """
+        return self._answering(acceleration, None, limit)
+
+    def _answering(self, acceleration: np.ndarray, side_velocity: np.ndarray | None, limit: float) -> np.ndarray:
+        """Return ``potential`` with an additional flow through the sides.
+
+        Args:
+            acceleration: on the faces of the window, shape (axis, ...).
+            side_velocity: flow through the sides, as a velocity of the whole grid; None for none.
+            limit: mean divergence that may be left.
+        """
+        r = self._level_view(multigrid.B)
         r[:] = 0
-        net = sum(np.moveaxis(_inflow(part, self.axes - 1 - c), 0, self.axes - 1 - c) for c, part in enumerate(given))
-        inside = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
+        net = sum(
+            np.moveaxis(_inflow(component, self.axes - 1 - c), 0, self.axes - 1 - c)
+            for c, component in enumerate(acceleration)
+        )
+        window_cells = tuple(slice(a, b) for a, b in zip(self.window[::2], self.window[1::2], strict=True))
         field = r.reshape(self.p.shape)
-        field[inside] = net
-        if through is not None:
-            for c, part in enumerate(through):
-                lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(part, self.axes - 1 - c, 0)
+        field[window_cells] = net
+        if side_velocity is not None:
+            for c, component in enumerate(side_velocity):
+                lines, faces = np.moveaxis(field, self.axes - 1 - c, 0), np.moveaxis(component, self.axes - 1 - c, 0)
                 lines[:-1] += faces[:-1] - faces[1:]
-        for axis in range(self.axes):  # a body that a mirror cuts has cells beyond it
+        for axis in range(self.axes):  # a body cut by a mirror has cells beyond the mirror
             lines = np.moveaxis(field, axis, 0)
             lines[:PAD], lines[-PAD:] = 0, 0
-        r[self._part(multigrid.DINV) == 0] = 0
+        r[self._level_view(multigrid.DINV) == 0] = 0
         _, (a, b) = self._solve((limit, 10 * limit))
-        x, d, rest = (part.reshape(self.p.shape) for part in (self._x, self._d, self._part(multigrid.X)))
-        cells = (slice(PAD, -PAD),) * self.axes  # beyond them the multigrid leaves what it happens to
+        x, d, z = (slabs.reshape(self.p.shape) for slabs in (self._x, self._d, self._level_view(multigrid.X)))
+        cells = (slice(PAD, -PAD),) * self.axes  # the multigrid leaves undefined values beyond them
         x[:] = 0
         np.multiply(d[cells], a, out=x[cells])
-        x[cells] += b * rest[cells]
+        x[cells] += b * z[cells]
         self._seal(x)
         return x
 
-    def press(self, given: np.ndarray, dt: float, limit: float) -> np.ndarray:
-        """Give velocities on the faces of the window to the water, and what its pressure answers over a step.
+    def press(self, velocity_change: np.ndarray, dt: float, limit: float) -> np.ndarray:
+        """Add a velocity change on the faces of the window to the water, with the pressure of its response.
 
-        The sides stay as they are. Returns ``potential`` of what is given: the pressure times the step in cells.
+        The sides are not changed. Returns ``potential`` of the velocity change: the pressure times the step in cells.
 
         Args:
-            given: shape (axis, ...) [m/s].
+            velocity_change: shape (axis, ...) [m/s].
             dt: length of the step [s].
             limit: mean divergence that may be left [m/s per cell].
 
         Raises:
-            NotConverged: the pressure solver got stuck.
+            NotConverged: the pressure solver did not converge.
         """
-        x = self.potential(given, limit)
-        self._answer_with(given, dt)
+        x = self.potential(velocity_change, limit)
+        self._answer_with(velocity_change, dt)
         self.border.fill(self.velocity)
         return x
 
-    def _answer_with(self, given: np.ndarray, dt: float) -> None:
-        """Add what is given on the faces of the window to the velocity, and the last ``potential``, which answers it.
+    def _answer_with(self, velocity_change: np.ndarray, dt: float) -> None:
+        """Add a velocity change on the faces of the window, and the response of the water to it.
 
-        The sides are left as they are.
+        The response is the last ``potential``. The sides are not changed.
+
+        Args:
+            velocity_change: shape (axis, ...) [m/s].
+            dt: length of the step [s].
         """
-        solved, rest, one, none = self._x, self._part(multigrid.X), self.dtype(1), self.dtype(0)
-        self.velocity[:, *self.here] += given.astype(self.dtype)
+        solution, z, unity, zero = self._x, self._level_view(multigrid.X), self.dtype(1), self.dtype(0)
+        self.velocity[:, *self.here] += velocity_change.astype(self.dtype)
         velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
         gain = self.dtype(self.grid.cell / dt)
-        correct(velocity, p, solved, rest, one, none, passage, self._layout[0], self.inner, gain)
+        correct(velocity, p, solution, z, unity, zero, passage, self._layout[0], self.inner, gain)
         self._seal(self.p)
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
@@ -623,38 +746,55 @@ class Fluid:
         cells = x[(slice(PAD, -PAD),) * self.axes]
         return [np.moveaxis(cells, axis, 0)[end] for axis in reversed(range(self.axes)) for end in (0, -1)]
 
-    def answer(self, given: np.ndarray) -> list[np.ndarray]:
-        """Return the acceleration into the domain that ``potential``'s last answer induces on each side [m/s^2].
+    def answer(self, acceleration: np.ndarray) -> list[np.ndarray]:
+        """Return the acceleration into the domain that the last ``potential`` induces on each side [m/s^2].
 
-        Takes what ``potential`` took. Empty if the domain is bounded.
+        The list is empty if the domain is bounded.
+
+        Args:
+            acceleration: argument of that ``potential``.
         """
         if self.border.water is None:
             return []
-        sides = self.border.water.inward(self._gained(given), self.window, [])
+        sides = self.border.water.inward(self._gained(acceleration), self.window, [])
         moves = [float(edge.unbounded) for edge in self.border.edges]
         level = sum(float(s.sum()) for s in sides) / sum(m * s.size for m, s in zip(moves, sides, strict=True))
         return [s - m * level for m, s in zip(moves, sides, strict=True)]
 
-    def _gained(self, given: np.ndarray) -> np.ndarray:
-        """Return the acceleration of the water in ``potential``'s last answer, shape (axis, ...) [m/s^2]."""
-        here, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
+    def _gained(self, acceleration: np.ndarray) -> np.ndarray:
+        """Return the acceleration of the water by the last ``potential``, shape (axis, ...) [m/s^2].
+
+        Args:
+            acceleration: argument of that ``potential``, on the faces of the window.
+        """
+        slices, x, gained = self._here(self.window), self._x.reshape(self.p.shape), np.zeros_like(self.velocity)
         for c, work in enumerate(gained):
             axis = self.axes - 1 - c
             np.moveaxis(work, axis, 0)[1:] = -np.moveaxis(np.diff(x, axis=axis), axis, 0)
-            work[here] = given[c] + self.passage[c][here] * work[here]
+            work[slices] = acceleration[c] + self.passage[c][slices] * work[slices]
         return gained
 
     def _solve(self, limits: tuple[float, float]) -> tuple[poisson.Solve, tuple[float, float]]:
-        """Return how the solve went, and what the solution is made of; see ``poisson.solve``."""
+        """Solve the pressure equation for the right side of the finest level.
+
+        Args:
+            limits: mean and largest residual at which the iteration stops.
+
+        Returns:
+            statistics of the solve, and the factors of the two arrays of the solution; see ``poisson.solve``.
+
+        Raises:
+            NotConverged: the residual is above ``STUCK`` times its limit.
+        """
         *result, a, b = poisson.solve(
             self._x, self._d, self._q, self._store, self._layout, self._room, self._patches, self.inner,
             self.repeats, self._sums, *limits, self.least, MOST_CYCLES,
         )  # fmt: skip
-        went = poisson.Solve(*result)
-        if not (went.mean <= STUCK * limits[0] and went.largest <= STUCK * limits[1]):
+        solve = poisson.Solve(*result)
+        if not (solve.mean <= STUCK * limits[0] and solve.largest <= STUCK * limits[1]):
             raise NotConverged(
-                f"the pressure solver stopped after {went.cycles} cycles with a divergence of {went.mean:.2g} m/s per "
-                f"cell on the average and {went.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} are "
-                f"allowed; take a larger tolerance, or precision='double'."
+                f"the pressure solver stopped after {solve.cycles} cycles with a divergence of {solve.mean:.2g} m/s "
+                f"per cell on the average and {solve.largest:.2g} at most, where {limits[0]:.2g} and {limits[1]:.2g} "
+                f"are allowed; take a larger tolerance, or precision='double'."
             )
-        return went, (self.dtype(a), self.dtype(b))
+        return solve, (self.dtype(a), self.dtype(b))
