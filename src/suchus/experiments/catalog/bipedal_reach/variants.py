@@ -23,27 +23,27 @@ PARTS = {
 
 def heavier(robot: Robot, mass: float, torque: float) -> Robot:
     """Return the robot with another forebody, the pelvis taking the rest, and other pitch servos in the trunk."""
-    own = robot.thorax.mass + robot.head.mass
+    forebody_mass = robot.thorax.mass + robot.head.mass
     return with_values(
         robot,
         {
-            "thorax.mass": robot.thorax.mass * mass / own,
-            "head.mass": robot.head.mass * mass / own,
-            "pelvis.mass": max(robot.pelvis.mass + own - mass, 0.02),
+            "thorax.mass": robot.thorax.mass * mass / forebody_mass,
+            "head.mass": robot.head.mass * mass / forebody_mass,
+            "pelvis.mass": max(robot.pelvis.mass + forebody_mass - mass, 0.02),
             "spine.pitch_servo.torque": torque,
         },
     )
 
 
-def lengthened(robot: Robot, part: str, factor: float) -> Robot:
+def lengthened(robot: Robot, body_part: str, factor: float) -> Robot:
     """Return the robot with longer legs, a longer spine, or a longer head; masses stay."""
-    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[part]})
+    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[body_part]})
 
 
-def length(robot: Robot, part: str) -> float:
+def length(robot: Robot, body_part: str) -> float:
     """Return the length of a part, of the hind leg for the legs [m]."""
     leg = robot.hind_leg
-    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[part]
+    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[body_part]
 
 
 def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
@@ -52,17 +52,17 @@ def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
     return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
-def stand_soon(robot: Robot, ahead: float, balance: Balance | None, size: float) -> Standing | None:
+def stand_soon(robot: Robot, lead: float, balance: Balance | None, size: float) -> Standing | None:
     """Return a control that stands up at once and stays, or None for a robot that cannot take the postures.
 
     Args:
         robot: that stands up.
-        ahead: how far its feet are ahead of its centre of mass when it stands [m].
+        lead: how far its feet are ahead of its centre of mass when it stands [m].
         balance: by which it keeps its balance.
         size: of the robot of which it is a variant, over that of the article's [-].
     """
     try:
-        rise = stand_up(robot, lead=ahead, size=size)
+        rise = stand_up(robot, lead=lead, size=size)
         plan(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None

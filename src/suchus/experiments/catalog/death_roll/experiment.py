@@ -20,7 +20,7 @@ from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.sim.metrics import between, peak_torque, roll_rate, whole
 from suchus.sim.model import longest_step
 
-_NEARLY = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
+_STIFFNESS_TOLERANCE = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
 
@@ -94,13 +94,13 @@ class DeathRoll(Experiment):
 
     def on(self, robot: Robot) -> "DeathRoll":
         """Return the same question for another robot, in time steps that hold its joints as they hold those of now."""
-        asked = super(DeathRoll, self).on(robot)  # a class with slots has no short form
-        finer, longest = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
-        while finer * max(asked.timesteps) > _NEARLY * longest:
-            finer /= 2  # control periods stay whole numbers of steps
-        steps = tuple(finer * step for step in asked.timesteps)
-        timestep, coarse = finer * asked.timestep, finer * asked.coarse_timestep
-        return replace(asked, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
+        variant = super(DeathRoll, self).on(robot)  # a class with slots has no short form
+        step_factor, max_timestep = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
+        while step_factor * max(variant.timesteps) > _STIFFNESS_TOLERANCE * max_timestep:
+            step_factor /= 2  # control periods stay whole numbers of steps
+        steps = tuple(step_factor * step for step in variant.timesteps)
+        timestep, coarse = step_factor * variant.timestep, step_factor * variant.coarse_timestep
+        return replace(variant, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
 
     @property
     def _duration(self) -> float:
@@ -133,19 +133,19 @@ class DeathRoll(Experiment):
         self, rolls: Mapping[str, Gait], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
     ) -> xr.Dataset:
         """Simulate rolls, all of them in one medium after the other."""
-        runs = [self._afloat(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
+        runs = [self._floating_run(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
         record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
         return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
 
-    def _afloat(self, gait: Gait, arm: str, medium: str) -> Run:
-        afloat: Afloat = VACUUM if medium == "vacuum" else WATER
-        grows = OpenLoop(begin=0.0, ramp=gait.period)
-        return Run(robot=self.robot, gait=gait, control=grows, afloat=afloat, label=arm)
+    def _floating_run(self, gait: Gait, arm: str, medium: str) -> Run:
+        fluid: Afloat = VACUUM if medium == "vacuum" else WATER
+        control = OpenLoop(begin=0.0, ramp=gait.period)
+        return Run(robot=self.robot, gait=gait, control=control, afloat=fluid, label=arm)
 
     def _window(self, frequency: float) -> float:
         """Return where the measurement begins: whole cycles before the end, after the first cycle [s]."""
-        measured = int(frequency * self._duration + 1e-9) - 1
-        return self._duration - measured / frequency
+        measured_cycles = int(frequency * self._duration + 1e-9) - 1
+        return self._duration - measured_cycles / frequency
 
     def _rates(self, record: xr.Dataset, frequency: float) -> np.ndarray:
         return np.asarray(roll_rate(record, self._window(frequency)).values / (2 * pi))
@@ -154,21 +154,23 @@ class DeathRoll(Experiment):
         """Return the rate over phase, amplitude and frequency of the trunk's bends [Hz]."""
         phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
         bends = {f"bend {b}": self._roll(trunk=(b, b)) for b in self.bends}
-        speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
-        lagging = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
-        both = self._simulate(bends | speeds, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
-        by_medium = [both.isel(run=both.medium.values == medium) for medium in _MEDIA]
+        frequencies = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
+        phase_record = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
+        sweep_record = self._simulate(bends | frequencies, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
+        medium_records = [sweep_record.isel(run=sweep_record.medium.values == medium) for medium in _MEDIA]
         count = len(bends)
-        bent = [self._rates(part.isel(run=slice(0, count)), self.frequency) for part in by_medium]
-        fast = [
-            [self._rates(part.isel(run=[count + i]), f)[0] for i, f in enumerate(self.frequencies)]
-            for part in by_medium
+        bend_rates = [
+            self._rates(medium_record.isel(run=slice(0, count)), self.frequency) for medium_record in medium_records
+        ]
+        frequency_rates = [
+            [self._rates(medium_record.isel(run=[count + i]), f)[0] for i, f in enumerate(self.frequencies)]
+            for medium_record in medium_records
         ]
         data = xr.Dataset(
             {
-                "rate_by_phase": ("late", self._rates(lagging, self.frequency), {"units": "Hz"}),
-                "rate_by_bend": (("fluid", "bend"), np.array(bent), {"units": "Hz"}),
-                "rate_by_frequency": (("fluid", "frequency"), np.array(fast), {"units": "Hz"}),
+                "rate_by_phase": ("late", self._rates(phase_record, self.frequency), {"units": "Hz"}),
+                "rate_by_bend": (("fluid", "bend"), np.array(bend_rates), {"units": "Hz"}),
+                "rate_by_frequency": (("fluid", "frequency"), np.array(frequency_rates), {"units": "Hz"}),
             },
             coords={
                 "late": list(self.phases),
@@ -183,15 +185,15 @@ class DeathRoll(Experiment):
 
     def _steps(self, progress: Any) -> xr.Dataset:
         """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
-        left, rate, count = [], [], len(self.timesteps)
+        momenta, rates, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
-            rolled = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
-            left.append(float(abs(rolled.angular_momentum).max()))
-            rate.append(float(self._rates(rolled, self.frequency)[0]))
+            record = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
+            momenta.append(float(abs(record.angular_momentum).max()))
+            rates.append(float(self._rates(record, self.frequency)[0]))
         data = xr.Dataset(
             {
-                "momentum_by_timestep": ("timestep", left, {"units": "kg m2/s"}),
-                "rate_by_timestep": ("timestep", rate, {"units": "Hz"}),
+                "momentum_by_timestep": ("timestep", momenta, {"units": "kg m2/s"}),
+                "rate_by_timestep": ("timestep", rates, {"units": "Hz"}),
             },
             coords={"timestep": list(self.timesteps)},
         )
@@ -201,9 +203,9 @@ class DeathRoll(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return rate, power and loads of each roll, and what is left of the angular momentum."""
         start = self._window(self.frequency)
-        torque, measured = peak_torque(record, start), between(record, start)
-        power = (measured.servo_torque * measured.servo_velocity).clip(min=0.0).sum("servo").mean("time")
-        speed = abs(measured.servo_velocity).max("time")
+        torque, window = peak_torque(record, start), between(record, start)
+        power = (window.servo_torque * window.servo_velocity).clip(min=0.0).sum("servo").mean("time")
+        speed = abs(window.servo_velocity).max("time")
         measures = Measures()
         for medium in _MEDIA:
             for arm in _ARMS:
@@ -213,14 +215,16 @@ class DeathRoll(Experiment):
                     measures[f"power_{arm}_{medium}"] = Measure(float(power[run]), "W")
                 if arm == "c_shape":
                     for group, servos in servo_groups(self.robot).items():
-                        for what, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
-                            greatest = float(values.isel(run=run).sel(servo=list(servos)).max())
-                            measures[f"{what}_peak_{group}_{medium}"] = Measure(greatest, unit)
+                        for quantity, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
+                            max_load = float(values.isel(run=run).sel(servo=list(servos)).max())
+                            measures[f"{quantity}_peak_{group}_{medium}"] = Measure(max_load, unit)
         free = record.medium == "vacuum"
-        trunk, tail, both = (measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape"))
+        trunk_rate, tail_rate, c_shape_rate = (
+            measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape")
+        )
         return measures | {
-            "share_trunk": Measure(trunk / both, "-"),
-            "share_tail": Measure(tail / both, "-"),
+            "share_trunk": Measure(trunk_rate / c_shape_rate, "-"),
+            "share_tail": Measure(tail_rate / c_shape_rate, "-"),
             "momentum_left_vacuum": Measure(float(abs(record.angular_momentum.isel(run=free.values)).max()), "kg m2/s"),
             "momentum_exchanged_water": Measure(
                 float(abs(record.angular_momentum.isel(run=~free.values)).max()), "kg m2/s"
@@ -233,12 +237,13 @@ class DeathRoll(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
-        return self.told(measures, **{what: self._load(measures, what) for what in ("speed", "torque")})
+        return self.told(measures, **{quantity: self._load(measures, quantity) for quantity in ("speed", "torque")})
 
-    def _load(self, measures: Mapping[str, float], what: str) -> float:
+    def _load(self, measures: Mapping[str, float], quantity: str) -> float:
         """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
         return max(
-            measures[f"{what}_peak_{group}_{medium}"] / min(getattr(self.robot.servo(servo), what) for servo in servos)
+            measures[f"{quantity}_peak_{group}_{medium}"]
+            / min(getattr(self.robot.servo(servo), quantity) for servo in servos)
             for group, servos in servo_groups(self.robot).items()
             for medium in _MEDIA
         )
@@ -255,8 +260,8 @@ class DeathRoll(Experiment):
 
 def _drift(record: xr.Dataset) -> float:
     """Return how far the centre of mass moves at most [m]."""
-    moved = record.centre_of_mass - record.centre_of_mass.isel(time=0)
-    return float(((moved**2).sum("xyz") ** 0.5).max())
+    displacement = record.centre_of_mass - record.centre_of_mass.isel(time=0)
+    return float(((displacement**2).sum("xyz") ** 0.5).max())
 
 
 experiment = DeathRoll()
