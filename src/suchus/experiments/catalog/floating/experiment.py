@@ -105,67 +105,71 @@ class Floating(Experiment):
         return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
 
     def _drafts(self) -> xr.Dataset:
-        found = cases.drafts()
+        known_drafts = cases.drafts()
         return xr.Dataset(
             {
-                "body_draft": ("float", [cases.draft_of(one.body) for one in found], {"units": "m"}),
-                "exact_draft": ("float", [one.exact for one in found], {"units": "m"}),
+                "body_draft": ("float", [cases.draft_of(draft.body) for draft in known_drafts], {"units": "m"}),
+                "exact_draft": ("float", [draft.exact for draft in known_drafts], {"units": "m"}),
             },
-            coords={"float": [one.name for one in found]},
+            coords={"float": [draft.name for draft in known_drafts]},
         )
 
     def _heave(self) -> xr.Dataset:
-        added = (0.0, 0.6)
-        watched = [cases.heave(one, 0.005, self.periods, self.timestep) for one in added]
+        added_mass_ratios = (0.0, 0.6)
+        heaves = [cases.heave(ratio, 0.005, self.periods, self.timestep) for ratio in added_mass_ratios]
         return xr.Dataset(
             {
-                "heave_period": ("added_mass", [cases.period_of(one) for one, _ in watched], {"units": "s"}),
-                "exact_heave_period": ("added_mass", [exact for _, exact in watched], {"units": "s"}),
+                "heave_period": ("added_mass", [cases.period_of(motion) for motion, _ in heaves], {"units": "s"}),
+                "exact_heave_period": ("added_mass", [exact for _, exact in heaves], {"units": "s"}),
             },
-            coords={"added_mass": list(added)},
+            coords={"added_mass": list(added_mass_ratios)},
         )
 
     def _energy(self) -> xr.Dataset:
         names = ("implicitfast", "RK4")
-        watched = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
-        energy = np.array([one.energy.values for one in watched])
+        motions = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
+        energy = np.array([motion.energy.values for motion in motions])
         return xr.Dataset(
             {
                 "energy": (("integrator", "box_time"), energy, {"units": "J"}),
-                "gained": ("integrator", [cases.gained_energy(one) for one in watched], {"units": "1"}),
+                "gained": ("integrator", [cases.gained_energy(motion) for motion in motions], {"units": "1"}),
             },
-            coords={"integrator": list(names), "box_time": ("box_time", watched[0].time.values, {"units": "s"})},
+            coords={"integrator": list(names), "box_time": ("box_time", motions[0].time.values, {"units": "s"})},
         )
 
     def _drift(self) -> xr.Dataset:
-        found = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
-        return xr.Dataset({"drift": ("integrator", found[::-1], {"units": "1"})})
+        drifts = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
+        return xr.Dataset({"drift": ("integrator", drifts[::-1], {"units": "1"})})
 
     def _volumes(self) -> xr.Dataset:
-        found = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
+        errors = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
         return xr.Dataset(
-            {"volume_off": (("piece", "pose"), np.array(list(found.values())), {"units": "1"})},
-            coords={"piece": list(found)},
+            {"volume_off": (("piece", "pose"), np.array(list(errors.values())), {"units": "1"})},
+            coords={"piece": list(errors)},
         )
 
     @staticmethod
     def _table() -> xr.Dataset:
-        found = cases.public_table()
+        table = cases.public_table()
         units = {"neutral": "m/s2", "ballast": "N", "keel": "rad/s2"}
-        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in found.items()})
+        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in table.items()})
 
     def _levers(self) -> xr.Dataset:
-        both = [
-            hydrostatics(one, self._posture(one), heels=self.angles)
-            for one in (self.robot, with_values(self.robot, {"hull": None}))
+        hydrostatic_results = [
+            hydrostatics(robot, self._posture(robot), heels=self.angles)
+            for robot in (self.robot, with_values(self.robot, {"hull": None}))
         ]
-        found = xr.Dataset(
-            {"lever": (("hull", "heel"), np.array([one.lever for one in both]), {"units": "m"})},
-            coords={"hull": ["floating", "bare"], "heel": ("heel", both[0].heel, {"units": "rad"})},
+        levers = xr.Dataset(
+            {"lever": (("hull", "heel"), np.array([statics.lever for statics in hydrostatic_results]), {"units": "m"})},
+            coords={"hull": ["floating", "bare"], "heel": ("heel", hydrostatic_results[0].heel, {"units": "rad"})},
         )
         for name, unit in _STATICS.items():
-            found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
-        return found
+            levers[f"static_{name}"] = (
+                "hull",
+                np.array([float(getattr(statics, name)) for statics in hydrostatic_results]),
+                {"units": unit},
+            )
+        return levers
 
     @staticmethod
     def _posture(robot: Robot) -> np.ndarray:
@@ -197,13 +201,13 @@ class Floating(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far off the exact answers are, and how the robot floats."""
         heave = np.abs(record.heave_period / record.exact_heave_period - 1)
-        rest = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
+        rest_interval = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
         roll = rotation.heel(record.orientation.values)
-        last = np.abs(roll[-1, -rest.sizes["time"] :])
-        upright = np.abs(roll[-1]) < _UPRIGHT
-        since = int(np.flatnonzero(~upright)[-1]) + 1 if not upright.all() else 0
-        righted = float(record.time[since]) if since < len(upright) else float("nan")
-        afloat, bare = record.sel(hull="floating"), record.sel(hull="bare")
+        final_roll = np.abs(roll[-1, -rest_interval.sizes["time"] :])
+        is_upright = np.abs(roll[-1]) < _UPRIGHT
+        first_upright = int(np.flatnonzero(~is_upright)[-1]) + 1 if not is_upright.all() else 0
+        righting_time = float(record.time[first_upright]) if first_upright < len(is_upright) else float("nan")
+        hull_record, bare_record = record.sel(hull="floating"), record.sel(hull="bare")
         return Measures(
             {
                 "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
@@ -216,15 +220,15 @@ class Floating(Experiment):
                 "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
                 "force_of_ballast": Measure(float(record.table_ballast), "N"),
                 "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
-                "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
-                "roll_at_rest": Measure(float(last.mean()), "rad"),
-                "righting_time": Measure(righted, "s"),
+                "share_above": Measure(float(1.0 - rest_interval.share_under.isel(run=0).mean()), "-"),
+                "roll_at_rest": Measure(float(final_roll.mean()), "rad"),
+                "righting_time": Measure(righting_time, "s"),
             },
             {
-                f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
-                for kind, one in (("floating", afloat), ("bare", bare))
+                f"{name}_{kind}": Measure(float(statics[f"static_{name}"]), unit)
+                for kind, statics in (("floating", hull_record), ("bare", bare_record))
                 for name, unit in _STATICS.items()
-                if np.isfinite(float(one[f"static_{name}"]))
+                if np.isfinite(float(statics[f"static_{name}"]))
             },
         )
 
@@ -257,8 +261,8 @@ def draw_righting(record: xr.Dataset) -> Figure:
         }
         if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # it has none
             hulls = {"floating": ("-", "coordinated", "")}
-        for hull, (dashes, colour, which) in hulls.items():
-            label = which + ("at the surface" if floats[hull] else "sunk")
+        for hull, (dashes, colour, hull_text) in hulls.items():
+            label = hull_text + ("at the surface" if floats[hull] else "sunk")
             ax.plot(heel, 1e3 * record.lever.sel(hull=hull), color=COLOURS[colour], linestyle=dashes, label=label)
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="heel [deg]", ylabel="righting lever GZ [mm]", xlim=(0, 180), xticks=range(0, 181, 30))
@@ -290,12 +294,14 @@ def draw_checks(record: xr.Dataset) -> Figure:
         ax = axes[0, 0]
         kinds = [str(name).split()[0] for name in record["float"].values]
         for kind, marker, colour in (("sphere", "o", 0), ("cylinder", "s", 1), ("box", "^", 2)):
-            mine = [i for i, one in enumerate(kinds) if one == kind]
-            exact, found = 1e3 * record.exact_draft[mine], 1e3 * record.body_draft[mine]
-            ax.plot(exact, found, marker, markersize=9, color=_SHADES[colour], label=kind)
-        most = 1.1e3 * float(record.exact_draft.max())
-        ax.plot([0, most], [0, most], color=COLOURS["neutral"], linewidth=0.9, zorder=0)
-        ax.set(xlabel="exact draft [mm]", ylabel="draft in the physics step [mm]", xlim=(0, most), ylim=(0, most))
+            indices = [i for i, body_kind in enumerate(kinds) if body_kind == kind]
+            exact, computed = 1e3 * record.exact_draft[indices], 1e3 * record.body_draft[indices]
+            ax.plot(exact, computed, marker, markersize=9, color=_SHADES[colour], label=kind)
+        max_draft = 1.1e3 * float(record.exact_draft.max())
+        ax.plot([0, max_draft], [0, max_draft], color=COLOURS["neutral"], linewidth=0.9, zorder=0)
+        ax.set(
+            xlabel="exact draft [mm]", ylabel="draft in the physics step [mm]", xlim=(0, max_draft), ylim=(0, max_draft)
+        )
         ax.legend(loc="upper left")
         ax = axes[0, 1]
         for i, name in enumerate(record.integrator.values):

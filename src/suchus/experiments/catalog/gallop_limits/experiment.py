@@ -37,7 +37,7 @@ from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
 
 _RUN_UP = 1.0  # [s]; before anything is measured
-_HASTE = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach
+_FAST_PERIOD = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +63,7 @@ class GallopLimits(Experiment):
     trots: tuple[Searched, ...] = TROTS
     """Trots, found by the same search with the same servos, so that a bound is not compared with a lesser effort."""
     walks: tuple[Gait, ...] = field(
-        default_factory=lambda: tuple(replace(GAITS[name], period=_HASTE) for name in ("semi_erect", "high_walk"))
+        default_factory=lambda: tuple(replace(GAITS[name], period=_FAST_PERIOD) for name in ("semi_erect", "high_walk"))
     )
     """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
@@ -102,11 +102,13 @@ class GallopLimits(Experiment):
 
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Bound, trot and walk with every servo on the map."""
-        searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
+        searched = [("bound", candidate) for candidate in self.bounds] + [
+            ("trot", candidate) for candidate in self.trots
+        ]
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
-        gaits: list[Gait] = [*(one.gait for _, one in searched), *self.walks]
+        gaits: list[Gait] = [*(candidate.gait for _, candidate in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
-        robots = [self._with(torque, speed) for torque, speed in cells]
+        robots = [self._robot_with_servos(torque, speed) for torque, speed in cells]
         designed = [Run(robot=robot, gait=gait, label=gait.name) for robot in robots for gait in gaits]
         runs = self.tolerances.repeats(designed, self.repeats)
         duration = round(START + _RUN_UP + self.seconds, 2)
@@ -114,21 +116,21 @@ class GallopLimits(Experiment):
             runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
         )
         shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
-        part = between(record, START + _RUN_UP)
-        fast = abs(part.servo_velocity.isel(servo=self._legs)).quantile(0.99, "time").max("servo")
+        window = between(record, START + _RUN_UP)
+        joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
         values = {
             "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
             "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
-            "joint_speed": (fast, "rad/s", "99th percentile of the fastest leg joint"),
+            "joint_speed": (joint_speed, "rad/s", "99th percentile of the fastest leg joint"),
         }
         data = xr.Dataset(
             {
                 name: (
                     ("torque", "servo_speed", "gait"),
                     np.median(array.values.reshape(shape), axis=-1),
-                    {"units": unit, "long_name": what},
+                    {"units": unit, "long_name": long_name},
                 )
-                for name, (array, unit, what) in values.items()
+                for name, (array, unit, long_name) in values.items()
             }
             | {
                 "built_speed": (
@@ -143,27 +145,29 @@ class GallopLimits(Experiment):
                 "gait": [f"{gait.name} {gait.period:g} s" for gait in gaits],
                 "kind": ("gait", kinds),
             },
-            attrs={"own_torque": self._own.torque, "own_speed": self._own.speed},
+            attrs={"own_torque": self._leg_servo.torque, "own_speed": self._leg_servo.speed},
         )
         return Simulated(record=data, replays=self._replays(record, cells, data))
 
     @property
-    def _own(self) -> Servo:
+    def _leg_servo(self) -> Servo:
         """The servo of the legs as designed."""
         return self.robot.hind_leg.servo
 
     @property
-    def _legs(self) -> list[int]:
+    def _leg_servo_indices(self) -> list[int]:
         """Places of the legs' servos."""
-        place = layout(self.robot)
-        return [index for limb in place.limbs for index in range(*limb.servos.indices(len(place.servos)))]
+        body_layout = layout(self.robot)
+        return [index for limb in body_layout.limbs for index in range(*limb.servos.indices(len(body_layout.servos)))]
 
-    def _with(self, torque: float, speed: float) -> Robot:
+    def _robot_with_servos(self, torque: float, speed: float) -> Robot:
         """Return the robot with other servos, each with a torque-speed line."""
-        legs = {layout(self.robot).servos[index] for index in self._legs}
+        leg_servos = {layout(self.robot).servos[index] for index in self._leg_servo_indices}
 
         def over_legs(name: str) -> float:
-            return 1.0 if name in legs else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
+            return (
+                1.0 if name in leg_servos else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
+            )
 
         return with_named_servos(
             self.robot,
@@ -178,33 +182,36 @@ class GallopLimits(Experiment):
     ) -> Mapping[str, Replay]:
         """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
         bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
-        best = int(np.argmax(bound.max(1)))
-        nearest = min(
+        best_cell = int(np.argmax(bound.max(1)))
+        nearest_cell = min(
             range(len(cells)),
             key=lambda i: (
-                abs(cells[i][0] - self._own.torque) / self._own.torque
-                + abs(cells[i][1] - self._own.speed) / self._own.speed
+                abs(cells[i][0] - self._leg_servo.torque) / self._leg_servo.torque
+                + abs(cells[i][1] - self._leg_servo.speed) / self._leg_servo.speed
             ),
         )
-        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, nearest)]
-        runs = [(i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats for i in (best, nearest)]
+        servo_texts = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best_cell, nearest_cell)]
+        runs = [
+            (i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats
+            for i in (best_cell, nearest_cell)
+        ]
         return replayed(
             "gallop_replay.html",
             record.isel(run=runs[0]),
             self.robot,
             ghost=record.isel(run=runs[1]),
-            labels=tuple(said),
+            labels=tuple(servo_texts),
             title="Could it gallop?",
-            caption=f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}.",
+            caption=f"Bounds with servos of {servo_texts[0]}, and, half transparent, of {servo_texts[1]}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
         bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
-        own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
-        own_bound, own_walk = (kind.sel(own, method="nearest") for kind in (bound, walks))
+        design_servo = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
+        own_bound, own_walk = (kind.sel(design_servo, method="nearest") for kind in (bound, walks))
         gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
-        pays = gallops.sel(torque=own["torque"], method="nearest")
+        pays = gallops.sel(torque=design_servo["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
         return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
             {
@@ -217,8 +224,8 @@ class GallopLimits(Experiment):
                 "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
                 "torque_best": Measure(float(best.torque), "N m"),
                 "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
-                "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
-                "torque_own": Measure(own["torque"], "N m"),
+                "servo_speed_own": Measure(design_servo["servo_speed"], "rad/s"),
+                "torque_own": Measure(design_servo["torque"], "N m"),
                 "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
                 "gallops_share": Measure(float(gallops.mean()), "-"),
             }
@@ -252,17 +259,20 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
         record: of the experiment.
         kinds: ``bound``, ``trot`` or ``walk``.
     """
-    chosen = record.isel(gait=np.isin(record.kind.values, kinds))
-    best = chosen.isel(gait=chosen.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
-    cells, (strong, fast) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
-    taken = [
+    candidates = record.isel(gait=np.isin(record.kind.values, kinds))
+    best = candidates.isel(gait=candidates.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
+    cells, (torque_count, speed_count) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
+    best_cells = [
         cells[: i + 1, : j + 1].ravel()[np.argmax(best.speed.values[: i + 1, : j + 1])]
-        for i in range(strong)
-        for j in range(fast)
+        for i in range(torque_count)
+        for j in range(speed_count)
     ]
     return best.assign(
         {
-            name: (best[name].dims, best[name].values.reshape(strong * fast, -1)[taken].reshape(best[name].shape))
+            name: (
+                best[name].dims,
+                best[name].values.reshape(torque_count * speed_count, -1)[best_cells].reshape(best[name].shape),
+            )
             for name in ("speed", "built_speed", "flight", "joint_speed")
         }
     )
@@ -270,17 +280,17 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
 
 def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
     """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
-    from_here = np.flip(np.logical_and.accumulate(np.flip(pays)))
-    return float(speeds[from_here][0]) if from_here.any() else float("inf")
+    all_faster_pay = np.flip(np.logical_and.accumulate(np.flip(pays)))
+    return float(speeds[all_faster_pay][0]) if all_faster_pay.any() else float("inf")
 
 
-def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figure:
+def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own_speed: float) -> Figure:
     """Draw speed [m/s] and share of flight of a bound over the servos' no-load speed [rad/s].
 
     Args:
         bound: the fastest bound, with ``speed`` and ``flight`` (torque, servo_speed).
         walk: the fastest trot or walk, the same.
-        own: no-load speed of the robot's own servos [rad/s].
+        own_speed: no-load speed of the robot's own servos [rad/s].
     """
     shades = matplotlib.colormaps["viridis"](np.linspace(0.8, 0.1, bound.sizes["torque"]))
     with styled():
@@ -296,7 +306,7 @@ def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figur
             ax.set_xscale("log")
             ax.set_xticks(bound.servo_speed.values, [f"{speed:g}" for speed in bound.servo_speed.values])
             ax.minorticks_off()
-            ax.axvline(own, color=COLOURS["neutral"], linewidth=1.0)
+            ax.axvline(own_speed, color=COLOURS["neutral"], linewidth=1.0)
             ax.set_xlabel("no-load speed of the servos [rad/s]")
         axes[0, 0].plot([], [], color="#333333", linestyle=(0, (4, 2)), label="fastest trot or walk")
         axes[0, 0].set_ylabel("speed forward [m/s]")
