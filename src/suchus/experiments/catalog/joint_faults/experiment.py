@@ -56,13 +56,14 @@ from suchus.sim.metrics import (
     whole,
 )
 
-_OF_SUPPORT = ("support_share_", "tail_load_", "foot_", "com_")
+_SUPPORT_PREFIXES = ("support_share_", "tail_load_", "foot_", "com_")
 """How the names of the measures begin that are of what carries the body."""
-_OF_A_LIMB = 2  # hinges of a limb, from the hip on, that are steered and locked in places; the article's yaw and pitch
+_HINGES_PER_LIMB = 2
+"""Hinges of a limb, from the hip on, that are steered and locked in places; the article's yaw and pitch."""
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
 _CELL = ("joint", "kind", "legs")
-_EVERY = 10  # samples of the physics in which a run of the campaign is kept [-]
+_SAMPLING_STRIDE = 10  # samples of the physics in which a run of the campaign is kept [-]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,40 +127,40 @@ class JointFaults(TwoGroups):
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Break joints."""
         record = self._campaign(staged(progress, "campaign", 0.0, 0.75))
-        record = record.merge(self._locked_at(staged(progress, "places of locking", 0.75, 0.82)))
+        record = record.merge(self._locking_record(staged(progress, "places of locking", 0.75, 0.82)))
         record = record.merge(self._support(staged(progress, "support", 0.82, 0.9)))
-        record = record.merge(self._others(staged(progress, "steered, and with the tail lifted", 0.9, 0.98)))
+        record = record.merge(self._comparison_record(staged(progress, "steered, and with the tail lifted", 0.9, 0.98)))
         record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
         replays = self._replays(staged(progress, "replay", 0.98, 1.0))
         return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
         """Return measures, those that are wanted at least; for what carries the body nothing else need fail."""
-        if not all(name.startswith(_OF_SUPPORT) for name in wanted):
+        if not all(name.startswith(_SUPPORT_PREFIXES) for name in wanted):
             return super(JointFaults, self).measured(wanted, progress)
         return _support_measures(self._support(progress))
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return what every cell costs against both intact robots, and what carries the body."""
         reading = f"{record.attrs['judged_kind']}_{record.attrs['judged_legs']}"
-        ours = record.intact_forward.sel(arm="coordinated", drop=True)
+        intact = record.intact_forward.sel(arm="coordinated", drop=True)
         measures = Measures()
         for arm in ARMS:
             measures |= estimated(f"forward_{arm}", record.intact_forward.sel(arm=arm), "m")
-        bare = lost(record.intact_forward.sel(arm="limbs_only"), ours)
-        measures |= estimated("loss_intact_limbs_only", bare, "-") | _cells(record)
+        limbs_only_loss = lost(record.intact_forward.sel(arm="limbs_only"), intact)
+        measures |= estimated("loss_intact_limbs_only", limbs_only_loss, "-") | _cells(record)
         if "lifted_forward" in record:
             measures |= estimated("forward_limbs_tail_lifted", record.lifted_intact_forward, "m")
-            measures |= estimated("loss_intact_limbs_tail_lifted", lost(record.lifted_intact_forward, ours), "-")
+            measures |= estimated("loss_intact_limbs_tail_lifted", lost(record.lifted_intact_forward, intact), "-")
         for joint in record.lost.values:
             name = f"loss_{joint}_{reading}"
             if "steered_forward" in record:
-                measures |= estimated(f"{name}_steered", lost(record.steered_forward, ours).sel(lost=joint), "-")
-                turned = record.steered_turn.sel(lost=joint)
-                measures |= estimated(f"turn_{joint}_{reading}_steered", turned, "rad")
+                measures |= estimated(f"{name}_steered", lost(record.steered_forward, intact).sel(lost=joint), "-")
+                heading_changes = record.steered_turn.sel(lost=joint)
+                measures |= estimated(f"turn_{joint}_{reading}_steered", heading_changes, "rad")
             if "lifted_forward" in record:
-                lifted = lost(record.lifted_forward, ours).sel(lost=joint)
-                measures |= estimated(f"{name}_limbs_tail_lifted", lifted, "-")
+                lifted_loss = lost(record.lifted_forward, intact).sel(lost=joint)
+                measures |= estimated(f"{name}_limbs_tail_lifted", lifted_loss, "-")
         return measures | _effects(record) | _support_measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -184,18 +185,18 @@ class JointFaults(TwoGroups):
     @property
     def _failing(self) -> tuple[str, ...]:
         """The joints whose loss is steered and locked in several places."""
-        return self._joints[: _OF_A_LIMB * len(self.robot.girdles)]
+        return self._joints[: _HINGES_PER_LIMB * len(self.robot.girdles)]
 
     @property
     def _gaits(self) -> dict[str, Gait]:
         """The gaits of both groups, and of limbs only with the tail in the air where it can be lifted."""
-        bare = self.control_group
-        gaits = {"coordinated": self.gait, "limbs_only": bare}
-        if "limbs_tail_lifted" in conditions_of(self.robot, self.gait, bare):
-            gaits["limbs_tail_lifted"] = bare.lifted(self.lifted, name="limbs_tail_lifted")
+        limbs_only = self.control_group
+        gaits = {"coordinated": self.gait, "limbs_only": limbs_only}
+        if "limbs_tail_lifted" in conditions_of(self.robot, self.gait, limbs_only):
+            gaits["limbs_tail_lifted"] = limbs_only.lifted(self.lifted, name="limbs_tail_lifted")
         return gaits
 
-    def _broken(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
+    def _faults_of(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
         """Return the faults of a joint in the judged reading."""
         return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
@@ -207,7 +208,9 @@ class JointFaults(TwoGroups):
         """Return the repeats of runs, run by run."""
         repeated = self._built(runs)
         return whole(
-            simulate(repeated, duration=self._duration, timestep=self.timestep, every=_EVERY, progress=progress)
+            simulate(
+                repeated, duration=self._duration, timestep=self.timestep, every=_SAMPLING_STRIDE, progress=progress
+            )
         )
 
     def _campaign(self, progress: Any) -> xr.Dataset:
@@ -220,7 +223,7 @@ class JointFaults(TwoGroups):
         ]
         record = self._repeats_of(runs, progress)
         net = (displacement(record).sel(xyz=["x", "y"]) ** 2).sum("xyz") ** 0.5
-        numbers = {
+        quantities = {
             "forward": (displacement(record).sel(xyz="x"), "m", "displacement forward"),
             "net": (net, "m", "displacement on the ground"),
             "path": (path_length(record), "m", "path length, cycle by cycle"),
@@ -231,14 +234,14 @@ class JointFaults(TwoGroups):
         shape = (len(ARMS), 1 + len(cells), self.repeats)
         data = xr.Dataset(coords={"arm": list(ARMS), "time": distance.time.values, "on_ground": ["x", "y"]})
         data = data.assign_coords(joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED))
-        for name, (array, unit, what) in numbers.items():
-            lay(data, name, array.values.reshape(shape), (), unit, what)
+        for name, (array, unit, long_name) in quantities.items():
+            lay(data, name, array.values.reshape(shape), (), unit, long_name)
         lay(data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass")
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
         return data
 
-    def _locked_at(self, progress: Any) -> xr.Dataset:
+    def _locking_record(self, progress: Any) -> xr.Dataset:
         """Lock one leg's joint at several places of its range, undisturbed."""
         gaits, points = self._gaits, list(product(ARMS, self._failing, self.holds))
         runs = [Run(robot=self.robot, gait=gaits[arm]) for arm in ARMS]
@@ -246,14 +249,16 @@ class JointFaults(TwoGroups):
             Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
             for a, j, h in points
         ]
-        record = simulate(runs, duration=self._duration, timestep=self.timestep, every=_EVERY, progress=progress)
+        record = simulate(
+            runs, duration=self._duration, timestep=self.timestep, every=_SAMPLING_STRIDE, progress=progress
+        )
         distance = displacement(whole(record)).sel(xyz="x").values
-        held = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing), len(self.holds))
+        locked_distances = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing), len(self.holds))
         metre = {"units": "m"}
         data = xr.Dataset(
             {
                 "held_intact_forward": ("arm", distance[: len(ARMS)], metre),
-                "held_forward": (("arm", "lost", "hold"), held, metre),
+                "held_forward": (("arm", "lost", "hold"), locked_distances, metre),
             }
         )
         return data.assign_coords(arm=list(ARMS), lost=list(self._failing), hold=list(self.holds))
@@ -289,30 +294,37 @@ class JointFaults(TwoGroups):
             caption="With the right hind pitch joint limp from the start, and, half transparent, intact.",
         )
 
-    def _others(self, progress: Any) -> xr.Dataset:
+    def _comparison_record(self, progress: Any) -> xr.Dataset:
         """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
         joints, gaits, steers = self._failing, self._gaits, self.gait.has("steering")
         cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
         if steers:
             control = Coordinated(heading=HeadingRule()).suited(self.robot, self.gait)
-            cases += [(self.gait, self._broken(self.gait, joint), control) for joint in joints]
-        if lifted := gaits.get("limbs_tail_lifted"):
-            cases += [(lifted, (), OpenLoop()), *((lifted, self._broken(lifted, j), OpenLoop()) for j in joints)]
+            cases += [(self.gait, self._faults_of(self.gait, joint), control) for joint in joints]
+        if lifted_gait := gaits.get("limbs_tail_lifted"):
+            cases += [
+                (lifted_gait, (), OpenLoop()),
+                *((lifted_gait, self._faults_of(lifted_gait, j), OpenLoop()) for j in joints),
+            ]
         data = xr.Dataset(coords={"lost": list(joints)})
         if not cases:
             return data
         runs = [Run(robot=self.robot, gait=gait, faults=faults, control=law) for gait, faults, law in cases]
         record = self._repeats_of(runs, progress)
         distance = displacement(record).sel(xyz="x").values.reshape(len(cases), self.repeats)
-        turned = heading_change(record).values.reshape(len(cases), self.repeats)
-        both, metre, many = ("lost", "repeat"), {"units": "m"}, len(joints)
+        heading_changes = heading_change(record).values.reshape(len(cases), self.repeats)
+        dims, metre, joint_count = ("lost", "repeat"), {"units": "m"}, len(joints)
         if steers:
-            data["steered_forward"] = (both, distance[:many], metre | {"long_name": "forward, steered"})
-            data["steered_turn"] = (both, turned[:many], {"units": "rad", "long_name": "turned, steered"})
-        if lifted:
-            intact, broken = distance[-many - 1], distance[-many:]
+            data["steered_forward"] = (dims, distance[:joint_count], metre | {"long_name": "forward, steered"})
+            data["steered_turn"] = (
+                dims,
+                heading_changes[:joint_count],
+                {"units": "rad", "long_name": "turned, steered"},
+            )
+        if lifted_gait:
+            intact, failed = distance[-joint_count - 1], distance[-joint_count:]
             data["lifted_intact_forward"] = ("repeat", intact, metre | {"long_name": "tail lifted, intact"})
-            data["lifted_forward"] = (both, broken, metre | {"long_name": "forward, tail lifted"})
+            data["lifted_forward"] = (dims, failed, metre | {"long_name": "forward, tail lifted"})
         return data
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -327,12 +339,14 @@ class JointFaults(TwoGroups):
         }
 
 
-def lay(data: xr.Dataset, name: str, values: np.ndarray, more: tuple[str, ...], unit: str, what: str) -> None:
+def lay(
+    data: xr.Dataset, name: str, values: np.ndarray, extra_dims: tuple[str, ...], unit: str, long_name: str
+) -> None:
     """Put values of shape (arm, 1 + cell, repeat, ...) into a dataset: the intact apart from the cells."""
-    about = {"units": unit, "long_name": what}
-    data[f"intact_{name}"] = (("arm", "repeat", *more), values[:, 0], about)
+    attrs = {"units": unit, "long_name": long_name}
+    data[f"intact_{name}"] = (("arm", "repeat", *extra_dims), values[:, 0], attrs)
     shape = (len(values), data.sizes["joint"], len(KINDS), len(LEGS_FAILED), *values.shape[2:])
-    data[name] = (("arm", *_CELL, "repeat", *more), values[:, 1:].reshape(shape), about)
+    data[name] = (("arm", *_CELL, "repeat", *extra_dims), values[:, 1:].reshape(shape), attrs)
 
 
 def support(record: xr.Dataset, repeats: int) -> xr.Dataset:
@@ -344,23 +358,23 @@ def support(record: xr.Dataset, repeats: int) -> xr.Dataset:
     """
     leg, states = str(record.leg.values[-1]), ["intact", *KINDS]
     loads = swing_loads(record, leg).transpose("run", "part")
-    shape, both, metre = (len(states), repeats), ("state", "repeat"), {"units": "m"}
-    free = {"units": "1", "long_name": f"share of its swing in which the {leg} foot is free"}
+    shape, dims, metre = (len(states), repeats), ("state", "repeat"), {"units": "m"}
+    free_attrs = {"units": "1", "long_name": f"share of its swing in which the {leg} foot is free"}
     return xr.Dataset(
         {
             "support": (
-                (*both, "part"),
+                (*dims, "part"),
                 loads.values.reshape(*shape, -1),
                 {"units": "N", "long_name": f"mean load while {leg} swings"},
             ),
             "lifted": (
-                both,
+                dims,
                 swing_lift(record, leg).values.reshape(shape),
                 metre | {"long_name": f"rise of the {leg} foot"},
             ),
-            "free": (both, swing_unloaded(record, leg).values.reshape(shape), free),
+            "free": (dims, swing_unloaded(record, leg).values.reshape(shape), free_attrs),
             "swing_height": (
-                both,
+                dims,
                 swing_height(record, leg).values.reshape(shape),
                 metre | {"long_name": f"centre of mass while {leg} swings"},
             ),
@@ -380,18 +394,18 @@ def _cells(record: xr.Dataset) -> Measures:
     ``gain`` is how much less of its own displacement the robot loses with spine and tail than with limbs only, repeat
     by repeat; of one that loses all, or goes backwards, nothing is left.
     """
-    common = lost(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
-    own = lost(record.forward, record.intact_forward)
-    kept = own.clip(min=-1.0)
-    gain = kept.sel(arm="coordinated") - kept.sel(arm="limbs_only")
+    common_change = lost(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
+    own_change = lost(record.forward, record.intact_forward)
+    bounded_change = own_change.clip(min=-1.0)
+    gain = bounded_change.sel(arm="coordinated") - bounded_change.sel(arm="limbs_only")
     measures = Measures()
     for cell in product(record.joint.values, KINDS, LEGS_FAILED):
-        at, name = dict(zip(_CELL, cell, strict=True)), "_".join(cell)
+        indexers, name = dict(zip(_CELL, cell, strict=True)), "_".join(cell)
         for arm in ARMS:
-            measures |= estimated(f"loss_{name}_{arm}", common.sel(at).sel(arm=arm), "-")
-            measures |= estimated(f"turn_{name}_{arm}", record.turn.sel(at).sel(arm=arm), "rad")
-        measures |= estimated(f"own_loss_{name}_limbs_only", own.sel(at).sel(arm="limbs_only"), "-")
-        measures |= estimated(f"gain_{name}", gain.sel(at), "-")
+            measures |= estimated(f"loss_{name}_{arm}", common_change.sel(indexers).sel(arm=arm), "-")
+            measures |= estimated(f"turn_{name}_{arm}", record.turn.sel(indexers).sel(arm=arm), "rad")
+        measures |= estimated(f"own_loss_{name}_limbs_only", own_change.sel(indexers).sel(arm="limbs_only"), "-")
+        measures |= estimated(f"gain_{name}", gain.sel(indexers), "-")
     return measures
 
 
@@ -402,21 +416,21 @@ def _effects(record: xr.Dataset) -> Measures:
     effects = Measures()
     for dim in ("kind", "joint", "legs"):
         pairs = combinations(change[dim].values, 2)
-        apart = [float(abs(change.sel({dim: a}) - change.sel({dim: b})).mean()) for a, b in pairs]
-        effects[f"effect_of_{dim}"] = Measure(float(np.mean(apart)), "-")
+        differences = [float(abs(change.sel({dim: a}) - change.sel({dim: b})).mean()) for a, b in pairs]
+        effects[f"effect_of_{dim}"] = Measure(float(np.mean(differences)), "-")
     return effects
 
 
 def _support_measures(record: xr.Dataset) -> Measures:
     """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
     measures = Measures()
-    height, parts = record.swing_height, [str(part) for part in record.part.values]
-    legs = [part for part in parts if part not in ("tail", "belly")]
+    height, parts = record.swing_height, [str(body_part) for body_part in record.part.values]
+    legs = [body_part for body_part in parts if body_part not in ("tail", "belly")]
     carriers = ["tail", *([legs[-3]] if len(legs) > 2 else []), legs[-2]]  # beside the last leg and ahead of it
-    for state in (str(one) for one in record.state.values):
+    for state in (str(label) for label in record.state.values):
         load = record.support.sel(state=state)
-        share = load.sel(part=carriers).sum("part") / load.sum("part")
-        measures |= estimated(f"support_share_{state}", share, "-")
+        load_fraction = load.sel(part=carriers).sum("part") / load.sum("part")
+        measures |= estimated(f"support_share_{state}", load_fraction, "-")
         measures |= estimated(f"tail_load_{state}", load.sel(part="tail"), "N")
         measures |= estimated(f"foot_lift_{state}", record.lifted.sel(state=state), "m")
         measures |= estimated(f"foot_free_{state}", record.free.sel(state=state), "-")
@@ -428,28 +442,28 @@ def _support_measures(record: xr.Dataset) -> Measures:
 
 def table(record: xr.Dataset) -> str:
     """Return one row per cell and group: medians over the repeats, with the ranges that a paper needs."""
-    ours = record.sel(arm="coordinated", drop=True)
+    coordinated = record.sel(arm="coordinated", drop=True)
     rows = [
         "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
         "turn_deg,printed_change"
     ]
     for *cell, arm in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
-        one = record.sel(dict(zip((*_CELL, "arm"), (*cell, arm), strict=True)))
-        change = lost(one.forward, ours.intact_forward)
+        cell_record = record.sel(dict(zip((*_CELL, "arm"), (*cell, arm), strict=True)))
+        change = lost(cell_record.forward, coordinated.intact_forward)
         numbers = (
-            one.forward.median(),
+            cell_record.forward.median(),
             change.median(),
             change.min(),
             change.max(),
-            lost(one.forward, one.intact_forward).median(),
-            lost(one.net, ours.intact_net).median(),
-            lost(one.path, ours.intact_path).median(),
+            lost(cell_record.forward, cell_record.intact_forward).median(),
+            lost(cell_record.net, coordinated.intact_net).median(),
+            lost(cell_record.path, coordinated.intact_path).median(),
         )
         medians = [f"{float(number):.3f}" for number in numbers]
-        turned = f"{float(np.degrees(one.turn.median())):.1f}"
+        turn_text = f"{float(np.degrees(cell_record.turn.median())):.1f}"
         claim = CLAIMS.get(f"fault_{cell[0]}_{arm}")  # of the knee the article says nothing
-        printed = f"{claim.value:.2f}" if claim is not None else ""
-        rows.append(",".join((*map(str, cell), arm, *medians, turned, printed)))
+        printed_text = f"{claim.value:.2f}" if claim is not None else ""
+        rows.append(",".join((*map(str, cell), arm, *medians, turn_text, printed_text)))
     return "\n".join(rows) + "\n"
 
 

@@ -26,7 +26,7 @@ from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
 """A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
-_GRIPPED = 100  # [control period]; long enough for the integral to reach its limit
+_CLAMP_PERIODS = 100  # [control period]; long enough for the integral to reach its limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,66 +105,66 @@ class JointLoops(Experiment):
     @property
     def gripped(self) -> float:
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
-        return _GRIPPED * control_period(self.robot)
+        return _CLAMP_PERIODS * control_period(self.robot)
 
-    def _crawled(self, number: int, robot: Robot, progress: Progress) -> xr.Dataset:
+    def _crawled(self, index: int, robot: Robot, progress: Progress) -> xr.Dataset:
         """Return the crawl with one of the gains; servos with and without an integral share no batch."""
-        run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
-        share = 0.7 / len(self.integrals)
-        stage = staged(progress, "crawl", number * share, (number + 1) * share)
+        run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[index]:g}")
+        stage_length = 0.7 / len(self.integrals)
+        stage = staged(progress, "crawl", index * stage_length, (index + 1) * stage_length)
         return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
     def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
         """Return the joint's angle in each test with each gain [rad]."""
         step = physics_step(self.robot)
-        free, held = round(self.seconds / step), round(self.gripped / step)
-        none, stepped = np.zeros(free), np.full(free, self.step)
-        never = np.zeros(free, dtype=bool)
+        free_steps, clamp_steps = round(self.seconds / step), round(self.gripped / step)
+        zeros, step_target = np.zeros(free_steps), np.full(free_steps, self.step)
+        no_clamp = np.zeros(free_steps, dtype=bool)
         angles: list[list[np.ndarray]] = [[], [], []]
         for robot in robots:
-            step_test = on_stand(robot, self.joint, target=stepped, load=none, gripped=never, timestep=step)
-            load_test = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
+            step_test = on_stand(robot, self.joint, target=step_target, load=zeros, gripped=no_clamp, timestep=step)
+            load_test = on_stand(robot, self.joint, target=zeros, load=zeros + load, gripped=no_clamp, timestep=step)
             release_test = on_stand(
                 robot,
                 self.joint,
-                target=np.full(held + free, self.step),
-                load=np.zeros(held + free),
-                gripped=np.arange(held + free) < held,
+                target=np.full(clamp_steps + free_steps, self.step),
+                load=np.zeros(clamp_steps + free_steps),
+                gripped=np.arange(clamp_steps + free_steps) < clamp_steps,
                 timestep=step,
             )
-            for of_test, angle in zip(
-                angles, (step_test.angle, load_test.angle, release_test.angle[held:]), strict=True
+            for test_angles, angle in zip(
+                angles, (step_test.angle, load_test.angle, release_test.angle[clamp_steps:]), strict=True
             ):
-                of_test.append(angle)
+                test_angles.append(angle)
         return angles
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
-        step, last = record.attrs["step"], len(record.ki) - 1
+        step, last_gain = record.attrs["step"], len(record.ki) - 1
         measures = Measures()
         for i, ki in enumerate(record.ki.values):
-            with_gain, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
+            gain_record, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
             measures |= {
                 f"rise_time_{name}": Measure(
-                    rise_time(record.time.values, with_gain.angle.sel(test="step").values, step), "s"
+                    rise_time(record.time.values, gain_record.angle.sel(test="step").values, step), "s"
                 ),
-                f"overshoot_{name}": Measure(overshoot(with_gain.angle.sel(test="step").values, step), "-"),
-                f"overshoot_let_go_{name}": Measure(overshoot(with_gain.angle.sel(test="let_go").values, step), "-"),
-                f"droop_{name}": Measure(abs(float(with_gain.angle.sel(test="load")[-1])), "rad"),
-                f"tracking_error_{name}": Measure(float(np.sqrt(with_gain.error_ms.mean())), "rad"),
-                f"forward_{name}": Measure(float(with_gain.forward), "m"),
+                f"overshoot_{name}": Measure(overshoot(gain_record.angle.sel(test="step").values, step), "-"),
+                f"overshoot_let_go_{name}": Measure(overshoot(gain_record.angle.sel(test="let_go").values, step), "-"),
+                f"droop_{name}": Measure(abs(float(gain_record.angle.sel(test="load")[-1])), "rad"),
+                f"tracking_error_{name}": Measure(float(np.sqrt(gain_record.error_ms.mean())), "rad"),
+                f"forward_{name}": Measure(float(gain_record.forward), "m"),
             }
-        tail = record.angle.isel(ki=last).sel(time=slice(record.time[-1] - 0.5, None))
+        final_interval = record.angle.isel(ki=last_gain).sel(time=slice(record.time[-1] - 0.5, None))
         droops = np.abs(record.angle.sel(test="load").isel(time=-1))
         total = float(record.error_ms.isel(ki=0).sum())
         by_load = 1.0 - float(record.less_droop_ms.sum()) / total
         return measures | {
             "load": Measure(record.attrs["load"], "N m"),
             "droop_by_kp": Measure(record.attrs["load"] / record.attrs["kp"], "rad"),
-            "droop_taken": Measure(1.0 - float(droops[last] / droops[0]), "-"),
-            "load_error_pid": Measure(float(droops[last]), "rad"),
-            "step_error_pid": Measure(abs(float(tail.sel(test="step")[-1]) - step), "rad"),
-            "ripple_pid": Measure(float((tail.max("time") - tail.min("time")).max()), "rad"),
+            "droop_taken": Measure(1.0 - float(droops[last_gain] / droops[0]), "-"),
+            "load_error_pid": Measure(float(droops[last_gain]), "rad"),
+            "step_error_pid": Measure(abs(float(final_interval.sel(test="step")[-1]) - step), "rad"),
+            "ripple_pid": Measure(float((final_interval.max("time") - final_interval.min("time")).max()), "rad"),
             "tracking_by_droop": Measure(by_load, "-"),
             "tracking_by_damping": Measure(1.0 - float(record.less_both_ms.sum()) / total - by_load, "-"),
         }
@@ -189,8 +189,8 @@ class JointLoops(Experiment):
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:
     """Return how long an angle takes from a tenth to nine tenths of a step, NaN if it never gets there [s]."""
-    passed = [np.flatnonzero(angle >= share * step) for share in (0.1, 0.9)]
-    return float(time[passed[1][0]] - time[passed[0][0]]) if passed[1].size else float("nan")
+    crossings = [np.flatnonzero(angle >= fraction * step) for fraction in (0.1, 0.9)]
+    return float(time[crossings[1][0]] - time[crossings[0][0]]) if crossings[1].size else float("nan")
 
 
 def overshoot(angle: np.ndarray, step: float) -> float:
@@ -213,8 +213,8 @@ def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset
     kp, kd = (xr.DataArray([getattr(robot.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
     walk = walk.sel(servo=list(names))
     error = walk.servo_target - walk.servo_angle
-    first = walk.isel(run=0)
-    droop = first.servo_torque / kp
+    first_run = walk.isel(run=0)
+    droop = first_run.servo_torque / kp
     less_droop = error.isel(run=0) - droop
     squared = {"units": "rad2"}
     data = xr.Dataset(
@@ -223,7 +223,7 @@ def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset
             "less_droop_ms": ("servo", (less_droop**2).mean("time").values, squared),
             "less_both_ms": (
                 "servo",
-                ((less_droop - kd / kp * first.servo_velocity) ** 2).mean("time").values,
+                ((less_droop - kd / kp * first_run.servo_velocity) ** 2).mean("time").values,
                 squared,
             ),
             "crawl_error": (

@@ -85,34 +85,34 @@ class LegKinematics(Experiment):
 
     def _steps(self) -> xr.Dataset:
         """Return how far off (14) sets the feet of the gaits, each leg with its own lengths."""
-        missed = []
+        errors = []
         for gait in (self.gait, self.other_gait):
             phase = np.arange(self.phases)[:, None] / self.phases + np.array(gait.limb_phases)
-            feet = movement(self.robot, gait).foot_places(phase)
+            foot_positions = movement(self.robot, gait).foot_places(phase)
             legs = [self.robot.front_leg if name in ("LF", "RF") else self.robot.hind_leg for name in LEGS]
-            missed.append([_printed_miss(one, feet[:, i]) for i, one in enumerate(legs)])
+            errors.append([_printed_error(limb, foot_positions[:, i]) for i, limb in enumerate(legs)])
         metre = {"units": "m", "long_name": "foot error of (14) along the gait"}
         return xr.Dataset(
-            {"step_error": (("of_gait", "leg", "sample"), np.array(missed), metre)},
+            {"step_error": (("of_gait", "leg", "sample"), np.array(errors), metre)},
             coords={"of_gait": ["gait", "other_gait"], "leg": list(LEGS)},
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return in which part of the workspace and of the gaits (14) is exact, and how far off it is elsewhere."""
-        wrong = record.error_printed
-        fails = wrong > EXACT
+        foot_error = record.error_printed
+        is_wrong = foot_error > EXACT
         quarter = (record.foot.sel(axis="outward") > record.attrs["hip_offset"]) & (record.foot.sel(axis="down") > 0)
         return Measures(
             {
                 "round_trip_error": Measure(float(record.error_ours.max()), "m"),
-                "printed_inverse_holds": Measure(float((~fails).mean()), "-"),
-                "printed_inverse_fails": Measure(float(fails.mean()), "-"),
-                "printed_inverse_holds_outboard_below": Measure(_share(~fails, quarter), "-"),
-                "printed_inverse_holds_elsewhere": Measure(_share(~fails, ~quarter), "-"),
+                "printed_inverse_holds": Measure(float((~is_wrong).mean()), "-"),
+                "printed_inverse_fails": Measure(float(is_wrong.mean()), "-"),
+                "printed_inverse_holds_outboard_below": Measure(_fraction(~is_wrong, quarter), "-"),
+                "printed_inverse_holds_elsewhere": Measure(_fraction(~is_wrong, ~quarter), "-"),
                 "printed_inverse_holds_crawl": Measure(_exact(record, "gait"), "-"),
                 "printed_inverse_holds_high_walk": Measure(_exact(record, "other_gait"), "-"),
-                "printed_foot_error_median": Measure(float(wrong.where(fails).median()), "m"),
-                "printed_foot_error_max": Measure(float(wrong.max()), "m"),
+                "printed_foot_error_median": Measure(float(foot_error.where(is_wrong).median()), "m"),
+                "printed_foot_error_max": Measure(float(foot_error.max()), "m"),
                 "knee_error_of_eq_10_median": Measure(float(record.error_knee.median()), "rad"),
                 "knee_undefined_by_eq_10": Measure(float(record.error_knee.isnull().mean()), "-"),
                 "table_1_by_label_error_median": Measure(float(record.error_label.median()), "m"),
@@ -154,46 +154,58 @@ def _shell(hind: LegMeasures, count: int, seed: int) -> np.ndarray:
     rng = np.random.default_rng(seed)
     direction = rng.normal(size=(count, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    near, far = hind.reach
-    return np.array([hind.hip_offset, 0, 0]) + direction * np.cbrt(rng.uniform(near**3, far**3, (count, 1)))
+    min_reach, max_reach = hind.reach
+    return np.array([hind.hip_offset, 0, 0]) + direction * np.cbrt(rng.uniform(min_reach**3, max_reach**3, (count, 1)))
 
 
-def _misses(hind: LegMeasures, foot: np.ndarray, *, knee: int, side: int) -> np.ndarray:
+def _branch_errors(hind: LegMeasures, foot: np.ndarray, *, knee: int, side: int) -> np.ndarray:
     angles = leg.inverse(hind, foot, knee=knee, side=side)
     return np.asarray(np.linalg.norm(leg.forward(hind, angles) - foot, axis=-1))
 
 
-def _printed_miss(limb: LegMeasures, foot: np.ndarray) -> np.ndarray:
+def _printed_error(limb: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return how far from each point (14) sets the foot, infinitely far where it has no value [m]."""
-    missed = np.linalg.norm(leg.forward(limb, printed.leg_inverse(limb, foot)) - foot, axis=-1)
-    return np.asarray(np.where(np.isfinite(missed), missed, np.inf))
+    errors = np.linalg.norm(leg.forward(limb, printed.leg_inverse(limb, foot)) - foot, axis=-1)
+    return np.asarray(np.where(np.isfinite(errors), errors, np.inf))
 
 
 def _points(hind: LegMeasures, foot: np.ndarray) -> xr.Dataset:
     """Return what every solution makes of random points: ours on its worst branch, and the printed ones."""
-    ours = [_misses(hind, foot, knee=k, side=s) for k, s in BRANCHES]
-    off = np.abs(printed.knee_by_wrong_side(hind, foot) - leg.inverse(hind, foot)[:, 2])
+    branch_errors = [_branch_errors(hind, foot, knee=k, side=s) for k, s in BRANCHES]
+    knee_errors = np.abs(printed.knee_by_wrong_side(hind, foot) - leg.inverse(hind, foot)[:, 2])
     angles = np.random.default_rng(1).uniform(-1, 1, (len(foot), 4))
-    label = np.linalg.norm(printed.leg_table_by_label(angles) - leg.forward(hind, angles[:, :3]), axis=-1)
-    inside = _within_limits(hind, foot).any(axis=0)
+    label_errors = np.linalg.norm(printed.leg_table_by_label(angles) - leg.forward(hind, angles[:, :3]), axis=-1)
+    is_within_limits = _within_limits(hind, foot).any(axis=0)
     metre = {"units": "m"}
     return xr.Dataset(
         {
             "foot": (("point_of_shell", "axis"), foot, metre | {"long_name": "random point in reach"}),
-            "error_ours": ("point_of_shell", np.max(ours, axis=0), metre | {"long_name": "worst of our branches"}),
-            "error_first": ("point_of_shell", ours[0], metre | {"long_name": "our first branch"}),
-            "error_printed": ("point_of_shell", _printed_miss(hind, foot), metre | {"long_name": "foot error of (14)"}),
-            "error_knee": ("point_of_shell", off, {"units": "rad", "long_name": "error of the knee by (10)"}),
-            "error_label": ("point_of_shell", label, metre | {"long_name": "error of Table I by its labels"}),
-            "within_limits": ("point_of_shell", inside, {"units": "1", "long_name": "within the joints' limits"}),
+            "error_ours": (
+                "point_of_shell",
+                np.max(branch_errors, axis=0),
+                metre | {"long_name": "worst of our branches"},
+            ),
+            "error_first": ("point_of_shell", branch_errors[0], metre | {"long_name": "our first branch"}),
+            "error_printed": (
+                "point_of_shell",
+                _printed_error(hind, foot),
+                metre | {"long_name": "foot error of (14)"},
+            ),
+            "error_knee": ("point_of_shell", knee_errors, {"units": "rad", "long_name": "error of the knee by (10)"}),
+            "error_label": ("point_of_shell", label_errors, metre | {"long_name": "error of Table I by its labels"}),
+            "within_limits": (
+                "point_of_shell",
+                is_within_limits,
+                {"units": "1", "long_name": "within the joints' limits"},
+            ),
         },
         coords={"axis": list(_AXES)},
     )
 
 
-def _share(holds: xr.DataArray, among: xr.DataArray) -> float:
+def _fraction(holds: xr.DataArray, selection: xr.DataArray) -> float:
     """Return in which share of some points something holds; none of no points."""
-    return float((holds & among).sum() / max(int(among.sum()), 1))
+    return float((holds & selection).sum() / max(int(selection.sum()), 1))
 
 
 def _exact(record: xr.Dataset, gait: str) -> float:
@@ -202,13 +214,13 @@ def _exact(record: xr.Dataset, gait: str) -> float:
 
 def _within_limits(hind: LegMeasures, foot: np.ndarray) -> np.ndarray:
     """Return for each branch which points the joints' limits allow, shape (branch, *batch); outside the reach none."""
-    allowed = np.zeros((len(BRANCHES), *foot.shape[:-1]), dtype=bool)
-    there = leg.reachable(hind, foot)
-    low, high = np.array([hind.yaw_range, hind.pitch_range, hind.knee_range]).T
+    is_allowed = np.zeros((len(BRANCHES), *foot.shape[:-1]), dtype=bool)
+    is_reachable = leg.reachable(hind, foot)
+    lower_bound, upper_bound = np.array([hind.yaw_range, hind.pitch_range, hind.knee_range]).T
     for i, (knee, side) in enumerate(BRANCHES):
-        angles = leg.inverse(hind, foot[there], knee=knee, side=side)
-        allowed[i, there] = np.all((angles >= low) & (angles <= high), axis=-1)
-    return allowed
+        angles = leg.inverse(hind, foot[is_reachable], knee=knee, side=side)
+        is_allowed[i, is_reachable] = np.all((angles >= lower_bound) & (angles <= upper_bound), axis=-1)
+    return is_allowed
 
 
 def _dexterity(hind: LegMeasures, foot: np.ndarray) -> np.ndarray:
@@ -233,8 +245,8 @@ def _histogram(points: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _axis(values: np.ndarray, dim: str, what: str) -> tuple[str, np.ndarray, dict[str, str]]:
-    return dim, values, {"units": "m", "long_name": what}
+def _axis(values: np.ndarray, dim: str, long_name: str) -> tuple[str, np.ndarray, dict[str, str]]:
+    return dim, values, {"units": "m", "long_name": long_name}
 
 
 def _section(hind: LegMeasures, grid: int) -> xr.Dataset:
@@ -292,11 +304,11 @@ def _sweep(hind: LegMeasures) -> xr.Dataset:
     turn = np.linspace(-np.pi / 3, np.pi / 2, 121)
     angles = np.zeros((121, 4))
     angles[:, 1] = turn
-    place = {"units": "m", "long_name": "foot"}
+    attrs = {"units": "m", "long_name": "foot"}
     return xr.Dataset(
         {
-            "path_ours": (("turn", "axis"), leg.forward(hind, angles[:, :3]), place),
-            "path_by_label": (("turn", "axis"), printed.leg_table_by_label(angles), place),
+            "path_ours": (("turn", "axis"), leg.forward(hind, angles[:, :3]), attrs),
+            "path_by_label": (("turn", "axis"), printed.leg_table_by_label(angles), attrs),
         },
         coords={
             "turn": ("turn", turn, {"units": "rad", "long_name": "second joint"}),
@@ -308,13 +320,13 @@ def _sweep(hind: LegMeasures) -> xr.Dataset:
 def _postures(hind: LegMeasures) -> xr.Dataset:
     """Draw the leg sprawled, semi-erect and erect."""
     a0 = hind.hip_offset
-    named = {"sprawled": (0, 0, 90), "semi-erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]
-    angles = np.radians(list(named.values()))
-    hip = np.broadcast_to([a0, 0.0, 0.0], (len(named), 3))
+    posture_angles = {"sprawled": (0, 0, 90), "semi-erect": (0, 35, 70), "erect": (0, 66, 42)}  # [deg]
+    angles = np.radians(list(posture_angles.values()))
+    hip = np.broadcast_to([a0, 0.0, 0.0], (len(posture_angles), 3))
     points = np.stack([hip, leg.knee_point(hind, angles), leg.forward(hind, angles)], axis=1)
     return xr.Dataset(
         {"posture_points": (("posture", "point", "axis"), points, {"units": "m", "long_name": "hip, knee, foot"})},
-        coords={"posture": list(named), "point": ["hip", "knee", "foot"], "axis": list(_AXES)},
+        coords={"posture": list(posture_angles), "point": ["hip", "knee", "foot"], "axis": list(_AXES)},
     )
 
 
