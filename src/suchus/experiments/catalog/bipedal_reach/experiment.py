@@ -52,12 +52,12 @@ from suchus.sim.land.push_search import smallest_pushes
 from suchus.sim.metrics import held, lead, peak_torque, reach, static_margin
 
 _COARSE_TIMESTEP = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
-_STANDING_FRACTION = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
+_STANDING_FRACTION = 0.6  # [stretched length]; a robot with less reach has not stood up, or has fallen
 _DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
 _LIFTED_FRACTION = 0.37
-"""Share of the stretched length beyond which the reach shows that the front has left the ground [-].
+"""Fraction of the stretched length from which the reach shows that the front has left the ground [-].
 
-Lying or crawling a robot reaches a fifth of it, the trunk bent up like a cobra's two fifths and more.
+The reach of a robot that lies or crawls is a fifth of this length. With the trunk bent up it is two fifths or more.
 """
 
 
@@ -148,7 +148,7 @@ class BipedalReach(Experiment):
         }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl, stand, sit, crawl; then what it takes and what it bears."""
+        """Simulate crawling, standing and sitting down; then map the limits, push the robot, and vary its lengths."""
         standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
         record = self._standing_record(standing, staged(progress, "standing", 0.0, 0.2))
         for study, stage, start, end in (
@@ -157,11 +157,11 @@ class BipedalReach(Experiment):
             (self._lengths, "lengths", 0.85, 1.0),
         ):
             record = record.merge(study(staged(progress, stage, start, end)))
-        record = record.merge(self._ceiling()).assign_attrs(self._facts())
+        record = record.merge(self._ceiling()).assign_attrs(self._reference_values())
         return Simulated(record=record, replays=self._replays(record))
 
-    def _facts(self) -> dict[str, float]:
-        """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
+    def _reference_values(self) -> dict[str, float]:
+        """Return the numbers that the measures compare with: lengths [m], torques [N m] and times [s]."""
         plausible = {parameter.field: parameter.high for parameter in GAITS.beside("belly_crawl", "chosen", ())}
         return {
             "least": self.least,
@@ -177,11 +177,11 @@ class BipedalReach(Experiment):
 
     @property
     def _lead(self) -> float:
-        """How far the centre of mass is commanded behind the feet where nothing else is said [m]."""
+        """Commanded distance of the centre of mass behind the feet, unless a study sets another one [m]."""
         return LEAD * size_of(self.robot)
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
+        """Return the heights with their spread, the toppling pushes, the torques, and the effect of the lengths."""
         _, rise_time, upright_time, leave_time, down_time, _ = record.attrs["stages"]
         facts, height, margin = record.attrs, record.reach.isel(run=0), record.margin.isel(run=0)
         highest_crawl = int(np.argmax(record.crawl_reach.values))
@@ -210,6 +210,7 @@ class BipedalReach(Experiment):
         return measures | _pushes(record) | _gains(record)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the run of the figures, by file name."""
         return replayed(
             "standing_replay.html",
             record,
@@ -220,7 +221,15 @@ class BipedalReach(Experiment):
         )
 
     def _standing_record(self, standing: Standing, progress: Any) -> xr.Dataset:
-        """Return the run of the figures, and the heights of its repeats."""
+        """Simulate the run of the figures, and its repeats with and without feedback.
+
+        Args:
+            standing: control that lets the robot stand up, hold the stand and sit down.
+            progress: callback that gets the finished fraction.
+
+        Returns:
+            The record of the run, with ``repeat_reach`` (feedback, repeat, repeat_time) [m] and the stage times [s].
+        """
         duration = standing.down_from(self.robot) + self.gait.period
         run = Run(robot=self.robot, gait=self.gait, control=standing)
         record = simulate(
@@ -241,7 +250,13 @@ class BipedalReach(Experiment):
         return data
 
     def _stand_results(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
-        """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
+        """Return reach and lead of each robot once it stands [m]; zero where its joints cannot take the postures.
+
+        Args:
+            robots: robots that stand up, one per case.
+            leads: commanded distance of the centre of mass behind the feet, one per case [m].
+            progress: callback that gets the finished fraction.
+        """
         controls = [
             stand_soon(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
         ]
@@ -266,7 +281,7 @@ class BipedalReach(Experiment):
         return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in results.items()})
 
     def _limits(self, progress: Any) -> xr.Dataset:
-        """Return what robots with other trunk servos and other forebodies reach."""
+        """Return the reach over the torque of the trunk's servos and the mass of the forebody."""
         cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
         stand_results = self._stand_results(cells, [self._lead] * len(cells), progress)
         shape = len(self.torques), len(self.forebodies)
@@ -283,7 +298,7 @@ class BipedalReach(Experiment):
         return data
 
     def _toppling_pushes(self, progress: Any) -> xr.Dataset:
-        """Return the smallest pushes that topple, with feedback and without, over the lead."""
+        """Return the smallest forces that topple the robot, with feedback and without, over the commanded lead [N]."""
         leads = sorted({*self.leads, self._lead})
         balances = {"on": self.balance, "off": None}
         stand_results = self._stand_results([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
@@ -318,7 +333,7 @@ class BipedalReach(Experiment):
         )
 
     def _lengths(self, progress: Any) -> xr.Dataset:
-        """Return how crawling and standing reach change with the lengths of legs, spine and head."""
+        """Return the reach of crawls over the hip height, and the gain of reach per added length of each body part."""
         robots = [self.robot, *(lengthened(self.robot, body_part, 1 + self.longer) for body_part in PARTS)]
         stand_results = self._stand_results(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
         leg = length(self.robot, "leg")
@@ -359,7 +374,7 @@ class BipedalReach(Experiment):
         )
 
     def _ceiling(self) -> xr.Dataset:
-        """Return how high any posture could reach over the distance of the centre of mass behind the feet."""
+        """Return the greatest reach of any posture over the distance of the centre of mass behind the feet [m]."""
         leads = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
         return xr.Dataset(
             {"ceiling": ("behind", tallest(self.robot, leads), {"units": "m"})},
@@ -380,7 +395,7 @@ class BipedalReach(Experiment):
 
 
 def _heights(record: xr.Dataset) -> Measures:
-    """Return what robots as built reach crawling and standing, their ratio, and for how long they stand."""
+    """Return reach when crawling and when standing, their ratio, and the duration of the stand, as built."""
     start, rise_time, upright_time, leave_time, _, _ = record.attrs["stages"]
     heights = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
     crawl = heights.sel(time=slice(start, rise_time)).max("time")
@@ -401,7 +416,10 @@ def _heights(record: xr.Dataset) -> Measures:
 
 
 def _pushes(record: xr.Dataset) -> Measures:
-    """Return how many robots as built stay up, and the smallest pushes that topple it, with feedback and without."""
+    """Return the fraction of the robots as built that stay upright, and the smallest toppling pushes [N].
+
+    Both are given with feedback and without; the pushes are those on the robot as designed.
+    """
     _, _, upright_time, leave_time, _, _ = record.attrs["stages"]
     measures = Measures()
     for feedback in ("on", "off"):
@@ -415,7 +433,7 @@ def _pushes(record: xr.Dataset) -> Measures:
 
 
 def _gains(record: xr.Dataset) -> Measures:
-    """Return by how much the heights grow with the lengths of legs, spine and head [-]."""
+    """Return the gain of reach per added length of legs, spine and head, for both poses [-]."""
     gains = Measures(
         {
             f"gain_{body_part}_{pose}": Measure(float(record.gain.sel(part=body_part, pose=pose)), "-")
@@ -430,9 +448,9 @@ def _gains(record: xr.Dataset) -> Measures:
 
 
 def least_lead(record: xr.Dataset) -> float:
-    """Return the least distance of the centre of mass behind the feet from lifting the front to standing [m].
+    """Return the smallest distance of the centre of mass behind the feet from lift-off of the front to standing [m].
 
-    Not a number for a robot whose front does not leave the ground before it should stand.
+    The result is NaN for a robot whose front does not leave the ground before it should stand.
     """
     _, rise_time, upright_time, *_ = record.attrs["stages"]
     rising = record.isel(run=0).sel(time=slice(rise_time, upright_time))
@@ -441,27 +459,32 @@ def least_lead(record: xr.Dataset) -> float:
 
 
 def _distance(position: xr.DataArray, start_time: float) -> float:
-    """Return how far a place moves forward from a time on [m]."""
+    """Return the forward displacement of a point after a start time [m].
+
+    Args:
+        position: position of the point (time, xyz) [m].
+        start_time: time from which the displacement counts [s].
+    """
     x = position.sel(xyz="x", time=slice(start_time, None))
     return float(x[-1] - x[0])
 
 
 def _decided_by_torque(record: xr.Dataset) -> float:
-    """Return for which share of the robots on the map the cantilever's torque alone decides whether they stand [-]."""
+    """Return the fraction of robots on the map for which the cantilever torque alone predicts the outcome [-]."""
     stands = record.map_reach > record.attrs["up"]
     return float((stands == (record.torque > record.map_cantilever)).mean())
 
 
 def _required_hip_height(record: xr.Dataset, height: float, crawl_heights: np.ndarray) -> np.ndarray:
-    """Return the height of the hips at which each robot as built would reach a height when it crawls [m].
+    """Return the hip height at which each robot as built would reach a given height when it crawls [m].
 
-    By a line through the crawls of the design at other heights of the hips, moved to what the robot as built reaches
-    with hips at their own height.
+    A line is fitted through the crawls of the design at several hip heights. The line is then shifted to the height
+    that the robot as built reaches with its own hip height.
 
     Args:
-        record: of the experiment.
-        height: that is to be reached [m].
-        crawl_heights: what robots as built reach in the crawl, any shape [m].
+        record: record of the experiment.
+        height: reach to be attained [m].
+        crawl_heights: reach of the robots as built in the crawl, any shape [m].
     """
     hip_heights, design_heights = record.hip_height.values, record.crawl_reach.values
     height_offset = crawl_heights - np.polyval(np.polyfit(hip_heights, design_heights, 1), record.attrs["hip_height"])

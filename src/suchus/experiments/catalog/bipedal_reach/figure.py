@@ -37,10 +37,10 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
                 ax.axhline(CLAIMS[key].value or 0.0, **LINES["printed"])
             ax.set_ylim(0.0, 1.1 * max(float(record.attrs["stretched"]), CLAIMS["height_standing"].value or 0.0))
         settled_time = upright_time + 0.02 * (leave_time - upright_time)
-        _plot_heights(standing_ax, record, settled_time, leave_time)  # on a scale of its own, to show the scatter
+        _plot_heights(standing_ax, record, settled_time, leave_time)  # magnified, to show the scatter
         for ax in axes[0]:
             ax.set_ylabel("height of the highest point [m]")
-        run_ax.yaxis.label.set_visible(False)  # the same scale as beside it; its name is for the table of the figure
+        run_ax.yaxis.label.set_visible(False)  # the left panel shows it; the figure's table needs the name
         for ax, title in zip(axes[0], ("standing up", "the whole run", "standing, magnified"), strict=True):
             ax.set_title(title)
             ax.set_xlabel("time [s]")
@@ -57,7 +57,14 @@ def draw_heights(record: xr.Dataset, hold: float) -> Figure:
 
 
 def _plot_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> None:
-    """Draw the heights of the quiet run, and the range of the noisy ones, from one time to another."""
+    """Draw the height of the robot as designed, and the range of heights of the repeats, within a time interval.
+
+    Args:
+        ax: axes to draw on.
+        record: record of the experiment.
+        begin: start of the interval [s].
+        stop: end of the interval [s].
+    """
     repeat_heights = record.repeat_reach.sel(repeat_time=slice(begin, stop))
     for feedback, colour in _FEEDBACK.items():
         band = repeat_heights.sel(feedback=feedback)
@@ -121,11 +128,11 @@ def draw_limits(robot: Robot, record: xr.Dataset, min_reach: float) -> Figure:
 
 
 def draw_ceiling(robot: Robot, record: xr.Dataset) -> Figure:
-    """Draw the lengths that make up the greatest reach, and what is left of it for a stand that is safe.
+    """Draw the lengths that add up to the greatest reach, and the reach over the distance behind the feet.
 
     Args:
-        robot: whose lengths they are.
-        record: of the experiment.
+        robot: robot whose lengths are drawn.
+        record: record of the experiment.
     """
     leg = robot.hind_leg
     lengths = (
@@ -238,8 +245,8 @@ def draw_pushes(record: xr.Dataset, commanded: float) -> Figure:
 
 
 _MIN_SUPPORT_FORCE = 0.5  # [N]; less is no support
-_DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))  # of the trunk's second pitch joint, and of those after it
-_GAP = 0.06  # [m] between two robots of the strip
+_DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))  # for the trunk's second and later pitch joints
+_SPACING = 0.06  # [m]; between two robots of the strip
 
 
 def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
@@ -268,14 +275,16 @@ def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
                 snapshot = _facing_right(snapshot)
             rear_extent, front_extent = _extent(robot, snapshot, time)
             x = edge + rear_extent
-            edge = x + front_extent + _GAP
-            shifted_snapshot = snapshot.assign({n: snapshot[n] + _shift(snapshot, x) for n in _PLACES})
+            edge = x + front_extent + _SPACING
+            shifted_snapshot = snapshot.assign(
+                {n: snapshot[n] + _hind_feet_shift(snapshot, x) for n in _POSITION_FIELDS}
+            )
             draw_posture(ax, robot, shifted_snapshot, time, view="side")
             _mark_support(ax, shifted_snapshot.isel(time=0))
             ax.text(x, -0.045, name, ha="center", va="top")
             ax.text(x, -0.125, f"{time - rise_time:+.1f} s", ha="center", va="top", color=COLOURS["neutral"])
             height = float(snapshot.reach[0])
-            ax.plot([x - 0.16, x + _HEIGHT_LINE_LENGTH], [height, height], **_REACH)
+            ax.plot([x - 0.16, x + _HEIGHT_LINE_LENGTH], [height, height], **_REACH_LINE)
             ax.text(
                 x + _HEIGHT_LINE_LENGTH,
                 height + 0.008,
@@ -284,7 +293,7 @@ def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
                 va="bottom",
                 ha="right",
             )
-        ax.set_xlim(-_GAP, edge)
+        ax.set_xlim(-_SPACING, edge)
         ax.set_ylim(-0.2, 0.74)
         ax.set_yticks(np.arange(0.0, 0.71, 0.1))
         ax.set_ylabel("height above the ground [m]")
@@ -299,40 +308,47 @@ def draw_side_views(robot: Robot, record: xr.Dataset) -> Figure:
     )
 
 
-_LABEL_WIDTH = 0.34  # [m] width of the words under a robot
-_HEIGHT_LINE_LENGTH = 0.2  # [m] length of the line of the height, ahead of the hind feet
-_PLACES = ("position", "centre_of_mass", "foot_position", "tail_tip")
-_REACH: dict[str, Any] = {"color": COLOURS["ours"], "linewidth": 1.6, "linestyle": (0, (5, 2)), "zorder": 6}
+_LABEL_WIDTH = 0.34  # [m]; width of the label under a robot
+_HEIGHT_LINE_LENGTH = 0.2  # [m]; length of the height line ahead of the hind feet
+_POSITION_FIELDS = ("position", "centre_of_mass", "foot_position", "tail_tip")
+_REACH_LINE: dict[str, Any] = {"color": COLOURS["ours"], "linewidth": 1.6, "linestyle": (0, (5, 2)), "zorder": 6}
 
 
-def _shift(record: xr.Dataset, x: float) -> xr.DataArray:
-    """Return what brings the hind feet's middle to a place and keeps heights."""
+def _hind_feet_shift(record: xr.Dataset, x: float) -> xr.DataArray:
+    """Return the horizontal shift that moves the mean of the hind feet to x; heights do not change [m]."""
     hind_feet_x = record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean(("leg", "time"))
     return xr.DataArray([x - float(hind_feet_x), 0.0, 0.0], dims="xyz", coords={"xyz": record.xyz})
 
 
 def _extent(robot: Robot, record: xr.Dataset, time: float) -> tuple[float, float]:
-    """Return how far the robot extends behind and ahead of the middle of its hind feet [m]."""
+    """Return how far the robot extends behind and ahead of the mean of its hind feet [m].
+
+    Args:
+        robot: robot that is drawn.
+        record: snapshot of its record.
+        time: time of the snapshot [s].
+    """
     bones = skeleton(robot, record, time)
     x = np.concatenate([points[:, 0] for points in (bones.trunk, bones.tail, *bones.legs)])
     center = float(record.foot_position.sel(leg=["LH", "RH"], xyz="x").mean())
-    min_extent = _LABEL_WIDTH / 2  # the words under a robot that is narrower than they are
+    min_extent = _LABEL_WIDTH / 2  # the label may be wider than the robot
     return max(center - float(x.min()), min_extent), max(float(x.max()) - center, _HEIGHT_LINE_LENGTH, min_extent)
 
 
 def _facing_right(record: xr.Dataset) -> xr.Dataset:
-    """Return a moment of a record turned about the vertical, so that the pelvis faces along x."""
+    """Return a snapshot rotated about the vertical axis such that the pelvis faces along x."""
     quaternion = record.orientation.isel(time=0).values.astype(float)
-    left_axis = rotation.matrix(quaternion)[:, 1]  # which stays level
+    left_axis = rotation.matrix(quaternion)[:, 1]  # level in every posture
     yaw = float(np.arctan2(left_axis[0], left_axis[1]))
     c, s = np.cos(yaw), np.sin(yaw)
     R = xr.DataArray([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], dims=("to", "xyz"), coords={"xyz": record.xyz})
-    rotated = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _PLACES}
+    rotated = {n: (R * record[n]).sum("xyz").rename(to="xyz").assign_coords(xyz=record.xyz) for n in _POSITION_FIELDS}
     q = rotation.multiply(rotation.about(np.array([0.0, 0.0, 1.0]), yaw), quaternion)
     return record.assign(rotated).assign(orientation=(("time", "wxyz"), [q]))
 
 
 def _mark_support(ax: Axes, snapshot: xr.Dataset) -> None:
+    """Draw a triangle below each foot and the tail tip that carries load."""
     points = [
         snapshot.foot_position.sel(leg=leg, xyz="x")
         for leg in snapshot.leg
@@ -404,7 +420,13 @@ def draw_angles(robot: Robot, record: xr.Dataset) -> Figure:
 
 
 def _draw_stances(ax: Axes, record: xr.Dataset, time_origin: float) -> None:
-    """Draw a bar wherever a foot stands, over the time since ``zero`` [s]."""
+    """Draw a bar for each interval in which a foot carries load.
+
+    Args:
+        ax: axes to draw on, one row per leg.
+        record: record of one run.
+        time_origin: time that is drawn as zero [s].
+    """
     legs = [str(leg) for leg in record.leg.values]
     for row, stands in enumerate(loaded(record).transpose("leg", "time").values):
         spans = [(begin, end - begin) for begin, end in stretches(record.time.values - time_origin, stands)]

@@ -44,7 +44,7 @@ from suchus.sim.metrics import (
 
 _EQUAL_DISPLACEMENT = "limbs_only_equal_displacement"
 _SNAPSHOT_CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted")
-"""Conditions whose snapshots are looked at."""
+"""Conditions whose snapshots are evaluated."""
 _CHANGES = (
     ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
     ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
@@ -56,9 +56,9 @@ _CHANGES = (
     ("com_height_std_change", "com_height_std", "coordinated", "limbs_only"),
     ("roll_pp_change", "roll_pp", "coordinated", "limbs_only"),
 )
-"""Relative changes: name, of which number, condition, what it is compared with."""
+"""Relative changes: name, quantity, condition, reference condition."""
 _COMPARISON_MEASURES = (*(name for name, *_ in _CHANGES), "stroke_equal_displacement", "spine_sine_r2")
-"""Measures that are not of the robots as built in one condition."""
+"""Measures that need more than the robots as built in one condition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +88,7 @@ class CrawlStability(TwoGroups):
         return replace(self, cycles=1, repeats=2)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, and as far with the legs alone, as designed and with robots as built."""
+        """Simulate every condition, and limbs only with strokes for equal displacement, as designed and as built."""
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
@@ -102,7 +102,7 @@ class CrawlStability(TwoGroups):
         return Simulated(record=record, replays=self._replays(record))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; of single conditions no other condition walks."""
+        """Return at least the requested measures; only the conditions that they name are simulated."""
         if any(name.startswith(_COMPARISON_MEASURES) or _EQUAL_DISPLACEMENT in name for name in wanted):
             return super(CrawlStability, self).measured(wanted, progress)
         arms = conditions_of(self.robot, self.gait, self.control_group)
@@ -113,6 +113,7 @@ class CrawlStability(TwoGroups):
         return of_repeats(record, _UNITS) | self._snapshots(record)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone."""
         return replayed(
             "stability_replay.html",
             record.isel(run=0),
@@ -124,9 +125,14 @@ class CrawlStability(TwoGroups):
         )
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
-        """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.
+        """Return the stroke with which the legs alone get as far as with spine and tail [stroke of the gait].
 
-        In strokes of the gait.
+        The result is the longest stroke that the legs can follow where even that one does not get as far.
+
+        Args:
+            record: record of the condition with spine and tail.
+            end: duration of each run [s].
+            progress: callback that gets the finished fraction.
         """
         strokes = np.linspace(1.0, longest_strokes(self.robot, self.control_group), 10)
         runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
@@ -136,7 +142,7 @@ class CrawlStability(TwoGroups):
         return float(np.interp(target_distance, np.maximum.accumulate(distances), strokes))
 
     def _stroke(self) -> float:
-        """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
+        """Return the longest half stroke of the gait's foot paths [m]; 0 where the gait has none."""
         girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
@@ -155,7 +161,7 @@ class CrawlStability(TwoGroups):
         return measures | self._snapshots(record)
 
     def _snapshots(self, record: xr.Dataset) -> Measures:
-        """Return what the snapshots of the conditions show that are looked at."""
+        """Return the measures at the times of the article's snapshots, for each of the snapshot conditions."""
         measures = Measures()
         for condition in self._snapshot_runs(list(record.condition.values)):
             snapshots = {
@@ -186,7 +192,7 @@ class CrawlStability(TwoGroups):
 
     @staticmethod
     def _snapshot_runs(arms: Sequence[str]) -> dict[str, int]:
-        """Return the conditions whose snapshots are looked at, and their runs."""
+        """Return the index of the run of each snapshot condition."""
         return {name: arms.index(name) for name in _SNAPSHOT_CONDITIONS if name in arms}
 
 
@@ -194,7 +200,7 @@ _UNITS = {
     "com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-",
     "hind_duty": "-",
 }  # fmt: skip
-"""Numbers of every condition, and their units."""
+"""Quantities of every condition, and their units."""
 _SNAPSHOT_UNITS = {
     "support_distance": "m",
     "line_distance": "m",
@@ -202,11 +208,11 @@ _SNAPSHOT_UNITS = {
     "lean": "rad",
     "lean_on_two_feet": "rad",
 }
-"""Numbers of each of the article's three snapshots, and their units."""
+"""Quantities at each of the article's three snapshot times, and their units."""
 
 
 def _snapshot_quantities() -> dict[str, str]:
-    """Return the numbers of what the article's snapshots show, and their units: of the whole crawl, then of moments."""
+    """Return the unit of each quantity that the article's snapshots show: of the whole crawl, then of each time."""
     crawl_units = {"line_distance_max": "m", "two_feet_alone_share": "-"}
     return crawl_units | {
         f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _SNAPSHOT_UNITS.items()
@@ -214,7 +220,7 @@ def _snapshot_quantities() -> dict[str, str]:
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the numbers of each run by the names of ``_UNITS`` and of what the snapshots show."""
+    """Return the quantities of each run, by the names of ``_UNITS`` and of ``_snapshot_quantities``."""
     quantities = {
         "com_height_pp": height_peak_to_peak(record),
         "com_height_std": height_std(record),
@@ -238,14 +244,20 @@ def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
 
 
 def _lean(record: xr.Dataset) -> xr.DataArray:
-    """Return over time the angle between the pelvis's vertical and the world's [rad]."""
+    """Return the angle between the pelvis's vertical axis and that of the world over time [rad]."""
     tilted = tilt(record)
     upright = np.cos(tilted["roll"].values) * np.cos(tilted["pitch"].values)
     return tilted["roll"].copy(data=np.arccos(upright))
 
 
 def _estimate_if_majority(name: str, values: xr.DataArray, unit: str) -> Measures:
-    """Return the middle of the robots of which there is a number, where that are most of them."""
+    """Estimate a measure from its finite values if these are the majority, else from all values.
+
+    Args:
+        name: name of the measure.
+        values: one value per repeat, NaN where it is undefined.
+        unit: unit of the values.
+    """
     finite_values = values.values[np.isfinite(values.values)]
     return estimated(name, finite_values if 2 * finite_values.size > values.size else values, unit)
 

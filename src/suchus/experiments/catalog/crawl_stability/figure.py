@@ -45,11 +45,11 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
 
 
 def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
-    """Draw the fluctuation of the height in every condition, of the robots as built and as designed.
+    """Draw the fluctuation of the height in every condition, of the robots as built and of the design.
 
     Args:
-        record: of one run per condition, with the fluctuation of the robots as built.
-        names: of the conditions, roles of ``style.LINES``.
+        record: record with one run per condition and the fluctuation of the robots as built.
+        names: conditions, roles of ``style.LINES``.
     """
     fluctuation = 1000 * height_peak_to_peak(record)
     with styled():

@@ -20,7 +20,7 @@ from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.sim.metrics import between, peak_torque, roll_rate, whole
 from suchus.sim.model import longest_step
 
-_STIFFNESS_TOLERANCE = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
+_STIFFNESS_TOLERANCE = 1.25  # [-]; stiffness ratio from which the time steps are shortened
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
 
@@ -93,11 +93,11 @@ class DeathRoll(Experiment):
         )
 
     def on(self, robot: Robot) -> "DeathRoll":
-        """Return the same question for another robot, in time steps that hold its joints as they hold those of now."""
-        variant = super(DeathRoll, self).on(robot)  # a class with slots has no short form
+        """Return the same question for another robot, with time steps that are as stable for it as those of now."""
+        variant = super(DeathRoll, self).on(robot)  # super() without arguments fails in a class with slots
         step_factor, max_timestep = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
         while step_factor * max(variant.timesteps) > _STIFFNESS_TOLERANCE * max_timestep:
-            step_factor /= 2  # control periods stay whole numbers of steps
+            step_factor /= 2  # a control period remains a whole number of steps
         steps = tuple(step_factor * step for step in variant.timesteps)
         timestep, coarse = step_factor * variant.timestep, step_factor * variant.coarse_timestep
         return replace(variant, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
@@ -107,17 +107,18 @@ class DeathRoll(Experiment):
         return self.cycles / self.frequency
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Roll in vacuum and in water, and over phase, amplitude, frequency and time step."""
+        """Simulate rolls in vacuum and in water, and over phase, amplitude, frequency and time step."""
         arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
         record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
         record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
         return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
 
     def _roll(self, *, frequency: float | None = None, **changes: Any) -> Gait:
-        """Return the roll with the trunk alone, or with what is changed."""
+        """Return the roll with the trunk alone, or with changed arguments of ``motion.roll``."""
         return roll(self.robot, period=1.0 / (frequency or self.frequency), **({"trunk": (self.trunk,) * 2} | changes))
 
     def _arms(self) -> dict[str, Gait]:
+        """Return the gaits that are compared, by the names of ``_ARMS``."""
         tail = (self.tail_lateral, self.tail_vertical)
         return {
             "trunk": self._roll(),
@@ -132,18 +133,26 @@ class DeathRoll(Experiment):
     def _simulate(
         self, rolls: Mapping[str, Gait], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
     ) -> xr.Dataset:
-        """Simulate rolls, all of them in one medium after the other."""
+        """Simulate all rolls in each medium.
+
+        Args:
+            rolls: gaits by label.
+            timestep: time step of the physics [s].
+            progress: callback that gets the finished fraction.
+            media: ``vacuum`` or ``water``; the runs of the first one come first.
+        """
         runs = [self._floating_run(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
         record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
         return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
 
     def _floating_run(self, gait: Gait, arm: str, medium: str) -> Run:
+        """Return the run of one roll in one medium; its bends grow over the first cycle."""
         fluid: Afloat = VACUUM if medium == "vacuum" else WATER
         control = OpenLoop(begin=0.0, ramp=gait.period)
         return Run(robot=self.robot, gait=gait, control=control, afloat=fluid, label=arm)
 
     def _window(self, frequency: float) -> float:
-        """Return where the measurement begins: whole cycles before the end, after the first cycle [s]."""
+        """Return the start of the measurement [s]: whole cycles before the end, after the first cycle."""
         measured_cycles = int(frequency * self._duration + 1e-9) - 1
         return self._duration - measured_cycles / frequency
 
@@ -184,7 +193,7 @@ class DeathRoll(Experiment):
         return data
 
     def _steps(self, progress: Any) -> xr.Dataset:
-        """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
+        """Return the spurious angular momentum in vacuum [kg m2/s] and the rate [Hz] over the time step."""
         momenta, rates, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
             record = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
@@ -201,7 +210,7 @@ class DeathRoll(Experiment):
         return data
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return rate, power and loads of each roll, and what is left of the angular momentum."""
+        """Return rate, power and loads of each roll, and the residual angular momentum in vacuum."""
         start = self._window(self.frequency)
         torque, window = peak_torque(record, start), between(record, start)
         power = (window.servo_torque * window.servo_velocity).clip(min=0.0).sum("servo").mean("time")
@@ -240,7 +249,12 @@ class DeathRoll(Experiment):
         return self.told(measures, **{quantity: self._load(measures, quantity) for quantity in ("speed", "torque")})
 
     def _load(self, measures: Mapping[str, float], quantity: str) -> float:
-        """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
+        """Return the greatest load of the C-shaped roll over the servo's limit [-].
+
+        Args:
+            measures: numbers of the run by name.
+            quantity: ``torque`` or ``speed``.
+        """
         return max(
             measures[f"{quantity}_peak_{group}_{medium}"]
             / min(getattr(self.robot.servo(servo), quantity) for servo in servos)
@@ -259,7 +273,7 @@ class DeathRoll(Experiment):
 
 
 def _drift(record: xr.Dataset) -> float:
-    """Return how far the centre of mass moves at most [m]."""
+    """Return the greatest distance of the centre of mass from its start [m]."""
     displacement = record.centre_of_mass - record.centre_of_mass.isel(time=0)
     return float(((displacement**2).sum("xyz") ** 0.5).max())
 

@@ -28,12 +28,12 @@ _BARS = {
     ("speed", "vacuum"): "#8C4A00",
     ("speed", "water"): "#E69F00",
 }
-_ANIMAL = ANIMAL["death_roll"].high
-_TURN = 2 * np.pi
+_ANIMAL_RATE = ANIMAL["death_roll"].high
+_FULL_TURN = 2 * np.pi
 
 
 def servo_groups(robot: Robot) -> dict[str, tuple[str, ...]]:
-    """Return the servos that bend trunk and tail, in the groups of which loads are told."""
+    """Return the servos that bend trunk and tail, by the groups for which loads are reported."""
     body_layout = layout(robot)
     groups = {
         "spine_yaw": body_layout.trunk_yaw,
@@ -55,7 +55,7 @@ def draw_roll(robot: Robot, record: xr.Dataset) -> Figure:
     run = _run_of(record, "c_shape", "vacuum")
     period = float(run.period)
     start = period
-    turns = roll_angle(run, start) / _TURN
+    turns = roll_angle(run, start) / _FULL_TURN
     turns = turns * np.sign(float(turns[-1]) or 1.0)
     full_turn_times = turns.time[turns >= 1.0]
     end = float(full_turn_times[0]) if full_turn_times.size else float(turns.time[-1])
@@ -97,9 +97,9 @@ def draw_rates(record: xr.Dataset) -> Figure:
             ax.set_ylim(bottom=0.0)
         ax = axes[1, 1]
         _c_points(ax, record)
-        ax.axhline(_ANIMAL, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)))
-        ax.text(0.03, _ANIMAL - 0.03, ANIMAL["death_roll"].who, color=COLOURS["alarm"], va="top", fontsize=11)
-        ax.set_ylim(top=1.1 * _ANIMAL)
+        ax.axhline(_ANIMAL_RATE, color=COLOURS["alarm"], linewidth=1.2, linestyle=(0, (4, 2)))
+        ax.text(0.03, _ANIMAL_RATE - 0.03, ANIMAL["death_roll"].who, color=COLOURS["alarm"], va="top", fontsize=11)
+        ax.set_ylim(top=1.1 * _ANIMAL_RATE)
         ax.legend(loc="lower right", fontsize=10)
         axes[1, 0].legend(loc="upper left")
         for ax, letter in zip(axes.flat, "abcd", strict=True):
@@ -148,9 +148,10 @@ def _run_of(record: xr.Dataset, arm: str, medium: str) -> xr.Dataset:
 
 
 def _turns(ax: Axes, record: xr.Dataset) -> None:
+    """Draw the roll angle over time of each roll, thick in vacuum and thin in water [turn]."""
     for medium, width in (("vacuum", 2.4), ("water", 1.1)):
         for arm, (text, colour, dashes) in _ARMS.items():
-            angle = roll_angle(_run_of(record, arm, medium)) / _TURN
+            angle = roll_angle(_run_of(record, arm, medium)) / _FULL_TURN
             label = text if medium == "vacuum" else None
             ax.plot(angle.time, angle, color=colour, linestyle=dashes, linewidth=width, label=label)
     ax.set_xlabel("time [s]")
@@ -160,13 +161,14 @@ def _turns(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _by_phase(ax: Axes, record: xr.Dataset) -> None:
+    """Draw the rate of roll over the phase lag of the vertical bend, and a sine of the same amplitude."""
     ax.axhline(0.0, color="#999999", linewidth=0.8)
     ax.plot(record.late, record.rate_by_phase, "o", color="#333333", label="measured")
     amplitude = float(abs(record.rate_by_phase).max())
     phase_grid = np.linspace(float(record.late.min()), float(record.late.max()), 100)
     ax.plot(
         phase_grid,
-        amplitude * np.sin(_TURN * phase_grid),
+        amplitude * np.sin(_FULL_TURN * phase_grid),
         color=COLOURS["neutral"],
         linestyle=(0, (4, 2)),
         label="sine",
@@ -177,6 +179,7 @@ def _by_phase(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _c_points(ax: Axes, record: xr.Dataset) -> None:
+    """Draw the rate of the C-shaped roll at its frequency, one triangle per medium."""
     for medium, (text, _, colour) in _MEDIA.items():
         run = _run_of(record, "c_shape", medium)
         ax.plot(
@@ -186,6 +189,14 @@ def _c_points(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
+    """Draw the greatest torque and speed of each group of servos as a fraction of their limits, in both media.
+
+    Args:
+        ax: axes to draw on.
+        robot: robot whose servos have the limits.
+        record: record of the experiment.
+        start: start of the measurement [s].
+    """
     groups = servo_groups(robot)
     positions = np.arange(len(groups))
     for i, medium in enumerate(_MEDIA):
@@ -208,10 +219,19 @@ def _loads(ax: Axes, robot: Robot, record: xr.Dataset, start: float) -> None:
 
 
 def _body(ax: Axes, robot: Robot, run: xr.Dataset, time: float) -> None:
-    """Draw the body from its side, right of the page being ahead; y of the world points into the page."""
+    """Draw the body from its right side: the page's right is ahead, and y of the world points into the page.
+
+    Args:
+        ax: axes to draw on.
+        robot: robot that is drawn.
+        run: record of one run.
+        time: time of the snapshot [s].
+    """
     bones, outline = skeleton(robot, run, time), silhouette_at(robot, run, time, (0, 2))
     snapshot = run.sel(time=time, method="nearest")
-    facing = -rotation.matrix(snapshot.orientation.values)[1, 2]  # of the root's back, towards the viewer at -y
+    facing = -rotation.matrix(snapshot.orientation.values)[
+        1, 2
+    ]  # component of the root's dorsal axis towards the viewer at -y
     center_y = bones.trunk[:, 1].mean()
     for limb, points, pieces in zip(layout(robot).limbs, bones.legs, outline.legs, strict=True):
         colour = COLOURS["LF"] if limb.side > 0 else COLOURS["RF"]

@@ -35,8 +35,8 @@ from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
 _CRAWL = belly_crawl.metres
-"""The crawl for which strokes and bends of the map are chosen."""
-_MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; below this displacement a ratio means nothing
+"""The crawl from which strokes and bends of the map are derived."""
+_MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; a ratio over less displacement is meaningless
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +87,7 @@ class Displacement(TwoGroups):
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, as designed and with robots as built, and map what decides."""
+        """Simulate every condition as designed and as built, and the map over strokes, bends, pitches and phases."""
         duration = START + self.cycles * self.gait.period
         gaits = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
@@ -99,6 +99,7 @@ class Displacement(TwoGroups):
         return Simulated(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the crawl with spine and tail and of that with limbs only."""
         return replayed(
             "crawl_replay.html",
             record.isel(run=0),
@@ -110,7 +111,12 @@ class Displacement(TwoGroups):
         )
 
     def _displacement_map(self, duration: float, progress: Any) -> xr.Dataset:
-        """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
+        """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m].
+
+        Args:
+            duration: duration of each run [s].
+            progress: callback that gets the finished fraction.
+        """
         strokes, bends, pitches = self._grid()
         limb_gaits = [self.control_group.strode(s) for s in strokes]
         bent_gaits = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
@@ -147,7 +153,7 @@ class Displacement(TwoGroups):
         return data
 
     def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
+        """Return those strokes, bends and tail pitches of the map that the body can follow."""
         has_strokes, has_tail_pitch = (
             self.gait.has("strokes"),
             self.gait.has("steering") and layout(self.robot).tail_pitch,
@@ -158,7 +164,12 @@ class Displacement(TwoGroups):
         return strokes or (1.0,), bends or (1.0,), pitches
 
     def _feasible(self, candidates: Sequence[float], change: Callable[[float], Gait]) -> tuple[float, ...]:
-        """Return the numbers that make a gait, and one that the body can follow."""
+        """Return the candidates that give a gait which the body can follow.
+
+        Args:
+            candidates: values of one gait parameter.
+            change: returns the gait with a value of that parameter; may raise ``InvalidDesign``.
+        """
 
         def is_feasible(candidate: float) -> bool:
             try:
@@ -169,7 +180,7 @@ class Displacement(TwoGroups):
         return tuple(candidate for candidate in candidates if is_feasible(candidate))
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return what each condition does and what each part adds, of the robots as built, and the map."""
+        """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
         measures = of_repeats(record, _UNITS)
         forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
         for name, arm, reference in _GAINS:
@@ -223,11 +234,11 @@ _UNITS = {
     "hind_clearance": "m",
     "two_feet_share": "-",
 }
-"""Numbers of every condition, and their units."""
+"""Quantities of every condition, and their units."""
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the numbers of each run by the names of ``_UNITS``; of the hind feet those of the worse one."""
+    """Return the quantities of each run by the names of ``_UNITS``; of the two hind feet the worse one counts."""
     hind = {"leg": record.leg.values[-2:]}
     return {
         "forward": _forward(record),
@@ -247,7 +258,7 @@ _GAINS = (
     ("tail_contact", "tail_still", "spine_only"),
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
 )
-"""What two conditions differ in: name, the condition with it, the one without it."""
+"""Gains: name, condition with the motion, condition without it."""
 
 
 def _ratio(record: xr.Dataset) -> xr.DataArray:

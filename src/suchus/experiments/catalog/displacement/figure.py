@@ -19,7 +19,7 @@ from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, p
 from suchus.visual.figures.timeseries import draw_lines, mark_cycles, mark_printed
 
 _REFERENCE_LENGTH = ROBOTS["caiman"].length
-"""Length of the robot for which distances between the strips are [m]."""
+"""Length of the robot to which the distances between strips refer [m]."""
 _REFERENCE_LABEL = "crawl of the other figures"
 
 
@@ -71,7 +71,7 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
 
 
 def _width(snapshots: xr.Dataset, size: float) -> float:
-    """Return how far a strip reaches to either side: to the farthest foot with its toes, at least to the usual [m]."""
+    """Return the half width of a strip [m]: to the outermost foot with its toes, or more for a narrow stance."""
     feet = np.abs(snapshots.foot_position.sel(xyz="y").values).max(initial=0.0)
     return max(0.19 * size, float(feet) + 0.06 * size)
 
@@ -192,7 +192,7 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
             label = "ratio of displacements [-]"
             draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed_ratio, form="%.3g")
             ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_REFERENCE_LABEL)
-        else:  # of the strokes or the bends the body can follow one only
+        else:  # the body can vary only its strokes or only its bends
             dimension = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
             ax.plot(ratio[dimension], ratio.squeeze("bend" if dimension == "stroke" else "stroke"), marker="o")
             ax.axvline(

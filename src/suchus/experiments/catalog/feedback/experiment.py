@@ -40,9 +40,9 @@ STARTS: Mapping[str, Coordinated] = {
     "closed_noisy": Coordinated(random_start=True, load_noise=0.3),
     "isolated_noisy": Coordinated(random_start=True, load_noise=0.3, sharing=False),
 }
-"""What brings random limb phases in order: each law alone, then all rules with noisy feet, sharing and not sharing."""
+"""Controls of the random starts: each law alone, then all rules with noisy feet, with and without sharing."""
 _DISTANCE_LAWS = ("closed_noisy", "isolated_noisy")
-"""Whose distances are measured; of the others the phases are."""
+"""Laws whose displacement is measured; for the others only the phases are."""
 ARMS: Mapping[str, Coordinated] = {
     "open": Coordinated(limbs=LAWS["off"], **_LIMB_RULE_ONLY),
     "limbs": Coordinated(**_LIMB_RULE_ONLY),
@@ -51,7 +51,7 @@ ARMS: Mapping[str, Coordinated] = {
     "closed": Coordinated(),
     "steered": Coordinated(heading=HeadingRule()),
 }
-"""Who is disturbed: no rule, each rule alone, all three, all three with the heading loop."""
+"""Controls that are disturbed: no rule, each rule alone, all three, all three with the heading loop."""
 DISTURBANCES = (
     "none",
     "kick",
@@ -64,7 +64,7 @@ DISTURBANCES = (
     "limp_yaw",
     "load_noise",
 )
-"""What happens after one cycle; a slope is there from the beginning."""
+"""Disturbances; each begins after one cycle, except that a slope exists from the start."""
 _CLAIM_LAWS = ("off", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
 _CLAIM_DISTURBANCES = ("none", "locked_spine", "uphill")
 _CLAIM_MEASURES = {
@@ -74,9 +74,9 @@ _CLAIM_MEASURES = {
     "spine_lacking_growth", "kept_undisturbed_spine", "tail_load_tail", "tail_load_open", "tail_pitch_drift",
     "kept_undisturbed_tail", "locked_spine_loss_closed", "locked_spine_loss_open",
 }  # fmt: skip
-"""What the claims rest on, which these laws and disturbances are enough for."""
+"""Measures of the claims; the laws and disturbances of the claims suffice for them."""
 SHOWN = ("open", "closed", "steered")
-"""The arms whose measures are named."""
+"""Controls whose measures are reported."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,42 +157,47 @@ class Feedback(Experiment):
         kick = (*self.kick, *(0.0,) * len(gait.limb_phases))[: len(gait.limb_phases)]
         return {"gait": gait, "kick": kick}
 
-    def _suited(self, control: Coordinated) -> Coordinated:
+    def _suited_control(self, control: Coordinated) -> Coordinated:
         return control.suited(self.robot, self.gait)
 
     @property
     def _arms(self) -> dict[str, Coordinated]:
-        """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
+        """Those of ``ARMS`` whose rule the body can follow, by name."""
         return {
-            name: self._suited(control)
+            name: self._suited_control(control)
             for name, control in ARMS.items()
-            if name != "tail" or self._suited(control).tail is not None
+            if name != "tail" or self._suited_control(control).tail is not None
         }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl from random starts, then disturb a robot whose phases are right."""
-        starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
-        record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
+        """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
+        starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7))
+        record = xr.merge([starts, self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0))])
         return Simulated(record=record, replays=self._replays(pair))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of the claims fewer laws and disturbances."""
+        """Return at least the requested measures; those of the claims need fewer laws and disturbances."""
         if not set(wanted) <= _CLAIM_MEASURES:
             return super(Feedback, self).measured(wanted, progress)
-        starts, _ = self._starts(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
+        starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
         measures = start_measures(starts, self.gait, self.hold, self.cycles)
         if not set(wanted) <= measures.keys():
-            disturbed = self._disturbed(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
+            disturbed = self._disturbance_record(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
             measures |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
         return Measures({name: measures[name] for name in wanted})
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how many starts converge, and what each rule makes of each disturbance."""
+        """Return how many starts converge, and the effect of each rule on each disturbance."""
         return start_measures(record, self.gait, self.hold, self.cycles) | disturbed_measures(
             record, self.gait, self.hold, self.after
         )
 
     def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of one random start with feedback and without.
+
+        Args:
+            pair: record of two runs, the one with feedback first.
+        """
         return replayed(
             "feedback_replay.html",
             pair.isel(run=0),
@@ -208,12 +213,12 @@ class Feedback(Experiment):
 
     @property
     def _front_segment(self) -> str:
-        """The segment of the foremost girdle."""
+        """Name of the segment at the foremost girdle."""
         return self.robot.girdles[0].segment
 
     @property
     def _push_duration(self) -> float:
-        """How long the push lasts: 0.3 s for a body as long as the article's [s]."""
+        """Duration of the push [s]: 0.3 s for a body as long as the article's."""
         period = control_period(self.robot)
         return max(1, round(0.3 * (self.robot.length / ROBOTS["caiman"].length) ** 0.5 / period)) * period
 
@@ -222,12 +227,18 @@ class Feedback(Experiment):
         """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
-    def _starts(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return limb phases and distances for every law and start, and one start as a record under two laws.
+    def _start_record(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
+        """Simulate every random start under every law.
 
-        NaN where a law is not asked for.
+        Args:
+            progress: callback that gets the finished fraction.
+            laws: names of ``STARTS`` to simulate; the result is NaN for the others.
+
+        Returns:
+            Limb phases (law, start, start_time, leg) [cycle] and displacements (law, start, start_time) [m]. The second
+            dataset is the record of the first start under the laws ``cross_load`` and ``off``.
         """
-        controls = {law: self._suited(STARTS[law]) for law in laws}
+        controls = {law: self._suited_control(STARTS[law]) for law in laws}
         open_loop_laws = [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
         cells = [(law, i) for law in laws for i in range(self.starts) if i == 0 or law not in open_loop_laws]
         runs = [
@@ -261,9 +272,13 @@ class Feedback(Experiment):
         return data, pair
 
     def _phases(self, control: Coordinated, time: np.ndarray) -> np.ndarray:
-        """Return the limb phases of every start under a law that feels nothing, shape (start, time, limb) [cycle].
+        """Return the limb phases of every start under an open-loop law, shape (start, time, limb) [cycle].
 
-        Nothing that happens to the body changes them, so that nothing is simulated for them.
+        No state of the body changes these phases, so no physics is simulated for them.
+
+        Args:
+            control: control whose law senses nothing.
+            time: times at which the phases are returned [s].
         """
         period, count = control_period(self.robot), self.starts
         ticks = np.round(time / period).astype(int)
@@ -272,13 +287,19 @@ class Feedback(Experiment):
         controller = control.start(runs, period)
         return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
 
-    def _disturbed(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
-        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition.
+    def _disturbance_record(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
+        """Simulate every disturbance under every control.
 
-        NaN where a disturbance is not asked for.
+        Args:
+            progress: callback that gets the finished fraction.
+            names: names of ``DISTURBANCES`` to simulate; the result is NaN for the others.
+
+        Returns:
+            Position [m], heading [rad], missing bend of the trunk [rad] and limb phases [cycle] over (disturbance, arm,
+            time); where a servo pitches the tail, also its commanded pitch [rad] and its torque [N m].
         """
         arms, body_layout = self._arms, layout(self.robot)
-        runs = [self._disturb(control, name) for name in names for control in arms.values()]
+        runs = [self._disturbed_run(control, name) for name in names for control in arms.values()]
         duration = self._disturbance_time + self.after * self.gait.period
         record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
@@ -320,7 +341,13 @@ class Feedback(Experiment):
             data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
         return data.reindex(disturbance=list(DISTURBANCES))
 
-    def _disturb(self, control: Coordinated, name: str) -> Run:
+    def _disturbed_run(self, control: Coordinated, name: str) -> Run:
+        """Return the run of a control under a disturbance.
+
+        Args:
+            control: control of the robot.
+            name: one of ``DISTURBANCES``.
+        """
         run = Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed, label=name)
         body_layout = layout(self.robot)
         match name:
@@ -376,13 +403,13 @@ class Feedback(Experiment):
 
 
 def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> Measures:
-    """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
+    """Return how many starts converge, how fast, with which phase error, and the gain by sharing the phases.
 
     Args:
-        record: what happened.
-        gait: how they were meant to walk.
-        hold: for how long a start stays to count as converged [cycle].
-        cycles: how many were walked [-].
+        record: record of the random starts.
+        gait: gait that the robots were commanded.
+        hold: duration for which a start must stay coordinated to count as converged [cycle].
+        cycles: simulated duration of each start [cycle].
     """
     error = phase_error(record.start_phase, gait).rename(start_time="time")
     period = gait.period
@@ -408,13 +435,13 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
 
 
 def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after: int) -> Measures:
-    """Return distances and turns after each disturbance, and what the rules make of them.
+    """Return distances and turns after each disturbance, and the effect of the rules on them.
 
     Args:
-        record: what happened.
-        gait: how they walked; the disturbance comes after one cycle.
-        hold: for how long phases stay to count as recovered, at most [cycle].
-        cycles_after: how many cycles were walked after it [-].
+        record: record of the disturbances.
+        gait: gait of the robot; the disturbance begins after one cycle.
+        hold: longest duration for which phases must stay coordinated to count as recovered [cycle].
+        cycles_after: simulated duration after the disturbance [cycle].
     """
     disturbed_at = START + gait.period
     response = record.sel(time=slice(disturbed_at - 1e-9, None))
@@ -450,7 +477,12 @@ def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after
 
 
 def _loop_measures(response: xr.Dataset, gait: Gait) -> Measures:
-    """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
+    """Return how well the loops of spine and tail hold what they control.
+
+    Args:
+        response: record of the disturbances from the disturbance on.
+        gait: gait of the robot.
+    """
     missing_bend = response.lacking.sel(disturbance="locked_spine")
     first_cycle_end = response.time[0] + gait.period
     final_error = {arm: _rms(_last_seconds(missing_bend.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
@@ -479,7 +511,12 @@ def _loop_measures(response: xr.Dataset, gait: Gait) -> Measures:
 
 
 def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
-    """Return what the rules do to a robot whose phases are right, over the first two cycles."""
+    """Return the effect of the rules on a robot whose phases are right, over the first two cycles.
+
+    Args:
+        record: record of the disturbances, with ``none`` among them.
+        gait: gait of the robot.
+    """
     first_cycles = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
     change = first_cycles.isel(time=-1) - first_cycles.isel(time=0)
     distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
@@ -503,10 +540,12 @@ def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
 
 
 def _last_seconds(values: xr.DataArray, seconds: float) -> xr.DataArray:
+    """Return the values of the last seconds of a time series."""
     return values.sel(time=slice(float(values.time[-1]) - seconds - 1e-9, None))
 
 
 def _rms(values: xr.DataArray) -> float:
+    """Return the root mean square."""
     return float((values**2).mean() ** 0.5)
 
 

@@ -93,12 +93,12 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
 
 
 def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
-    """Draw which feet are meant to stand from one random start, without and with feedback.
+    """Draw which feet are commanded to stand from one random start, without and with feedback.
 
     Args:
-        phase: of the limbs, with the dimensions ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
-        gait: that they walk.
-        start: which one.
+        phase: phase of the limbs over ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
+        gait: gait that the robot walks.
+        start: index of the start.
     """
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, height=5.4, sharex=True)
@@ -116,6 +116,14 @@ def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
 
 
 def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray, legs: Sequence[str]) -> None:
+    """Draw a bar for each interval in which a foot is commanded to stand, one row per leg.
+
+    Args:
+        ax: axes to draw on.
+        time: equidistant times [cycle].
+        stands: whether each foot is commanded to stand, shape (time, leg).
+        legs: names of the legs.
+    """
     width = float(time[1] - time[0])
     for row in range(len(legs)):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], stands[:, row].astype(int), [0]])))
@@ -174,11 +182,11 @@ def draw_gain(distance: xr.DataArray) -> Figure:
 
 
 def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
-    """Draw from above where the robot goes after a disturbance.
+    """Draw the path of the robot after each disturbance from above.
 
     Args:
-        record: with ``x`` and ``y`` along ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
-        disturbances: which ones, one panel each.
+        record: ``x`` and ``y`` over ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
+        disturbances: names of the disturbances, one panel each.
     """
     size = float((record.x - record.x.isel(time=0)).max())
     with styled():
@@ -211,10 +219,10 @@ _BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
 
 
 def draw_topology(parts: Sequence[ControlPart]) -> Figure:
-    """Draw which sensors each controller feels, which shared variables it writes, and whose it hears.
+    """Draw which sensors each controller reads, which shared variables it writes, and which ones it reads.
 
     Args:
-        parts: of ``control.topology``.
+        parts: controllers of ``control.topology``.
     """
     sensors = sorted({name for controller in parts for name in controller.feels})
     positions = {
@@ -242,6 +250,7 @@ def draw_topology(parts: Sequence[ControlPart]) -> Figure:
 
 
 def _caption(parts: Sequence[ControlPart]) -> str:
+    """Return the caption of the topology, with the controllers that use no shared variables."""
     isolated = [controller.name for controller in parts if not controller.hears and not controller.writes]
     isolated_text = f" Apart from the shared variables: {', '.join(isolated)}." if isolated else ""
     return (
@@ -252,10 +261,21 @@ def _caption(parts: Sequence[ControlPart]) -> str:
 
 
 def _colour(controller: str) -> str:
+    """Return the colour of a controller."""
     return COLOURS[_ROLES.get(controller, "neutral")]
 
 
 def _box(ax: Any, name: str, position: tuple[float, float]) -> Any:
+    """Draw the box of a sensor, a controller or a shared variable, in the colour of its controller.
+
+    Args:
+        ax: axes to draw on.
+        name: ``feels SENSOR``, ``shared VARIABLE`` or the name of a controller.
+        position: centre of the box [axis units].
+
+    Returns:
+        The text artist of the box.
+    """
     kind, _, quantity = name.partition(" ")
     owner = OWNERS[quantity] if kind == "shared" else "" if kind == "feels" else name
     style = _BOX | {"edgecolor": _colour(owner)}
@@ -266,10 +286,12 @@ def _box(ax: Any, name: str, position: tuple[float, float]) -> Any:
 
 
 def _arrow(ax: Any, start: Any, end: Any, colour: str, dashes: Any) -> None:
+    """Draw an arrow between two boxes that ``_box`` returned."""
     ends = {"patchA": start.get_bbox_patch(), "patchB": end.get_bbox_patch(), "shrinkA": 3, "shrinkB": 3}
     style = {"arrowstyle": "-|>", "color": colour, "linestyle": dashes, "linewidth": 1.5, **ends}
     ax.annotate("", end.get_position(), start.get_position(), arrowprops=style)
 
 
 def _spread(count: int) -> list[float]:
+    """Return horizontal positions of a row of boxes, evenly spread over 0 to 1."""
     return [float(x) for x in (np.arange(count) + 0.5) / max(count, 1)]

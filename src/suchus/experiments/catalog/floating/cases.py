@@ -1,4 +1,4 @@
-"""Bodies whose floating is known exactly, and the forces of the water on them beside what is known."""
+"""Floating bodies with exact answers, and the simulated answers that are compared with them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ _UNIT_INERTIA = (1.0, 1.0, 1.0)
 BOX = FloatBody(
     shape="box", half=(0.3, 0.15, 0.075), mass=13.5, inertia=(0.2, 0.6, 0.7), centre=(0.0, 0.0, -0.03), parts=8
 )
-"""Half under, upright where it rests."""
+"""A box that is half submerged and upright in equilibrium."""
 SPHEROID = FloatBody(
     shape="ellipsoid",
     half=(0.3, 0.1, 0.08),
@@ -31,16 +31,16 @@ SPHEROID = FloatBody(
     added=(0.1, 0.7, 1.1),
     centre=(0.01, 0.02, -0.01),
 )
-"""As heavy as its water, its mass beside its middle."""
+"""A neutrally buoyant spheroid whose centre of mass is off its centre."""
 KEEL = 1.118721
 """Angular acceleration of the keeled hull of MuJoCo's issue 3452 at 45 degrees of heel [rad/s2]."""
 BALLAST = 3.0
-"""[kg]; taken on by the trimmed float of the same issue."""
+"""Ballast of the trimmed float of the same issue [kg]."""
 _GYRATION = 0.1
 """Square of the keeled hull's radius of gyration [m2]: an ellipsoid 1 m wide and high, of even mass.
 
-The issue gives the acceleration and not the hull; any under water whose centre of mass lies as far below its middle as
-``keeled`` says has it.
+The issue gives the acceleration but not the hull. Any submerged hull with the centre of mass of ``keeled`` has this
+acceleration.
 """
 
 
@@ -57,7 +57,7 @@ class KnownDraft:
 
 
 def drafts() -> list[KnownDraft]:
-    """Return a sphere, a lying cylinder and a box of several densities with their drafts in closed form."""
+    """Return a sphere, a lying cylinder and a box at several densities, with their drafts in closed form."""
     r, known_drafts = 0.1, []
     sphere = FloatBody(shape="ellipsoid", half=(r, r, r), mass=1, inertia=_UNIT_INERTIA)
     cylinder = FloatBody(shape="cylinder", half=(0.3, r, r), mass=1, inertia=_UNIT_INERTIA, parts=4)
@@ -81,7 +81,7 @@ def _draft(name: str, body: FloatBody, density_ratio: float, exact: float) -> Kn
 
 
 def draft_of(body: FloatBody) -> float:
-    """Return the draft at which the water carries a body in a physics step [m]."""
+    """Return the draft at which the buoyancy of a physics step equals the weight of a body [m]."""
     tank = FloatTank(body, SURFACE)
 
     def net(depth: float) -> float:
@@ -93,16 +93,16 @@ def draft_of(body: FloatBody) -> float:
 
 
 def heave(added_mass_ratio: float, amplitude: float, periods: int, timestep: float) -> tuple[xr.Dataset, float]:
-    """Return the heave of a box half under, let go above its place of rest, and its exact period [s].
+    """Return the heave of a half-submerged box that is released above equilibrium, and its exact period [s].
 
     Args:
-        added_mass_ratio: mass of the water that moves with it, over that of the box [-].
-        amplitude: [m].
-        periods: that are watched [-].
-        timestep: of the physics [s].
+        added_mass_ratio: added mass of the water over the mass of the box [-].
+        amplitude: height of the release above equilibrium [m].
+        periods: duration of the motion [exact period].
+        timestep: time step of the physics [s].
     """
     waterline_area = 0.3 * 0.15 * 4
-    # half under, the box weighs the water that it displaces, and so much of the added mass of the whole counts
+    # half submerged, the box is as heavy as the displaced water, and the added mass counts in the same proportion
     body = replace(
         BOX, added=(0.0, 0.0, added_mass_ratio), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume
     )
@@ -113,7 +113,7 @@ def heave(added_mass_ratio: float, amplitude: float, periods: int, timestep: flo
 
 
 def period_of(motion: xr.Dataset) -> float:
-    """Return the mean time between downward passages of the surface [s]."""
+    """Return the mean time between downward crossings of the surface [s]."""
     z, t = motion.middle.values[:, 2], motion.time.values
     crossings = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
     times = t[crossings] + (t[1] - t[0]) * z[crossings] / (z[crossings] - z[crossings + 1])
@@ -121,7 +121,13 @@ def period_of(motion: xr.Dataset) -> float:
 
 
 def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Dataset:
-    """Return the motion of a box that is let go heeled and pitched, without drag and added mass."""
+    """Return the motion of a box that is released heeled and pitched, without drag and added mass.
+
+    Args:
+        duration: duration of the motion [s].
+        integrator: MuJoCo's integrator.
+        timestep: time step of the physics [s].
+    """
     tank = FloatTank(BOX, SURFACE, timestep=timestep, integrator=integrator)
     quaternion = rotation.multiply(
         rotation.about(np.array([0.0, 1.0, 0.0]), 0.1), rotation.about(np.array([1.0, 0.0, 0.0]), 0.4)
@@ -131,9 +137,9 @@ def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Data
 
 
 def gained_energy(motion: xr.Dataset) -> float:
-    """Return the greatest gain of energy over that which the body has above its place of rest [-].
+    """Return the greatest gain of energy over the initial energy above equilibrium [-].
 
-    It rests where its potential energy is least: BOX upright and half under.
+    Equilibrium is the state of least potential energy: BOX upright and half submerged.
     """
     rest_tank = FloatTank(BOX, SURFACE)
     rest_tank.place((0.0, 0.0, 0.0))
@@ -142,7 +148,13 @@ def gained_energy(motion: xr.Dataset) -> float:
 
 
 def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
-    """Return the motion of a spheroid in ideal water without gravity, turning and moving about all axes."""
+    """Return the motion of a spheroid in ideal water without gravity, with velocity and spin about all axes.
+
+    Args:
+        integrator: MuJoCo's integrator.
+        timestep: time step of the physics [s].
+        duration: duration of the motion [s].
+    """
     tank = FloatTank(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
     tank.model.opt.gravity[:] = 0.0
     tank.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
@@ -150,7 +162,7 @@ def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> 
 
 
 def drift(motion: xr.Dataset) -> float:
-    """Return by how much momentum and its moment change at most, over their own size [-]."""
+    """Return the greatest change of linear and angular momentum over their initial magnitude [-]."""
     relative_changes = []
     for name in ("momentum", "angular_momentum"):
         values = motion[name].values
@@ -159,7 +171,7 @@ def drift(motion: xr.Dataset) -> float:
 
 
 def kinds() -> dict[str, FloatBody]:
-    """Return a body made of each kind of piece."""
+    """Return one body for each kind of piece that floating bodies are made of."""
     half = (0.25, 0.1, 0.06)
     return {
         "disc": FloatBody(shape="cylinder", half=half, mass=1, inertia=_UNIT_INERTIA, parts=100),
@@ -169,12 +181,12 @@ def kinds() -> dict[str, FloatBody]:
 
 
 def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
-    """Return how far volumes under water are from those by counting points, over the whole volume, pose by pose [-].
+    """Return the error of the submerged volume against counted points, over the whole volume, for each pose [-].
 
     Args:
-        body: made of pieces.
-        poses: random orientations and depths [-].
-        points: evenly scattered points of a Sobol sequence, a power of two [-].
+        body: body that is made of pieces.
+        poses: number of random orientations and depths [-].
+        points: number of points of a Sobol sequence, a power of two [-].
     """
     rng = np.random.default_rng(0)
     cube = 2 * qmc.Sobol(3, seed=0).random(points) - 1
@@ -194,9 +206,9 @@ def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
 
 
 def public_table() -> dict[str, float]:
-    """Return the accelerations and the force of the table in MuJoCo's issue 3452, as this physics has them.
+    """Return the accelerations and the force of the table in MuJoCo's issue 3452, as this physics computes them.
 
-    ``neutral`` [m/s2], ``ballast`` [N], ``keel`` [rad/s2].
+    The keys are ``neutral`` [m/s2], ``ballast`` [N] and ``keel`` [rad/s2].
     """
     neutral = FloatTank(SPHEROID_PLAIN, DEEP)
     neutral.place((0.0, 0.0, 0.0))
@@ -216,11 +228,11 @@ def public_table() -> dict[str, float]:
 
 
 SPHEROID_PLAIN = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
-"""As heavy as its water, its mass in its middle."""
+"""A neutrally buoyant spheroid whose centre of mass is its centre."""
 
 
 def keeled() -> FloatBody:
-    """Return a hull under water whose keel pulls it upright with the issue's acceleration."""
+    """Return a submerged hull whose keel turns it upright with the issue's angular acceleration."""
     body = FloatBody(shape="ellipsoid", half=(1.0, 0.5, 0.5), mass=1, inertia=_UNIT_INERTIA)
     mass = WATER.density * body.volume
     center_depth = KEEL * _GYRATION / (GRAVITY * sin(radians(45)))

@@ -34,7 +34,7 @@ from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _UPRIGHT = 0.035
-"""Heel within which it counts as upright [rad]; 2 degrees."""
+"""Heel below which the robot counts as upright [rad]; 2 degrees."""
 _DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (3, 1)))
 _SHADES = (COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["tail_drag"], COLOURS["spine_only"], "#333333")
 
@@ -96,15 +96,16 @@ class Floating(Experiment):
         return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Float the bodies whose answers are known, then let the robot go."""
+        """Simulate the bodies with exact answers, then release the robot from each heel."""
         progress("exact answers", 0.0)
         parts = [self._drafts(), self._heave(), self._energy(), self._drift(), self._volumes(), self._table()]
         progress("righting levers", 0.4)
         parts.append(self._levers())
-        record = self._let_go(staged(progress, "let go", 0.5, 1.0))
+        record = self._release_record(staged(progress, "let go", 0.5, 1.0))
         return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
 
     def _drafts(self) -> xr.Dataset:
+        """Return computed and exact draft of the bodies with closed forms [m]."""
         known_drafts = cases.drafts()
         return xr.Dataset(
             {
@@ -115,6 +116,7 @@ class Floating(Experiment):
         )
 
     def _heave(self) -> xr.Dataset:
+        """Return simulated and exact heave period of a box, without and with added mass [s]."""
         added_mass_ratios = (0.0, 0.6)
         heaves = [cases.heave(ratio, 0.005, self.periods, self.timestep) for ratio in added_mass_ratios]
         return xr.Dataset(
@@ -126,6 +128,7 @@ class Floating(Experiment):
         )
 
     def _energy(self) -> xr.Dataset:
+        """Return the energy of a rocking box over time [J] and its relative gain [-], for each integrator."""
         names = ("implicitfast", "RK4")
         motions = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
         energy = np.array([motion.energy.values for motion in motions])
@@ -138,10 +141,12 @@ class Floating(Experiment):
         )
 
     def _drift(self) -> xr.Dataset:
+        """Return the relative change of momentum of a spheroid in ideal water, for each integrator [-]."""
         drifts = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
         return xr.Dataset({"drift": ("integrator", drifts[::-1], {"units": "1"})})
 
     def _volumes(self) -> xr.Dataset:
+        """Return the relative error of the submerged volume for each kind of piece and pose [-]."""
         errors = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
         return xr.Dataset(
             {"volume_off": (("piece", "pose"), np.array(list(errors.values())), {"units": "1"})},
@@ -150,11 +155,13 @@ class Floating(Experiment):
 
     @staticmethod
     def _table() -> xr.Dataset:
+        """Return the values of ``cases.public_table`` as variables ``table_NAME``."""
         table = cases.public_table()
         units = {"neutral": "m/s2", "ballast": "N", "keel": "rad/s2"}
         return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in table.items()})
 
     def _levers(self) -> xr.Dataset:
+        """Return righting lever [m] and hydrostatic numbers of the robot with its hull and without."""
         hydrostatic_results = [
             hydrostatics(robot, self._posture(robot), heels=self.angles)
             for robot in (self.robot, with_values(self.robot, {"hull": None}))
@@ -173,9 +180,11 @@ class Floating(Experiment):
 
     @staticmethod
     def _posture(robot: Robot) -> np.ndarray:
+        """Return the servo angles of the robot lying still with its limbs held out [rad]."""
         return cycle_targets(robot, still(robot, limbs=LIMBS_UP), np.zeros(1))[0]
 
-    def _let_go(self, progress: Any) -> xr.Dataset:
+    def _release_record(self, progress: Any) -> xr.Dataset:
+        """Simulate the robot released at the surface from each angle of heel."""
         gait = still(self.robot, limbs=LIMBS_UP)
         runs = [
             Run(
@@ -190,6 +199,7 @@ class Floating(Experiment):
         return simulate(runs, duration=self.duration, progress=progress)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the run with the last heel."""
         return replayed(
             "righting_replay.html",
             record.isel(run=-1),
@@ -199,7 +209,7 @@ class Floating(Experiment):
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how far off the exact answers are, and how the robot floats."""
+        """Return the errors against the exact answers, and the floating position of the robot."""
         heave = np.abs(record.heave_period / record.exact_heave_period - 1)
         rest_interval = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
         roll = rotation.heel(record.orientation.values)
@@ -241,7 +251,7 @@ _STATICS: Mapping[str, str] = {
     "mass": "kg", "volume": "m3", "missing": "m3", "surplus": "kg", "draft": "m", "trim": "rad",
     "metacentric_height": "m", "vanishing": "rad",
 }  # fmt: skip
-"""Numbers of ``Hydrostatics`` that are kept, with their units."""
+"""Fields of ``Hydrostatics`` that become measures, with their units."""
 
 
 def draw_righting(record: xr.Dataset) -> Figure:
@@ -259,7 +269,7 @@ def draw_righting(record: xr.Dataset) -> Figure:
             "floating": ("-", "coordinated", "with its hull, "),
             "bare": ((0, (5, 2)), "limbs_only", "without it, "),
         }
-        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # it has none
+        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # the robot has no hull
             hulls = {"floating": ("-", "coordinated", "")}
         for hull, (dashes, colour, hull_text) in hulls.items():
             label = hull_text + ("at the surface" if floats[hull] else "sunk")
@@ -284,10 +294,10 @@ def draw_righting(record: xr.Dataset) -> Figure:
 
 
 def draw_checks(record: xr.Dataset) -> Figure:
-    """Draw drafts beside exact ones, and the energy of a box that rocks.
+    """Draw computed over exact drafts, and the energy of a rocking box over time.
 
     Args:
-        record: with ``body_draft`` and ``exact_draft`` (float) [m], ``energy`` (integrator, box_time) [J].
+        record: ``body_draft`` and ``exact_draft`` (float) [m], ``energy`` (integrator, box_time) [J].
     """
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.2)

@@ -36,7 +36,7 @@ _ANIMAL_PHASES = {
     name: phase - _ANIMAL_GAIT.limb_phases[0]
     for name, phase in zip(("LF", "RF", "LH", "RH"), _ANIMAL_GAIT.limb_phases, strict=True)
 }
-"""Phase by which each foot of a walking salamander is ahead of its left front one [cycle]."""
+"""Phase lead of each foot of a walking salamander over its left front foot [cycle]."""
 _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 
@@ -76,7 +76,7 @@ class GaitDiagram(Experiment):
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
-            check.whole("cycles", 2, 1000)  # one cycle cannot show that it repeats itself
+            check.whole("cycles", 2, 1000)  # one cycle cannot show periodicity
 
     def quick(self) -> "GaitDiagram":
         """The same: it takes a second."""
@@ -87,11 +87,11 @@ class GaitDiagram(Experiment):
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
         record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
-        commanded = _commanded(self.robot, record.servo_target.transpose("time", "servo").values)
+        commanded = _commanded_bends(self.robot, record.servo_target.transpose("time", "servo").values)
         for body_part, bend in commanded.items():
             attrs = {"units": "rad", "long_name": f"commanded bend of the {body_part}, right positive"}
             record[f"commanded_{body_part}"] = ("time", bend, attrs)
-        sensed = _sensed(self.robot, record)
+        sensed = _sensed_bends(self.robot, record)
         for body_part in commanded:
             record[f"sensed_{body_part}"] = (
                 "time",
@@ -106,7 +106,7 @@ class GaitDiagram(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
-        walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample begins the next one
+        walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample belongs to the next cycle
         legs = [str(leg) for leg in record.leg.values]
         duty, phase = duty_factor(record), sensed_phase(record)
         measures = Measures({f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs})
@@ -144,11 +144,11 @@ class GaitDiagram(Experiment):
         }
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how what the feet and joints do differs from what is commanded."""
+        """Return how the motion of feet and joints differs from the commanded motion."""
         return self.told(measures, legs=layout(self.robot).limb_names, animal_duty=_ANIMAL_GAIT.duty_factor)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw commanded and sensed."""
+        """Draw the simulated and the commanded gait diagram, and for a body of four limbs that of an animal."""
         walk = between(outcome.record)
         bends = {
             source: {
@@ -177,8 +177,16 @@ class GaitDiagram(Experiment):
         return {"gait_diagram": figure, **animal_figures}
 
 
-def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the angles of spine and tail in the article's signs, right and down positive [rad]."""
+def _sensed_bends(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the simulated bends of spine and tail in the article's signs, right and down positive [rad].
+
+    Args:
+        robot: robot of the record.
+        record: record of one run, with ``joint_angle`` (time, joint) [rad].
+
+    Returns:
+        Bends over time by ``spine``, ``tail``, and the same names with ``_vertical``.
+    """
     body_layout = layout(robot)
     tail = {body_layout.servos[i] for i in body_layout.tail_yaw} | {
         name for i in body_layout.cables for name in body_layout.cable(i).hinges
@@ -191,7 +199,7 @@ def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
         f"{body_part}_vertical": [body_layout.servos[i] for i in pitch]
         for body_part, pitch in _pitch_servos(robot).items()
     }
-    signs = {"spine": -1.0}  # ahead of the root a positive yaw bends to the left, behind it to the right
+    signs = {"spine": -1.0}  # positive yaw bends the spine to the left and the tail to the right
     return {
         body_part: signs.get(body_part, 1.0) * record.joint_angle.sel(joint=names).sum("joint").values
         for body_part, names in hinges.items()
@@ -199,7 +207,12 @@ def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
-    """Draw the last whole cycle of a walk beside that of the animal, both from where the first leg's phase is zero."""
+    """Draw the last whole cycle of a walk, and the mean cycle of the animal, both from phase zero of the first leg.
+
+    Args:
+        walk: record of one run.
+        legs: names of the legs.
+    """
     phase = walk.limb_phase.isel(leg=0).values
     cycle_start = phase[-1] - 1.0
     cycle = walk.isel(time=np.flatnonzero(phase >= cycle_start - 1e-9))
@@ -208,10 +221,11 @@ def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
     clock = np.linspace(0.0, 1.0, 101)
     robot = ROBOTS["salamander"]
     begin = START + (1.0 - _ANIMAL_GAIT.limb_phases[0]) * _ANIMAL_GAIT.period
-    bends = _commanded(robot, intended(robot, _ANIMAL_GAIT, begin + clock * _ANIMAL_GAIT.period).targets)
+    bends = _commanded_bends(robot, intended(robot, _ANIMAL_GAIT, begin + clock * _ANIMAL_GAIT.period).targets)
     phase_leads = np.array([_ANIMAL_PHASES[leg] for leg in legs])[:, None]
 
     def roll_to_start(values: np.ndarray) -> np.ndarray:
+        """Return values over one cycle, rolled along time such that they begin at phase zero."""
         return np.roll(values[..., :-1], -shift, axis=-1)
 
     sides = {
@@ -244,8 +258,13 @@ def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
     )
 
 
-def _commanded(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the commanded angles of those parts that a servo bends [rad], of angles of shape (time, servo) [rad]."""
+def _commanded_bends(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the commanded bends of the parts that have servos, by the names of ``_sensed_bends`` [rad].
+
+    Args:
+        robot: robot that is commanded.
+        commanded: commanded servo angles, shape (time, servo) [rad].
+    """
     body_layout = layout(robot)
     bends: dict[str, np.ndarray] = {}
     if body_layout.trunk_yaw:
@@ -261,7 +280,7 @@ def _commanded(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _pitch_servos(robot: Robot) -> dict[str, tuple[int, ...]]:
-    """Return the servos that bend spine and tail up and down, of those parts that have some."""
+    """Return the indices of the servos that bend spine and tail vertically, for those parts that have such servos."""
     body_layout = layout(robot)
     return {
         body_part: servos
@@ -276,12 +295,19 @@ def _bent_parts(record: xr.Dataset) -> list[str]:
 
 
 def _harmonic(record: xr.Dataset, values: np.ndarray) -> complex:
+    """Return the complex amplitude of the first harmonic of values over time."""
     rotation = np.exp(-2j * np.pi * (record.time.values - START) / float(record.period))
     return complex(2 * np.mean((values - values.mean()) * rotation))
 
 
 def _lag_and_gain(record: xr.Dataset, sensed: np.ndarray, commanded: np.ndarray) -> tuple[float, float]:
-    """Return lag [cycle] and gain [-] of what is sensed behind what is commanded, by first harmonics."""
+    """Return lag [cycle] and gain [-] of a sensed angle against the commanded one, from their first harmonics.
+
+    Args:
+        record: record of one run, for its times and its period.
+        sensed: sensed angle over time [rad].
+        commanded: commanded angle over time [rad].
+    """
     commanded_harmonic, sensed_harmonic = _harmonic(record, commanded), _harmonic(record, sensed)
     if abs(commanded_harmonic) < 1e-6:
         return 0.0, float("nan")
@@ -290,9 +316,9 @@ def _lag_and_gain(record: xr.Dataset, sensed: np.ndarray, commanded: np.ndarray)
 
 
 def _period(record: xr.Dataset) -> float:
-    """Return the shift in time at which the feet's loads agree best with themselves [s].
+    """Return the time shift at which the loads of the feet agree best with themselves [s].
 
-    Looked for from half to one and a half of the commanded period.
+    Shifts from a half to one and a half of the commanded period are searched.
     """
     load = record.foot_force.sel(xyz="z").transpose("time", "leg").values
     step, period = float(record.time[1] - record.time[0]), float(record.period)

@@ -36,8 +36,8 @@ from suchus.sim.metrics import between, displacement, flight_share
 from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
 
-_RUN_UP = 1.0  # [s]; before anything is measured
-_FAST_PERIOD = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach
+_RUN_UP = 1.0  # [s]; before the measurement begins
+_FAST_PERIOD = 0.48  # [s]; period of the walks; the robot's own servos are far too slow for it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +101,7 @@ class GallopLimits(Experiment):
         return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Bound, trot and walk with every servo on the map."""
+        """Simulate every gait with every servo on the map."""
         searched = [("bound", candidate) for candidate in self.bounds] + [
             ("trot", candidate) for candidate in self.trots
         ]
@@ -156,15 +156,21 @@ class GallopLimits(Experiment):
 
     @property
     def _leg_servo_indices(self) -> list[int]:
-        """Places of the legs' servos."""
+        """Indices of the servos of the legs."""
         body_layout = layout(self.robot)
         return [index for limb in body_layout.limbs for index in range(*limb.servos.indices(len(body_layout.servos)))]
 
     def _robot_with_servos(self, torque: float, speed: float) -> Robot:
-        """Return the robot with other servos, each with a torque-speed line."""
+        """Return the robot with other servos, each with a straight torque-speed line.
+
+        Args:
+            torque: torque limit of the legs' servos [N m]; the others are in proportion.
+            speed: no-load speed of all servos [rad/s].
+        """
         leg_servos = {layout(self.robot).servos[index] for index in self._leg_servo_indices}
 
         def over_legs(name: str) -> float:
+            """Return the torque limit of a servo over that of the legs' servos [-]."""
             return (
                 1.0 if name in leg_servos else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
             )
@@ -180,7 +186,13 @@ class GallopLimits(Experiment):
     def _replays(
         self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
     ) -> Mapping[str, Replay]:
-        """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
+        """Return the replay of the fastest bound of all, and of the fastest with servos most like the robot's own.
+
+        Args:
+            record: record of all runs.
+            cells: torque limit [N m] and no-load speed [rad/s] of each cell of the map.
+            map_of_gaits: ``speed`` (torque, servo_speed, gait) [m/s], with the ``kind`` of each gait.
+        """
         bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
         best_cell = int(np.argmax(bound.max(1)))
         nearest_cell = min(
@@ -206,7 +218,7 @@ class GallopLimits(Experiment):
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
+        """Return the speed of a bound with the robot's servos and with better ones, and the speed a gallop needs."""
         bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
         design_servo = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
         own_bound, own_walk = (kind.sel(design_servo, method="nearest") for kind in (bound, walks))
@@ -232,7 +244,7 @@ class GallopLimits(Experiment):
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""
+        """Draw speed and flight of the bound over the servos' speed, with the speed of the fastest walk."""
         bound, walks = fastest(outcome.record, "bound"), fastest(outcome.record, "trot", "walk")
         figure = captioned(
             draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
@@ -244,19 +256,20 @@ class GallopLimits(Experiment):
 
 
 FLIES = 0.1
-"""Share of the time in flight from which a bound counts as a gallop here [-]; less is a walk that stumbles."""
+"""Flight fraction from which a bound counts as a gallop [-]; with less it is a walk that stumbles."""
 
 
 def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
 
-    ``built_speed`` holds the speeds of the robots that are built of the design, whose median the speed is.
+    ``built_speed`` holds the speeds of the robots as built; their median is the speed.
 
-    A servo that could do more may be limited to what a weaker or slower one does, so a gait that was found for such a
-    one counts with all better ones too: else a bound would be compared with walks that nobody searched for its servo.
+    A better servo can be limited to the torque and speed of a weaker or slower one. A gait that is fast with the lesser
+    servo therefore counts with all better ones too. Otherwise a bound would be compared with walks that were not
+    searched for its servo.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         kinds: ``bound``, ``trot`` or ``walk``.
     """
     candidates = record.isel(gait=np.isin(record.kind.values, kinds))
@@ -279,7 +292,12 @@ def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
 
 
 def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
-    """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
+    """Return the lowest speed from which on all faster servos pay off [rad/s]; infinite if not even the fastest does.
+
+    Args:
+        speeds: no-load speeds, increasing [rad/s].
+        pays: whether a gallop pays off at each speed.
+    """
     all_faster_pay = np.flip(np.logical_and.accumulate(np.flip(pays)))
     return float(speeds[all_faster_pay][0]) if all_faster_pay.any() else float("inf")
 

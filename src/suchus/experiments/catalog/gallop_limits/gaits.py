@@ -1,4 +1,4 @@
-"""Gaits that a search found for the limit study of galloping; none of them stands on the shelf."""
+"""Gaits that a search found for the limit study of galloping; they are not in the catalog of gaits."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -8,7 +8,7 @@ from suchus.robot.gaits.belly_crawl import LIMBS
 from suchus.robot.motion import Bend, Gait, GaitInMetres, as_table
 from suchus.robot.robots import ROBOTS
 
-_SAMPLES = 32  # of a cycle, with which the gaits were searched
+_SAMPLES = 32  # [-]; samples of a cycle in the search
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,16 +34,16 @@ def _searched_gait(
     yaw: tuple[float, float],
     **feet: Any,
 ) -> Searched:
-    """Return a gait whose trunk bends up and down besides, the other joints as smooth curves as in the search.
+    """Return a gait whose trunk also bends vertically; its other joints follow smooth curves, as in the search.
 
     Args:
         servo_speed: no-load speed of the servos with which it was searched [rad/s].
-        name: of the gait.
-        foot_offsets: places of the front and the hind feet ahead of their hips [m].
-        trunk: mean [rad] and amplitude [rad] of the trunk's vertical bend, down positive, and when in the cycle it is
-            bent down most [cycle].
+        name: name of the gait.
+        foot_offsets: offsets of the front and the hind feet ahead of their hips [m].
+        trunk: mean [rad] and amplitude [rad] of the trunk's vertical bend, down positive, and the phase in the cycle at
+            which it is bent down most [cycle].
         yaw: amplitude [rad] and phase [cycle] of its lateral bend.
-        **feet: what else ``GaitInMetres`` is told of the feet and the tail.
+        **feet: further arguments of ``GaitInMetres`` for the feet and the tail.
     """
     metres = GaitInMetres(
         name=name,
@@ -61,7 +61,7 @@ def _searched_gait(
     mean, amplitude, down_phase = trunk
     lag = down_phase + 0.5 - (0.75 - metres.duty_factor / 2)  # the phase of the axis counts from before mid-stance
     vertical = Bend(part="trunk", turn="pitch", amplitude=(amplitude,), lag=(lag,), offset=mean)
-    # in a bound the pulls of left and right cancel in the article's law, and the trunk follows the gait's own phases
+    # in a bound left and right cancel in the article's coupling law, so the trunk follows the gait's own phases
     curves = as_table(ROBOTS["caiman"], metres.gait(LIMBS), _SAMPLES)
     gait = replace(curves, axis=(vertical,), coupling=() if amplitude else curves.coupling)
     return Searched(servo_speed=servo_speed, gait=gait)

@@ -57,13 +57,13 @@ from suchus.sim.metrics import (
 )
 
 _SUPPORT_PREFIXES = ("support_share_", "tail_load_", "foot_", "com_")
-"""How the names of the measures begin that are of what carries the body."""
+"""Prefixes of the measures of the loads that carry the body."""
 _HINGES_PER_LIMB = 2
-"""Hinges of a limb, from the hip on, that are steered and locked in places; the article's yaw and pitch."""
+"""Hinges of a limb, from the hip on, whose faults are steered and whose locking position is varied [-]."""
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
-_CELL = ("joint", "kind", "legs")
-_SAMPLING_STRIDE = 10  # samples of the physics in which a run of the campaign is kept [-]
+_CELL_DIMS = ("joint", "kind", "legs")
+_SAMPLING_STRIDE = 10  # [-]; physics steps per stored sample of the campaign
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,13 +135,13 @@ class JointFaults(TwoGroups):
         return Simulated(record=record, tables={"faults.csv": table(record)}, replays=replays)
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for what carries the body nothing else need fail."""
+        """Return at least the requested measures; those of the support need no other faults."""
         if not all(name.startswith(_SUPPORT_PREFIXES) for name in wanted):
             return super(JointFaults, self).measured(wanted, progress)
         return _support_measures(self._support(progress))
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return what every cell costs against both intact robots, and what carries the body."""
+        """Return the loss in every cell against both intact robots, and the loads that carry the body."""
         reading = f"{record.attrs['judged_kind']}_{record.attrs['judged_legs']}"
         intact = record.intact_forward.sel(arm="coordinated", drop=True)
         measures = Measures()
@@ -164,7 +164,7 @@ class JointFaults(TwoGroups):
         return measures | _effects(record) | _support_measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the judged faults cost of each group's own, which choice decides most, what steering does."""
+        """Return the losses against each group's own intact robot, the decisive choice, and the effect of steering."""
         reading = f"_{self.kind}_{self.legs}"
         joints = [
             name.removeprefix("loss_").removesuffix(f"{reading}_coordinated")
@@ -183,13 +183,13 @@ class JointFaults(TwoGroups):
         return failing_joints(self.robot)
 
     @property
-    def _failing(self) -> tuple[str, ...]:
-        """The joints whose loss is steered and locked in several places."""
+    def _failing_joints(self) -> tuple[str, ...]:
+        """Names of the joints whose fault is also simulated with steering and at several locking positions."""
         return self._joints[: _HINGES_PER_LIMB * len(self.robot.girdles)]
 
     @property
     def _gaits(self) -> dict[str, Gait]:
-        """The gaits of both groups, and of limbs only with the tail in the air where it can be lifted."""
+        """Gaits of both groups, and of limbs only with the tail in the air where a servo can lift it."""
         limbs_only = self.control_group
         gaits = {"coordinated": self.gait, "limbs_only": limbs_only}
         if "limbs_tail_lifted" in conditions_of(self.robot, self.gait, limbs_only):
@@ -197,15 +197,15 @@ class JointFaults(TwoGroups):
         return gaits
 
     def _faults_of(self, gait: Gait, joint: str) -> tuple[Fault, ...]:
-        """Return the faults of a joint in the judged reading."""
+        """Return the faults of a joint in the reading of the article that is judged."""
         return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
     def _built(self, runs: list[Run]) -> list[Run]:
-        """Return the repeats of runs, run by run; the i-th of each is the same robot on the same ground."""
+        """Return the repeats of runs, run by run; the i-th repeat of each is the same robot on the same ground."""
         return self.tolerances.repeats(runs, self.repeats, self.seed)
 
     def _repeats_of(self, runs: list[Run], progress: Any) -> xr.Dataset:
-        """Return the repeats of runs, run by run."""
+        """Simulate the repeats of runs, run by run."""
         repeated = self._built(runs)
         return whole(
             simulate(
@@ -214,7 +214,7 @@ class JointFaults(TwoGroups):
         )
 
     def _campaign(self, progress: Any) -> xr.Dataset:
-        """Run every cell and the intact robots of both groups in every repeat, and keep how far each got over time."""
+        """Simulate every cell and the intact robots in every repeat, and return displacements and tracks."""
         cells = list(product(self._joints, KINDS, LEGS_FAILED))
         runs = [
             Run(robot=self.robot, gait=self._gaits[arm], faults=faults)
@@ -242,8 +242,8 @@ class JointFaults(TwoGroups):
         return data
 
     def _locking_record(self, progress: Any) -> xr.Dataset:
-        """Lock one leg's joint at several places of its range, undisturbed."""
-        gaits, points = self._gaits, list(product(ARMS, self._failing, self.holds))
+        """Simulate one leg's joint locked at several positions of its range, for the robot as designed."""
+        gaits, points = self._gaits, list(product(ARMS, self._failing_joints, self.holds))
         runs = [Run(robot=self.robot, gait=gaits[arm]) for arm in ARMS]
         runs += [
             Run(robot=self.robot, gait=gaits[a], faults=joint_failure(self.robot, gaits[a], j, "locked", hold=h))
@@ -253,7 +253,7 @@ class JointFaults(TwoGroups):
             runs, duration=self._duration, timestep=self.timestep, every=_SAMPLING_STRIDE, progress=progress
         )
         distance = displacement(whole(record)).sel(xyz="x").values
-        locked_distances = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing), len(self.holds))
+        locked_distances = distance[len(ARMS) :].reshape(len(ARMS), len(self._failing_joints), len(self.holds))
         metre = {"units": "m"}
         data = xr.Dataset(
             {
@@ -261,12 +261,12 @@ class JointFaults(TwoGroups):
                 "held_forward": (("arm", "lost", "hold"), locked_distances, metre),
             }
         )
-        return data.assign_coords(arm=list(ARMS), lost=list(self._failing), hold=list(self.holds))
+        return data.assign_coords(arm=list(ARMS), lost=list(self._failing_joints), hold=list(self.holds))
 
     def _failed_pitch(self) -> list[Run]:
-        """Return runs of the robot intact, with its right hind pitch joint limp, and with it locked.
+        """Return runs of the robot intact, with its right hind pitch joint limp, and with this joint locked.
 
-        Of a limb with one hinge it is that one.
+        Where a limb has one hinge, that hinge fails.
         """
         hind = layout(self.robot).limbs[-1]
         servo = layout(self.robot).servos[hind.servos][-1 if hind.servos.stop - hind.servos.start == 1 else 1]
@@ -277,11 +277,12 @@ class JointFaults(TwoGroups):
         ]
 
     def _support(self, progress: Any) -> xr.Dataset:
-        """Return what carries the body while the right hind leg, whose pitch joint fails, is meant to swing."""
+        """Return the loads that carry the body while the right hind leg, whose pitch joint fails, should swing."""
         runs, step = self._built(self._failed_pitch()), coarse_step(self.robot)
         return support(whole(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats)
 
     def _replays(self, progress: Any) -> Mapping[str, Replay]:
+        """Return the replay of the crawl with the right hind pitch joint limp, and of the intact one."""
         runs, step = self._failed_pitch()[:2], coarse_step(self.robot)
         record = whole(simulate(runs, duration=self._duration, timestep=step, progress=progress))
         return replayed(
@@ -295,8 +296,8 @@ class JointFaults(TwoGroups):
         )
 
     def _comparison_record(self, progress: Any) -> xr.Dataset:
-        """Run the judged reading of the article's joints steered, and with limbs only and the tail in the air."""
-        joints, gaits, steers = self._failing, self._gaits, self.gait.has("steering")
+        """Simulate the judged faults with steering, and with limbs only and the tail in the air."""
+        joints, gaits, steers = self._failing_joints, self._gaits, self.gait.has("steering")
         cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
         if steers:
             control = Coordinated(heading=HeadingRule()).suited(self.robot, self.gait)
@@ -342,19 +343,28 @@ class JointFaults(TwoGroups):
 def lay(
     data: xr.Dataset, name: str, values: np.ndarray, extra_dims: tuple[str, ...], unit: str, long_name: str
 ) -> None:
-    """Put values of shape (arm, 1 + cell, repeat, ...) into a dataset: the intact apart from the cells."""
+    """Store the values of all cells in a dataset, as ``NAME`` and, for the intact robots, as ``intact_NAME``.
+
+    Args:
+        data: dataset that gets the variables.
+        name: name of the variable.
+        values: values of shape (arm, 1 + cell, repeat, ...), the intact robot first.
+        extra_dims: names of the dimensions after the repeats.
+        unit: unit of the values.
+        long_name: description of the variable.
+    """
     attrs = {"units": unit, "long_name": long_name}
     data[f"intact_{name}"] = (("arm", "repeat", *extra_dims), values[:, 0], attrs)
     shape = (len(values), data.sizes["joint"], len(KINDS), len(LEGS_FAILED), *values.shape[2:])
-    data[name] = (("arm", *_CELL, "repeat", *extra_dims), values[:, 1:].reshape(shape), attrs)
+    data[name] = (("arm", *_CELL_DIMS, "repeat", *extra_dims), values[:, 1:].reshape(shape), attrs)
 
 
 def support(record: xr.Dataset, repeats: int) -> xr.Dataset:
-    """Return what carries the body while the last limb, the right hind leg, is meant to swing.
+    """Return the loads that carry the body while the last limb, the right hind leg, is commanded to swing.
 
     Args:
-        record: of the repeats of the intact robot, and of those with its pitch joint limp and locked.
-        repeats: how many of each.
+        record: repeats of the intact robot, then of those with its pitch joint limp and locked.
+        repeats: number of repeats of each [-].
     """
     leg, states = str(record.leg.values[-1]), ["intact", *KINDS]
     loads = swing_loads(record, leg).transpose("run", "part")
@@ -384,15 +394,22 @@ def support(record: xr.Dataset, repeats: int) -> xr.Dataset:
 
 
 def lost(forward: xr.DataArray, intact: xr.DataArray) -> xr.DataArray:
-    """Return the change of displacement against an intact robot [-]; NaN of one that does not get forward itself."""
+    """Return the relative change of displacement against an intact robot [-].
+
+    The result is NaN where the intact robot does not move forward itself.
+
+    Args:
+        forward: displacement with a fault [m].
+        intact: displacement of the intact robot [m].
+    """
     return loss(forward, intact.where(intact > 0.0))
 
 
 def _cells(record: xr.Dataset) -> Measures:
-    """Return what every cell costs: against the intact robot with spine and tail, and of limbs only against its own.
+    """Return the loss in every cell: against the intact robot with spine and tail, and for limbs only against its own.
 
-    ``gain`` is how much less of its own displacement the robot loses with spine and tail than with limbs only, repeat
-    by repeat; of one that loses all, or goes backwards, nothing is left.
+    ``gain`` is the loss with limbs only minus the loss with spine and tail, each of its own displacement, repeat by
+    repeat. A loss is at most the whole displacement, also for a robot that goes backwards.
     """
     common_change = lost(record.forward, record.intact_forward.sel(arm="coordinated", drop=True))
     own_change = lost(record.forward, record.intact_forward)
@@ -400,7 +417,7 @@ def _cells(record: xr.Dataset) -> Measures:
     gain = bounded_change.sel(arm="coordinated") - bounded_change.sel(arm="limbs_only")
     measures = Measures()
     for cell in product(record.joint.values, KINDS, LEGS_FAILED):
-        indexers, name = dict(zip(_CELL, cell, strict=True)), "_".join(cell)
+        indexers, name = dict(zip(_CELL_DIMS, cell, strict=True)), "_".join(cell)
         for arm in ARMS:
             measures |= estimated(f"loss_{name}_{arm}", common_change.sel(indexers).sel(arm=arm), "-")
             measures |= estimated(f"turn_{name}_{arm}", record.turn.sel(indexers).sel(arm=arm), "rad")
@@ -410,7 +427,7 @@ def _cells(record: xr.Dataset) -> Measures:
 
 
 def _effects(record: xr.Dataset) -> Measures:
-    """Return by how much the change with spine and tail differs on average between two readings of one thing [-]."""
+    """Return the mean difference of the change with spine and tail between two readings of one choice [-]."""
     change = lost(record.forward, record.intact_forward).sel(arm="coordinated", joint=record.lost.values)
     change = change.median("repeat")
     effects = Measures()
@@ -422,11 +439,15 @@ def _effects(record: xr.Dataset) -> Measures:
 
 
 def _support_measures(record: xr.Dataset) -> Measures:
-    """Return what carries the body while the right hind leg is meant to swing, and how high it is carried."""
+    """Return the loads that carry the body while the right hind leg should swing, and the height of the body."""
     measures = Measures()
     height, parts = record.swing_height, [str(body_part) for body_part in record.part.values]
     legs = [body_part for body_part in parts if body_part not in ("tail", "belly")]
-    carriers = ["tail", *([legs[-3]] if len(legs) > 2 else []), legs[-2]]  # beside the last leg and ahead of it
+    carriers = [
+        "tail",
+        *([legs[-3]] if len(legs) > 2 else []),
+        legs[-2],
+    ]  # the leg opposite to the last one and the leg ahead of it
     for state in (str(label) for label in record.state.values):
         load = record.support.sel(state=state)
         load_fraction = load.sel(part=carriers).sum("part") / load.sum("part")
@@ -441,14 +462,14 @@ def _support_measures(record: xr.Dataset) -> Measures:
 
 
 def table(record: xr.Dataset) -> str:
-    """Return one row per cell and group: medians over the repeats, with the ranges that a paper needs."""
+    """Return medians over the repeats as CSV text, one row per cell and group, with the range of the changes."""
     coordinated = record.sel(arm="coordinated", drop=True)
     rows = [
         "joint,kind,legs,arm,forward_m,change,change_low,change_high,change_of_own_intact,net_change,path_change,"
         "turn_deg,printed_change"
     ]
     for *cell, arm in product(record.joint.values, KINDS, LEGS_FAILED, ARMS):
-        cell_record = record.sel(dict(zip((*_CELL, "arm"), (*cell, arm), strict=True)))
+        cell_record = record.sel(dict(zip((*_CELL_DIMS, "arm"), (*cell, arm), strict=True)))
         change = lost(cell_record.forward, coordinated.intact_forward)
         numbers = (
             cell_record.forward.median(),
@@ -461,7 +482,7 @@ def table(record: xr.Dataset) -> str:
         )
         medians = [f"{float(number):.3f}" for number in numbers]
         turn_text = f"{float(np.degrees(cell_record.turn.median())):.1f}"
-        claim = CLAIMS.get(f"fault_{cell[0]}_{arm}")  # of the knee the article says nothing
+        claim = CLAIMS.get(f"fault_{cell[0]}_{arm}")  # the article does not mention the knee
         printed_text = f"{claim.value:.2f}" if claim is not None else ""
         rows.append(",".join((*map(str, cell), arm, *medians, turn_text, printed_text)))
     return "\n".join(rows) + "\n"

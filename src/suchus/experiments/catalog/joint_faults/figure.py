@@ -23,22 +23,23 @@ _SHADES = ("#0072B2", "#56B4E9", "#D55E00", "#E69F00", "#009E73", "#B0558A")
 
 
 def _joint_label(joint: str) -> str:
+    """Return the name of a joint as figures write it."""
     name = joint.replace("_", " ")
     return name if joint.endswith("knee") else f"{name} joint"
 
 
 def _printed_loss(joint: str, arm: str) -> float | None:
-    """Return what the article says of a loss, None of a joint of which it says nothing."""
+    """Return the loss that the article prints for a joint [-]; None for a joint that the article does not mention."""
     claim = CLAIMS.get(f"fault_{joint}_{arm}")
     return None if claim is None else claim.value
 
 
 def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
-    """Draw what every cell costs as heat maps with numbers: joints by kind and legs, a panel for each group.
+    """Draw the loss in every cell as heat maps with numbers: joints by kind and legs, a panel for each group.
 
     Args:
-        record: of the campaign, for its joints, kinds and legs.
-        measures: ``loss_CELL_GROUP`` and ``own_loss_CELL_limbs_only`` with their intervals.
+        record: record of the campaign, for its joints, kinds and legs.
+        measures: ``loss_CELL_GROUP`` and ``own_loss_CELL_limbs_only`` with their intervals [-].
     """
     rows = [str(joint) for joint in record.joint.values]
     columns = [f"{kind}_{legs}" for kind, legs in product(record.kind.values, record.legs.values)]
@@ -68,6 +69,15 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
 
 
 def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[float]) -> None:
+    """Write the change of displacement and its interval into a cell of the matrix.
+
+    Args:
+        ax: axes of the heat map.
+        row: row of the cell.
+        column: column of the cell.
+        value: median change [%]; NaN where the intact robot does not move forward.
+        interval: lower and upper bound of the change [%].
+    """
     colour = "white" if abs(value) > 88.0 else "#222222"
     if not np.isfinite(value):
         ax.text(column, row, "nothing to lose", ha="center", va="center", fontsize=7, color="#222222")
@@ -86,7 +96,7 @@ def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[floa
 
 
 def _row(joint: str, arm: str) -> str:
-    """Return the name of a joint, and below it what the article prints of it in a group."""
+    """Return the label of a row: the name of the joint, and below it the loss that the article prints for a group."""
     printed_loss = _printed_loss(joint, arm)
     return (
         joint.replace("_", " ")
@@ -96,7 +106,10 @@ def _row(joint: str, arm: str) -> str:
 
 
 def _outwalked(record: xr.Dataset) -> str:
-    """Return which printed losses of limbs only leave more than the article's own intact robot with limbs only."""
+    """Return a sentence on printed losses that are smaller than that of the article's own intact robot with limbs only.
+
+    The sentence is empty where there are none.
+    """
     coordinated_distance, limbs_only_distance = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _ARMS)
     intact = limbs_only_distance / coordinated_distance - 1.0
     outwalking_losses = [
@@ -157,6 +170,7 @@ def draw_over_time(record: xr.Dataset, kind: str, legs: str) -> Figure:
 
 
 def _keys() -> list[Line2D]:
+    """Return the entries of the legend."""
     return [
         *(Line2D([], [], **(dict(LINES[arm]) | {"linewidth": 1.9})) for arm in _ARMS),
         Line2D([], [], color=COLOURS["neutral"], linewidth=1.3, linestyle=(0, (1, 1.5)), label="intact"),
@@ -165,10 +179,10 @@ def _keys() -> list[Line2D]:
 
 
 def draw_tracks(record: xr.Dataset) -> Figure:
-    """Draw the ways on the ground in one repeat, a panel per joint: limp joints turn the robot.
+    """Draw the tracks on the ground in one repeat, a panel per joint; arrows show the final heading.
 
     Args:
-        record: of the campaign; the first repeat is drawn.
+        record: record of the campaign; the first repeat is drawn.
     """
     repeat_record = record.isel(repeat=0).sel(arm="coordinated")
     styles: dict[tuple[str, str], dict[str, Any]] = {
@@ -210,17 +224,25 @@ def _grid(joints: Sequence[str]) -> tuple[int, int]:
 
 
 def _arrow(ax: Axes, start: np.ndarray, facing: float, colour: str) -> None:
+    """Draw an arrow of 0.07 m in the direction of the body.
+
+    Args:
+        ax: axes to draw on.
+        start: start of the arrow on the ground [m].
+        facing: heading of the body, left positive [rad].
+        colour: colour of the arrow.
+    """
     tip = start + 0.07 * np.array([np.cos(facing), np.sin(facing)])
-    ax.plot(*tip, alpha=0.0)  # keeps the tip within the limits
+    ax.plot(*tip, alpha=0.0)  # extends the axis limits to the tip
     arrow_style = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", xy=tuple(tip), xytext=tuple(start), arrowprops=arrow_style, annotation_clip=False)
 
 
 def draw_held(record: xr.Dataset) -> Figure:
-    """Draw how the change depends on where a locked joint holds.
+    """Draw the change of displacement over the position at which a joint is locked.
 
     Args:
-        record: of the campaign: ``held_forward`` over condition, failed joint and hold.
+        record: record with ``held_forward`` (arm, lost, hold) [m].
     """
     intact_distance = float(record.held_intact_forward.sel(arm="coordinated"))
     change = 100 * (record.held_forward / intact_distance - 1.0)

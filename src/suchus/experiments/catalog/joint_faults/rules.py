@@ -13,7 +13,7 @@ _HALF_LOSS = (
     Clause("", "<=", -0.4, "about half is 40 % at least"),
     Clause("", ">=", -0.7, "about half is 70 % at most"),
 )
-_INTACT = ControlGroup(
+_INTACT_GROUP = ControlGroup(
     group="coordinated", why="Section IV.C counts from the intact robot with spine and tail, of both groups."
 )
 _NO_LOSS = Clause("", ">=", -0.1, "almost nothing is less than a tenth")
@@ -27,16 +27,23 @@ _ARTICLE_CLAUSES: dict[tuple[str, str], tuple[Clause, ...]] = {
     ("hind_pitch", "limbs_only"): _HALF_LOSS,
     ("hind_pitch", "coordinated"): (_NO_LOSS,),
 }
-"""For each joint and arm the changes of displacement of which the article's sentence is true."""
+"""For each joint and arm the bounds within which the article's sentence is true."""
 
 
 _FITTED_CLAIMS = ("fault_front_yaw_limbs_only", "fault_hind_yaw_limbs_only")
-"""Claims whose number the fit of the two displacements makes: most of the change is what the intact robot lacks."""
+"""Claims whose number follows from the fit of the two displacements: the intact robot makes most of the change."""
 _TOLERATED_JOINTS = ("front_yaw", "hind_yaw", "hind_pitch")
-"""Joints of which the article says that less is lost with spine and tail; a front pitch joint ends both motions."""
+"""Joints for which the article says that the loss is smaller with spine and tail; a front pitch joint stops both."""
 
 
 def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
+    """Return the rule for the article's sentence on one joint and one group.
+
+    Args:
+        joint: joint that fails, as ``front_yaw``.
+        arm: ``coordinated`` or ``limbs_only``.
+        clauses: bounds of the change of displacement within which the sentence is true.
+    """
     cell = f"{joint}_limp_one"
     measure = f"loss_{cell}_{arm}"
     readings = "; ".join(
@@ -51,7 +58,7 @@ def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
         measure=measure,
         kind="fitted" if f"fault_{joint}_{arm}" in _FITTED_CLAIMS else "measured",
         holds=tuple(Clause(measure, clause.relation, clause.bound, clause.why) for clause in clauses),
-        control=_INTACT,
+        control=_INTACT_GROUP,
         spread=(measure,),
         of=BUILT,
         why=(_limbs_only_explanation(joint) if arm == "limbs_only" else "") + explanation,
@@ -59,7 +66,10 @@ def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
 
 
 def _limbs_only_explanation(joint: str) -> str:
-    """Return what stands beside a loss without the trunk: of its own, of the intact robot, of one with its tail up."""
+    """Return the explanation of a loss with limbs only.
+
+    It compares the loss with the group's own intact displacement, with the intact robot, and with the tail lifted.
+    """
     text = (
         f"Of its own intact displacement the robot with limbs only loses {{own_loss_{joint}_limp_one_limbs_only:+.0%}};"
         " against the one with spine and tail, as the article counts, it is at {loss_intact_limbs_only:+.0%} when "
@@ -80,7 +90,7 @@ def _limbs_only_explanation(joint: str) -> str:
 
 
 def _tolerance_explanation() -> str:
-    """Return what each group loses of its own, joint by joint."""
+    """Return the explanation of the losses of each group against its own intact robot, joint by joint."""
     rows = "; ".join(
         f"{joint.replace('_', ' ')} {{loss_{joint}_limp_one_coordinated:+.0%}} and "
         f"{{own_loss_{joint}_limp_one_limbs_only:+.0%}}, a gain of {{gain_{joint}_limp_one_low:+.0%}} to "
@@ -138,7 +148,15 @@ _READINGS = list(product(("limp", "locked"), ("one", "both")))
 def _loss(
     joint: str, arm: str, value: float, lower_bound: float | None = None, upper_bound: float | None = None
 ) -> dict[str, float]:
-    """Return the measures of one loss: the judged one with its interval, and those that are only said."""
+    """Return example measures of one loss: the judged one with its interval, and those that the explanation names.
+
+    Args:
+        joint: joint that fails, as ``front_yaw``.
+        arm: ``coordinated`` or ``limbs_only``.
+        value: judged loss [-].
+        lower_bound: lower end of its interval [-]; the loss itself by default.
+        upper_bound: upper end of its interval [-]; the loss itself by default.
+    """
     measure_name = f"loss_{joint}_limp_one_{arm}"
     measures = {f"loss_{joint}_{kind}_{legs}_{arm}": -0.5 for kind, legs in _READINGS}
     measures |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
@@ -152,7 +170,7 @@ def _loss(
 
 
 def _gain_measures(**gains: float) -> dict[str, float]:
-    """Return the measures of what is gained, two points each way wide, a tenth where nothing is said."""
+    """Return example measures of the gain [-], with an interval of 0.02 to both sides; 0.1 by default."""
     measures: dict[str, float] = {}
     for joint in _TOLERATED_JOINTS:
         gain = gains.get(joint, 0.1)
@@ -162,7 +180,13 @@ def _gain_measures(**gains: float) -> dict[str, float]:
 
 
 def _support_measures(load_fraction: float = 0.9, rise: float = 0.001, free: float = 0.6) -> dict[str, float]:
-    """Return the measures of what carries the body, with narrow intervals."""
+    """Return example measures of the support, with narrow intervals.
+
+    Args:
+        load_fraction: fraction of the load on tail, right front and left hind foot [-].
+        rise: rise of the centre of mass against the intact robot [m].
+        free: fraction of the swing in which the foot is unloaded [-].
+    """
     judged_measures = {"support_share_limp": load_fraction, "com_rise_limp": rise, "foot_free_limp": free}
     reported_measures = {
         "support_share_intact": 0.8,

@@ -25,7 +25,7 @@ from suchus.sim.metrics import between, displacement, whole
 from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
-"""A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
+"""A step without load, a load without a step, and a step of a clamped joint that is then released."""
 _CLAMP_PERIODS = 100  # [control period]; long enough for the integral to reach its limit
 
 
@@ -84,15 +84,15 @@ class JointLoops(Experiment):
         return {"gait": own_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl with every gain, then load the joint on the stand with what the crawl asks of it."""
+        """Simulate the crawl with every gain, then the joint on the stand under the load of the crawl."""
         robots = [with_servos(self.robot, partial(replace, ki=ki)) for ki in self.integrals]
-        crawls = whole(xr.concat([self._crawled(i, robot, progress) for i, robot in enumerate(robots)], "run"))
+        crawls = whole(xr.concat([self._crawl_record(i, robot, progress) for i, robot in enumerate(robots)], "run"))
         walk = between(crawls)
         load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
         data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
         progress("stand", 0.7)
         step = physics_step(self.robot)
-        data["angle"] = (("test", "ki", "time"), np.array(self._tested(robots, load)), {"units": "rad"})
+        data["angle"] = (("test", "ki", "time"), np.array(self._stand_angles(robots, load)), {"units": "rad"})
         data = data.assign_coords(
             ki=("ki", list(self.integrals), {"units": "N m/(rad s)", "long_name": "integral gain"}),
             test=list(TESTS),
@@ -107,15 +107,26 @@ class JointLoops(Experiment):
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
         return _CLAMP_PERIODS * control_period(self.robot)
 
-    def _crawled(self, index: int, robot: Robot, progress: Progress) -> xr.Dataset:
-        """Return the crawl with one of the gains; servos with and without an integral share no batch."""
+    def _crawl_record(self, index: int, robot: Robot, progress: Progress) -> xr.Dataset:
+        """Simulate the crawl with one of the gains; servos with and without an integral term cannot share a batch.
+
+        Args:
+            index: index of the gain.
+            robot: robot whose servos have this gain.
+            progress: callback that gets the finished fraction.
+        """
         run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[index]:g}")
         stage_length = 0.7 / len(self.integrals)
         stage = staged(progress, "crawl", index * stage_length, (index + 1) * stage_length)
         return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
-    def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
-        """Return the joint's angle in each test with each gain [rad]."""
+    def _stand_angles(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
+        """Return the joint's angle over time in each of ``TESTS`` with each gain [rad].
+
+        Args:
+            robots: robots with one integral gain each.
+            load: load of the second test [N m].
+        """
         step = physics_step(self.robot)
         free_steps, clamp_steps = round(self.seconds / step), round(self.gripped / step)
         zeros, step_target = np.zeros(free_steps), np.full(free_steps, self.step)
@@ -188,25 +199,31 @@ class JointLoops(Experiment):
 
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:
-    """Return how long an angle takes from a tenth to nine tenths of a step, NaN if it never gets there [s]."""
+    """Return the time that an angle takes from a tenth to nine tenths of a step [s]; NaN if it does not get there.
+
+    Args:
+        time: times of the samples [s].
+        angle: angle over time [rad].
+        step: height of the step [rad].
+    """
     crossings = [np.flatnonzero(angle >= fraction * step) for fraction in (0.1, 0.9)]
     return float(time[crossings[1][0]] - time[crossings[0][0]]) if crossings[1].size else float("nan")
 
 
 def overshoot(angle: np.ndarray, step: float) -> float:
-    """Return by which share of a step an angle goes beyond it, zero if it does not [-]."""
+    """Return the fraction of a step by which an angle exceeds it [-]; zero if it does not."""
     return max(float(angle.max()) / step - 1.0, 0.0)
 
 
 def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset:
-    """Return what the crawls left of their commands, and what droop and damping account for.
+    """Return the tracking errors of the crawls, and the errors that remain without droop and without damping.
 
-    Without an integral term a servo's torque is kp times what its angle lacks of its own, slew-limited target, less kd
-    times its speed: the torque over kp is what it sags by, kd over kp times the speed what it lags by.
+    Without an integral term a servo's torque is kp times its angle error, measured from its slew-limited target, minus
+    kd times its speed. The torque over kp is therefore the droop, and kd over kp times the speed is the lag.
 
     Args:
-        walk: of one run for each gain, the first without an integral term.
-        robot: whose gains the runs share.
+        walk: record with one run for each gain, the first without an integral term.
+        robot: robot whose gains kp and kd the runs share.
         forward: displacement of each run [m].
     """
     names = layout(robot).servos

@@ -1,4 +1,4 @@
-"""Servos on a stand and in the crawl: steps, loads, wind-up, and what is left of the commands."""
+"""Servos on a stand and in the crawl: steps, loads, wind-up, and tracking errors."""
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ _KINDS = {
     "tail_pitch": "tail pitch",
     "tail_cable": "tail cable",
 }
-"""How servos of a kind are called, and how they are written."""
+"""Kinds of servos, and their labels in the figure."""
 
 
 def on_stand(record: xr.Dataset) -> Figure:
@@ -89,7 +89,7 @@ def tracking(record: xr.Dataset) -> Figure:
 
 
 def _servos_of_kind(record: xr.Dataset, kind: str) -> list[str]:
-    """Return the servos of a kind: of the legs those that end so, of spine and tail those that begin so."""
+    """Return the servos of a kind: leg servos whose names end with it, or axis servos whose names begin with it."""
     legs = "_" not in kind
     names = [str(name) for name in record.servo.values]
     return [n for n in names if (n.endswith(f"_{kind}") and n[0] in "LR" if legs else n.startswith(kind))]

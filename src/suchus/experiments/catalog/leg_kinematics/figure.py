@@ -1,4 +1,4 @@
-"""Pictures of the leg: where it reaches, and what the printed formulas do instead."""
+"""Figures of the leg: its reach, and the errors of the printed formulas."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ _LIMB: dict[str, Any] = {"linewidth": 2.6, "markersize": 4.5, "path_effects": [_
 
 
 def leg_inverse(record: xr.Dataset) -> Figure:
-    """Return where the printed inverse (14) misses, and by how much, beside ours."""
+    """Draw the foot error of the printed inverse (14) on a section, and the histograms of both solutions."""
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, width=8.2, height=3.9, width_ratios=[1.25, 1])
         engine = figure.get_layout_engine()
@@ -68,6 +68,7 @@ def leg_inverse(record: xr.Dataset) -> Figure:
 
 
 def _section_axes(ax: Axes, title: str) -> None:
+    """Set labels, title and scale of a map whose vertical axis points down."""
     ax.set_aspect("equal")
     ax.invert_yaxis()
     ax.set_xlabel("outward from the midline [mm]")
@@ -76,7 +77,7 @@ def _section_axes(ax: Axes, title: str) -> None:
 
 
 def leg_workspace(record: xr.Dataset) -> Figure:
-    """Return where the foot reaches within the joints' limits, with three postures."""
+    """Draw the dexterity of the foot positions within the joint limits, with three postures."""
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, height=3.7)
         views = (("dexterity_section", "down", "from the front"), ("dexterity_top", "ahead", "from above"))
@@ -113,6 +114,13 @@ def leg_workspace(record: xr.Dataset) -> Figure:
 
 
 def _leg_reach(ax: Axes, record: xr.Dataset, depth: float) -> None:
+    """Draw the inner and outer reach of the foot on a plane at a distance from the hip.
+
+    Args:
+        ax: axes to draw on.
+        record: record of the experiment.
+        depth: distance of the plane from the hip [m].
+    """
     for reach in (record.attrs["near"], record.attrs["far"]):
         if reach > depth:
             radius = _MM * float(np.sqrt(reach**2 - depth**2))
@@ -121,7 +129,7 @@ def _leg_reach(ax: Axes, record: xr.Dataset, depth: float) -> None:
 
 
 def leg_misprints(record: xr.Dataset) -> Figure:
-    """Return what the denominator of (10) and the labels of Table I do."""
+    """Draw the effect of the denominator of (10) on the knee angle, and of the labels of Table I on the foot."""
     with styled():
         figure, axes = panels(1, 2, height=3.6)
         left_ax, right_ax = axes[0]
