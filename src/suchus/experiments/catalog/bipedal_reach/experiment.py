@@ -63,11 +63,10 @@ The reach of a robot that lies or crawls is a fifth of this length. With the tru
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BipedalReach(Experiment):
-    """From the crawl to standing on hind legs and tail, and down again into the crawl.
+    """From the crawl to standing on hind legs and tail, and back into the crawl.
 
-    The height that the robot reaches is that of the highest point of head and trunk, whatever part that is; legs and
-    tail do not count. For the crawl it is the highest such point over a cycle, for standing the lowest while it
-    stands. Pushes act on the thorax for 0.2 s.
+    The reach is the height of the highest point of head and trunk; legs and tail do not count. For the crawl the
+    maximum over a cycle counts, for standing the minimum during the stand. Pushes act on the thorax for 0.2 s.
     """
 
     title = "How high does it reach, crawling and standing on two legs?"
@@ -82,33 +81,33 @@ class BipedalReach(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl before and after."""
     straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
-    ahead."""
+    """Gait from whose first posture it stands up in the sweeps. Its trunk is straight, so the pushes act along the
+    body."""
     balance: Balance = BALANCE
-    """The feedback by which it keeps its balance when it stands."""
+    """Feedback rule that keeps the balance of the stand."""
     hold: float = 60.0
     """Duration of standing [s]."""
     least: float = 0.64
-    """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
+    """Smallest reach that counts as standing [m]; an earlier study of this robot reached it."""
     repeats: int = 6
-    """Robots that are built of the design and stand up: the heights are the middle of theirs [-]."""
+    """Number of robots built of the design that stand up; the heights are their medians [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much they and their grounds differ from it."""
+    """Tolerances of the robots built of the design, and of their grounds."""
     torques: tuple[float, ...] = (2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
     """Torques of the trunk's pitch servos on the map [N m]."""
     forebodies: tuple[float, ...] = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
-    """Masses of thorax and head together on the map [kg]; the pelvis takes the rest, as if the battery moved."""
+    """Masses of thorax and head together on the map [kg]; the pelvis takes up the difference."""
     hips: tuple[float, ...] = (0.07, 0.09, 0.11, 0.125, 0.135)
-    """Heights of the hips in the crawls that show what the legs decide [m]; the last is near what the legs allow."""
+    """Hip heights of the crawls that vary the legs' height [m]; the last one is near the limit of the legs."""
     leads: tuple[float, ...] = (0.015, 0.025, 0.035)
-    """Further distances of the centre of mass behind the feet that are commanded, to see how much height a safe
-    stand costs [m]."""
+    """Further commanded distances of the centre of mass behind the feet, which show how much height a safe stand
+    costs [m]."""
     pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
-    """Forces that are tried, before finer ones between two of them [N]."""
+    """Forces of the first pass; the second pass refines between two of them [N]."""
     finer: int = 4
-    """Number of forces between two of them [-]."""
+    """Number of forces of the second pass [-]."""
     wait: float = 3.0
-    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    """Duration without a push before and after each push [s]; a fall takes less than 2 s."""
     timestep: float = 0.002
     """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05

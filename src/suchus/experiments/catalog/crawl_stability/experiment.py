@@ -65,10 +65,10 @@ _COMPARISON_MEASURES = (*(name for name, *_ in _CHANGES), "stroke_equal_displace
 class CrawlStability(TwoGroups):
     """The height of the centre of mass over time, for every combination of spine and tail.
 
-    The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
-    conditions stand side by side here, and the group without spine and tail walks once more with strokes long enough to
-    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that
-    the article's Fig. 15 shows: the highest less the lowest height.
+    The article compares spine and tail together with neither of them, at the same leg commands. This comparison mixes
+    four effects, so each combination is simulated here. Limbs only are simulated once more, with strokes that give
+    the same displacement. Another body gets those conditions that its parts allow. The fluctuation is that of the
+    article's Fig. 15: the highest minus the lowest height.
     """
 
     title = "Does it crawl more steadily with spine and tail than without?"

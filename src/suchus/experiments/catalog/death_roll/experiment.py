@@ -27,11 +27,11 @@ _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only",
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeathRoll(Experiment):
-    """The crocodile's roll, without ground and gravity, from rest; limbs folded back.
+    """The crocodile's roll from rest, without ground and gravity, with the limbs folded back.
 
-    A bend that goes around the body once in a cycle turns the body the other way. In vacuum nothing acts from
-    outside, so that the angular momentum must stay zero while the body turns; water adds MuJoCo's ellipsoid drag,
-    which knows no wake and not all of the added mass. The rate is the twist about the mean long axis over whole
+    A bend that goes around the body once a cycle turns the body in the opposite sense. In vacuum no external moment
+    acts, so the angular momentum must stay zero while the body turns. In water MuJoCo's ellipsoid drag acts, which
+    models no wake and only part of the added mass. The rate is the rotation about the mean long axis over whole
     cycles, after a first cycle in which the bends grow.
     """
 

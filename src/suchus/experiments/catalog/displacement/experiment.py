@@ -41,12 +41,12 @@ _MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; a ratio over less displac
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displacement(TwoGroups):
-    """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.
+    """The article's two groups, the gain by each part of spine and tail, and a map over the free parameters.
 
-    Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
-    the beginning of the first cycle to the end of the last. The control group's tail lies still on the ground; with its
-    tail in the air it is simulated beside. Of another body those conditions are run that its parts make possible, and
-    of the map as much as its limbs reach.
+    The displacement is that of the centre of mass from the start of the first cycle to the end of the last, along the
+    initial direction of the body. The tail of the control group lies still on the ground; a further condition lifts
+    it into the air. Another body gets those conditions that its parts allow, and the part of the map that its limbs
+    reach.
     """
 
     title = "How far does it crawl, with spine and tail and without?"

@@ -83,11 +83,10 @@ SHOWN = ("open", "closed", "steered")
 class Feedback(Experiment):
     """Random limb phases under every law, then nine disturbances with and without the rules.
 
-    Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
-    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the distance
-    forward, along the heading at the start, over ``after`` cycles from the disturbance on. Drift is the distance down a
-    slope to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches
-    it.
+    A start converges when the largest of the four phase errors (two diagonal pairs, two girdles) stays within
+    0.1 cycle until the end of the run, and for at least ``hold`` cycles. Recovery is the displacement along the initial
+    heading over the ``after`` cycles from the disturbance on. Drift is the distance down a lateral slope, the mean of
+    both sides. A body without a servo that pitches its tail has no rule for the tail.
     """
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
@@ -109,24 +108,24 @@ class Feedback(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait of the robot; its limbs must form diagonal pairs."""
     starts: int = 32
-    """Random initial limb phases, the same for all laws [-]."""
+    """Number of random initial limb phases, the same for all laws [-]."""
     cycles: int = 12
-    """Duration for which each start is followed [cycle]."""
+    """Simulated duration of each start [cycle]."""
     hold: float = 2.0
     """Duration for which the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
-    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
+    """Simulated duration from the disturbance on [cycle]."""
     kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
-    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
-    from the gait."""
+    """Phase jump of each limb, in the order of the robot's limbs [cycle]; the default is almost the farthest from the
+    gait."""
     slope: float = radians(10)
     """Slope of the ground [rad]."""
     push: tuple[float, float, float] = (0.0, 20.0, 0.0)
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
-    """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
+    """Standard deviation of the noise on the sensed loads of the feet, as a fraction of the load [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much the robots of the starts, each built of the design, and their grounds differ from it."""
+    """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
     """Seed of the first start and its robot; the others follow."""
 

@@ -41,12 +41,12 @@ _SHADES = (COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["tail_drag"], 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Floating(Experiment):
-    """Forces of the water against exact answers, and a robot that is let go heeled.
+    """Forces of the water against exact answers, and a robot that is released heeled.
 
-    Sphere, cylinder and box have drafts in closed form; a box that is let go heaves at a known period and keeps its
-    energy; a spheroid in ideal water keeps its momentum; volumes under water are those of counted points. The robot
-    lies still, limbs held out, and is let go at the surface from several angles of heel. Its righting lever, with trim
-    and draft free, is drawn over the heel as naval architects do.
+    The drafts of sphere, cylinder and box have closed forms. A released box heaves at a known period and conserves its
+    energy. A spheroid in ideal water conserves its momentum. Submerged volumes are compared with counted points. The
+    robot lies still with its limbs held out and is released at the surface from several angles of heel. Its righting
+    lever, with trim and draft free, is drawn over the heel.
     """
 
     title = "Does it float as Archimedes says, and does it right itself?"
@@ -63,19 +63,19 @@ class Floating(Experiment):
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
     heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
-    """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
+    """Angles of heel from which the robot is released [rad]; the measures are those of the last one."""
     duration: float = 20.0
-    """Duration for which the robot is watched [s]; the mean of the last quarter counts as its rest."""
+    """Simulated duration after the release [s]; the mean of the last quarter counts as equilibrium."""
     energy_time: float = 60.0
-    """Duration over which the energy of the box is followed [s]."""
+    """Simulated duration of the rocking box [s]."""
     periods: int = 10
-    """Periods of heave that are watched [-]."""
+    """Number of simulated periods of heave [-]."""
     poses: int = 16
-    """Random poses in which volumes are counted, of each kind of piece [-]."""
+    """Number of random poses for the submerged volume, for each kind of piece [-]."""
     points: int = 2**18
-    """Points that are counted, a power of two [-]."""
+    """Number of counted points, a power of two [-]."""
     angles: int = 37
-    """Angles of heel from 0 to 180 degrees at which the righting lever is computed [-]."""
+    """Number of heels from 0 to 180 degrees at which the righting lever is computed [-]."""
     timestep: float = 0.002
     """Time step of the physics of boxes and spheroids [s]."""
 

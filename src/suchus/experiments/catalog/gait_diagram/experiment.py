@@ -42,16 +42,16 @@ _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitDiagram(Experiment):
-    """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles show.
+    """The article's Fig. 12 for our crawl: as commanded, and from simulated foot pressures and joint angles.
 
-    A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those
-    of the first harmonic of stance. Bends are sums of joint angles, of the tail those that servos and cables bend, up
-    and down those of the pitch joints; their sense is the article's: right and down are positive. A body without a
-    tail, or without a trunk that bends, has no track of that part. The commanded cycle is written as a table of servo
-    angles, a gait file in which any angle can be changed, the vertical ones too.
+    A foot stands when its pressure exceeds a seventieth of the weight, which is half a newton for the caiman. Phases
+    are those of the first harmonic of stance. Bends are sums of joint angles: lateral ones of the yaw joints and
+    cables, vertical ones of the pitch joints. Their signs are the article's: right and down are positive. A body
+    without a tail, or without a trunk that bends, has no track of that part. The commanded cycle is also written as a
+    gait file, a table of servo angles in which every angle can be changed.
 
-    Beside a body of two pairs of limbs stands an animal. No crocodilian's foot phases are published as numbers; those
-    of a filmed salamander are (the gait ``animal_walk``).
+    A body with two pairs of limbs is compared with an animal. No foot phases of a crocodilian are published as
+    numbers, so the animal is a filmed salamander (the gait ``animal_walk``).
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"

@@ -42,11 +42,11 @@ _FAST_PERIOD = 0.48  # [s]; period of the walks; the robot's own servos are far 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GallopLimits(Experiment):
-    """Bounding gaits with servos of growing speed and torque, beside the fastest trots and walks with the same servos.
+    """Bounding gaits with servos of growing speed and torque, and the fastest trots and walks with the same servos.
 
-    Every servo has a straight torque-speed line. The gaits are no gaits of the robot: a search by the cross-entropy
-    method found them, twelve numbers each, for servos of 3 N m at the legs and one no-load speed. On the map each is
-    the same command to all servos; of each kind the fastest counts. A robot flies while nothing touches the ground.
+    Every servo has a straight torque-speed line. Bounds and trots were found by a search with the cross-entropy method
+    over twelve parameters, for leg servos of 3 N m and one no-load speed. On the map all servos get the same commands;
+    the fastest gait of each kind counts. A robot flies while no part of it touches the ground.
     """
 
     title = "Could the robot gallop, and which servos would it take?"
@@ -57,15 +57,15 @@ class GallopLimits(Experiment):
     judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot that is to gallop."""
+    """The robot that should gallop."""
     bounds: tuple[Searched, ...] = BOUNDS
-    """Bounding gaits, each found for another servo: both front feet, then both hind feet."""
+    """Bounding gaits, each found for another servo: both front feet step together, then both hind feet."""
     trots: tuple[Searched, ...] = TROTS
-    """Trots, found by the same search with the same servos, so that a bound is not compared with a lesser effort."""
+    """Trots, found by the same search with the same servos, for an equal comparison."""
     walks: tuple[Gait, ...] = field(
         default_factory=lambda: tuple(replace(GAITS[name], period=_FAST_PERIOD) for name in ("semi_erect", "high_walk"))
     )
-    """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
+    """Walks of the catalog, at short periods, that a gallop must also outrun."""
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
     torques: tuple[float, ...] = (1.5, 3.0, 4.9)
@@ -75,14 +75,14 @@ class GallopLimits(Experiment):
     others_over_legs: float = 2.5 / 3.0
     """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
     repeats: int = 3
-    """Robots that are built of each design: the middle of theirs counts, and no gait that only the design can [-]."""
+    """Number of robots built of each design; their median counts, so a gait must tolerate their errors [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much they and their grounds differ from it."""
+    """Tolerances of the robots built of the design, and of their grounds."""
     seconds: float = 3.0
-    """Duration for which each run is measured, after a second more [s]."""
+    """Measured duration of each run, after one further second [s]."""
     timestep: float = 0.002
-    """Time step of the physics [s]; with 5 ms a bound was ahead of trot and walk with a tenth of the servos of the map,
-    with 2 ms with three tenths."""
+    """Time step of the physics [s]. A bound outran trot and walk with a tenth of the map's servos at 5 ms, and with
+    three tenths at 2 ms."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:

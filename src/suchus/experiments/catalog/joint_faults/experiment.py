@@ -70,12 +70,12 @@ _SAMPLING_STRIDE = 10  # [-]; physics steps per stored sample of the campaign
 class JointFaults(TwoGroups):
     """Front and hind; yaw, pitch and knee; limp and locked; one leg and both; with spine and tail and with limbs only.
 
-    Each of these cells is run in every repeat, in which the intact robots of both groups walk too. What a fault costs
-    is told against the group's own intact robot (``own_loss_CELL_limbs_only``; with spine and tail this is the same as
-    the other), and against the intact robot with spine and tail, as in the article (``loss_CELL_GROUP``). Two more
-    conditions are run in the judged reading: ``steered`` with the feedback rules and the heading loop, and
-    ``limbs_tail_lifted``, limbs only with the tail in the air, where a servo lifts it. Displacement is forward, along
-    the direction that the body faced at the start. The limbs of another body lose the joints that they have.
+    Each of these cells, and the intact robot of each group, is simulated in every repeat. The loss is given against
+    the intact robot with spine and tail, as in the article (``loss_CELL_GROUP``). For limbs only it is also given
+    against the group's own intact robot (``own_loss_CELL_limbs_only``). Two further conditions are simulated in the
+    judged reading: ``steered`` with the feedback rules and the heading loop, and ``limbs_tail_lifted`` where a servo
+    can lift the tail into the air. The displacement is along the initial direction of the body. On another body the
+    joints of its own limbs fail.
     """
 
     title = "How far does it still crawl when joints of its legs fail?"
@@ -94,24 +94,25 @@ class JointFaults(TwoGroups):
     lifted: float = LIFTED
     """Pitch of the tail of the control group with its tail in the air, for comparison, down positive [rad]."""
     hold: float = 0.5
-    """Where a locked joint holds in the range that the gait asks of it: 0 least, 1 greatest [-].
+    """Position of a locked joint in the range of the gait's angles: 0 is the least angle, 1 the greatest [-].
 
-    Not in the paper; the middle, because a servo that no longer hears commands may stop anywhere and the middle is
-    farthest from both ends. ``Locked`` without an angle would hold where the joint is when it fails, which at the
-    start of a run is an accident of the phase; what other places do is measured over ``holds``.
+    The paper does not give it. The default is the middle, because a servo without commands may stop anywhere. A fault
+    ``Locked`` without an angle would hold the joint where it fails, which depends on the phase at the start of the run.
+    Other positions are measured over ``holds``.
     """
     holds: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75, 1.0)
-    """Places in that range at which one leg's joint is locked, for the curve [-]."""
+    """Positions in that range at which one leg's joint is locked, for the curve [-]."""
     kind: Kind = "limp"
-    """The reading of the article's 'lost' that is judged.
+    """Kind of fault that is judged, a reading of the article's 'lost'.
 
-    Not in the paper; limp, because a servo that 'cannot receive and execute commands' gets no pulses, and gives way.
+    The paper does not give it. The default is limp, because a servo that 'cannot receive and execute commands' gets no
+    pulses and exerts no torque.
     """
     legs: Legs = "one"
-    """Whether one leg or both of a girdle are judged; one, because the text speaks of individual joints."""
+    """Whether the judged fault is in one leg or in both legs of a girdle; one, because the text names single joints."""
     timestep: float = 0.005
-    """Time step of the physics [s]; 2 ms were measured to move no median by more than 3 points of a hundred, while
-    10 ms move some by 6 and change what steering does to a failed hind yaw joint."""
+    """Time step of the physics [s]. A step of 2 ms changes no median by more than 3 percentage points. A step of 10 ms
+    changes some by 6, and the effect of steering on a failed hind yaw joint."""
 
     def check(self, check: Checks) -> None:
         """Check places of locking, time step and tail."""

@@ -33,7 +33,7 @@ _CLAMP_PERIODS = 100  # [control period]; long enough for the integral to reach 
 class JointLoops(Experiment):
     """The PID loop of one joint on a stand, then all of them in the crawl, with several integral gains.
 
-    It needs a robot one of whose servos turns the named joint directly, and a gait that the robot can crawl.
+    The robot needs a servo that turns the named joint directly, and a gait with which it can crawl.
     """
 
     title = "What does an integral term in the joint controllers improve, and what does it cost?"
@@ -61,7 +61,7 @@ class JointLoops(Experiment):
     step: float = radians(10.0)
     """Height of the step [rad]."""
     seconds: float = 4.0
-    """Duration for which the joint is watched after each change [s]."""
+    """Simulated duration after each change [s]."""
     cycles: int = int(CYCLES)
     """Number of cycles of the crawl that are measured [-]."""
 

@@ -58,7 +58,7 @@ class LegKinematics(Experiment):
     points: int = 100_000
     """Number of random foot points, spread evenly over the reachable shell [-]."""
     phases: int = 400
-    """Number of moments of a cycle at which the feet of the gaits are taken [-]."""
+    """Number of phases of a cycle at which the feet of the gaits are evaluated [-]."""
     grid: int = 201
     """Points along each side of the maps [-]."""
     seed: int = 0
