@@ -1,8 +1,8 @@
-"""The shelf of experiments: one folder or one file, one question.
+"""The catalog of experiments: each folder or file answers one question.
 
-A folder holds ``experiment.py``, which declares ``experiment``, and beside it what belongs to the question alone: its
-``rules``, its ``figure``, the words of what decided in ``explanation.md``, tables that it needs. Importing the shelf
-imports none of them.
+A folder holds ``experiment.py``, which declares ``experiment``. Its other files belong to this question alone: the
+``rules``, the ``figure``, the text ``explanation.md`` on what decided, and tables. Importing the catalog imports no
+experiment.
 """
 
 from operator import methodcaller

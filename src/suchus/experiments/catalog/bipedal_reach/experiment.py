@@ -51,23 +51,22 @@ from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.land.push_search import smallest_pushes
 from suchus.sim.metrics import held, lead, peak_torque, reach, static_margin
 
-_COARSE = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
-_UP = 0.6  # of the stretched length: who reaches less has not stood up, or has fallen
+_COARSE_TIMESTEP = 0.005  # [s]; time step of sweeps; reach and limits agree with those at 2 ms
+_STANDING_FRACTION = 0.6  # [stretched length]; a robot with less reach has not stood up, or has fallen
 _DIRECTIONS = {"fore": (1.0, 0.0, 0.0), "aft": (-1.0, 0.0, 0.0), "lateral": (0.0, 1.0, 0.0)}
-_LIFTED = 0.37
-"""Share of the stretched length beyond which the reach shows that the front has left the ground [-].
+_LIFTED_FRACTION = 0.37
+"""Fraction of the stretched length from which the reach shows that the front has left the ground [-].
 
-Lying or crawling a robot reaches a fifth of it, the trunk bent up like a cobra's two fifths and more.
+The reach of a robot that lies or crawls is a fifth of this length. With the trunk bent up it is two fifths or more.
 """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BipedalReach(Experiment):
-    """From the crawl to standing on hind legs and tail, and down again into the crawl.
+    """From the crawl to standing on hind legs and tail, and back into the crawl.
 
-    The height that the robot reaches is that of the highest point of head and trunk, whatever part that is; legs and
-    tail do not count. For the crawl it is the highest such point over a cycle, for standing the lowest while it
-    stands. Pushes act on the thorax for 0.2 s.
+    The reach is the height of the highest point of head and trunk; legs and tail do not count. For the crawl the
+    maximum over a cycle counts, for standing the minimum during the stand. Pushes act on the thorax for 0.2 s.
     """
 
     title = "How high does it reach, crawling and standing on two legs?"
@@ -82,33 +81,33 @@ class BipedalReach(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """The crawl before and after."""
     straight: Gait = field(default_factory=lambda: GAITS["limbs_only"])
-    """Gait from whose first posture it stands up in the sweeps: the trunk is straight, so that pushes come from
-    ahead."""
+    """Gait from whose first posture it stands up in the sweeps. Its trunk is straight, so the pushes act along the
+    body."""
     balance: Balance = BALANCE
-    """The feedback by which it keeps its balance when it stands."""
+    """Feedback rule that keeps the balance of the stand."""
     hold: float = 60.0
     """Duration of standing [s]."""
     least: float = 0.64
-    """Reach that counts as standing for the time that it is held [m]; what an earlier study of this robot reached."""
+    """Smallest reach that counts as standing [m]; an earlier study of this robot reached it."""
     repeats: int = 6
-    """Robots that are built of the design and stand up: the heights are the middle of theirs [-]."""
+    """Number of robots built of the design that stand up; the heights are their medians [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much they and their grounds differ from it."""
+    """Tolerances of the robots built of the design, and of their grounds."""
     torques: tuple[float, ...] = (2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
     """Torques of the trunk's pitch servos on the map [N m]."""
     forebodies: tuple[float, ...] = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
-    """Masses of thorax and head together on the map [kg]; the pelvis takes the rest, as if the battery moved."""
+    """Masses of thorax and head together on the map [kg]; the pelvis takes up the difference."""
     hips: tuple[float, ...] = (0.07, 0.09, 0.11, 0.125, 0.135)
-    """Heights of the hips in the crawls that show what the legs decide [m]; the last is near what the legs allow."""
+    """Hip heights of the crawls that vary the legs' height [m]; the last one is near the limit of the legs."""
     leads: tuple[float, ...] = (0.015, 0.025, 0.035)
-    """Further distances of the centre of mass behind the feet that are commanded, to see how much height a safe
-    stand costs [m]."""
+    """Further commanded distances of the centre of mass behind the feet, which show how much height a safe stand
+    costs [m]."""
     pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
-    """Forces that are tried, before finer ones between two of them [N]."""
+    """Forces of the first pass; the second pass refines between two of them [N]."""
     finer: int = 4
-    """Number of forces between two of them [-]."""
+    """Number of forces of the second pass [-]."""
     wait: float = 3.0
-    """Duration for which a robot is left alone before a push and after it [s]; a fall takes less than 2 s."""
+    """Duration without a push before and after each push [s]; a fall takes less than 2 s."""
     timestep: float = 0.002
     """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05
@@ -138,7 +137,7 @@ class BipedalReach(Experiment):
             pushes=(2.0, 25.0),
             finer=0,
             wait=1.5,
-            timestep=_COARSE,
+            timestep=_COARSE_TIMESTEP,
         )
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
@@ -148,21 +147,21 @@ class BipedalReach(Experiment):
         }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl, stand, sit, crawl; then what it takes and what it bears."""
+        """Simulate crawling, standing and sitting down; then map the limits, push the robot, and vary its lengths."""
         standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
-        record = self._story(standing, staged(progress, "standing", 0.0, 0.2))
+        record = self._standing_record(standing, staged(progress, "standing", 0.0, 0.2))
         for study, stage, start, end in (
             (self._limits, "torque and mass", 0.2, 0.4),
-            (self._pushed, "pushes", 0.4, 0.85),
+            (self._toppling_pushes, "pushes", 0.4, 0.85),
             (self._lengths, "lengths", 0.85, 1.0),
         ):
             record = record.merge(study(staged(progress, stage, start, end)))
-        record = record.merge(self._ceiling()).assign_attrs(self._facts())
+        record = record.merge(self._ceiling()).assign_attrs(self._reference_values())
         return Simulated(record=record, replays=self._replays(record))
 
-    def _facts(self) -> dict[str, float]:
-        """Return what the measures are held against: lengths [m], torques [N m] and times [s]."""
-        plausible = {chosen.field: chosen.high for chosen in GAITS.beside("belly_crawl", "chosen", ())}
+    def _reference_values(self) -> dict[str, float]:
+        """Return the numbers that the measures compare with: lengths [m], torques [N m] and times [s]."""
+        plausible = {parameter.field: parameter.high for parameter in GAITS.beside("belly_crawl", "chosen", ())}
         return {
             "least": self.least,
             "hold": self.hold,
@@ -171,31 +170,31 @@ class BipedalReach(Experiment):
             "pitch_torque": self.robot.spine.pitch_servo.torque,
             "hip_height": hip_height(self.robot, self.gait),
             "hip_height_plausible": plausible["height"] * length(self.robot, "leg"),
-            "up": _UP * stretched(self.robot),
+            "up": _STANDING_FRACTION * stretched(self.robot),
             "commanded_lead": self._lead,
         }
 
     @property
     def _lead(self) -> float:
-        """How far the centre of mass is commanded behind the feet where nothing else is said [m]."""
+        """Commanded distance of the centre of mass behind the feet, unless a study sets another one [m]."""
         return LEAD * size_of(self.robot)
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return heights with their spread, what the stand bears, what it takes, and what the heights follow."""
-        _, rise_at, up, leave, down, _ = record.attrs["stages"]
+        """Return the heights with their spread, the toppling pushes, the torques, and the effect of the lengths."""
+        _, rise_time, upright_time, leave_time, down_time, _ = record.attrs["stages"]
         facts, height, margin = record.attrs, record.reach.isel(run=0), record.margin.isel(run=0)
-        highest = int(np.argmax(record.crawl_reach.values))
+        highest_crawl = int(np.argmax(record.crawl_reach.values))
         measures = Measures(
             _heights(record),
             {
-                "margin_standing": Measure(float(margin.sel(time=slice(up, leave)).min()), "m"),
+                "margin_standing": Measure(float(margin.sel(time=slice(upright_time, leave_time)).min()), "m"),
                 "margin_rising": Measure(least_lead(record), "m"),
-                "reach_after": Measure(float(height.sel(time=slice(down, None)).max()), "m"),
-                "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down), "m"),
+                "reach_after": Measure(float(height.sel(time=slice(down_time, None)).max()), "m"),
+                "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down_time), "m"),
                 "stretched_length": Measure(facts["stretched"], "m"),
                 "ceiling": Measure(float(record.ceiling.max()), "m"),
-                "reach_high_crawl": Measure(float(record.crawl_reach[highest]), "m"),
-                "distance_high_crawl": Measure(float(record.crawl_way[highest]), "m"),
+                "reach_high_crawl": Measure(float(record.crawl_reach[highest_crawl]), "m"),
+                "distance_high_crawl": Measure(float(record.crawl_way[highest_crawl]), "m"),
                 "hip_height": Measure(facts["hip_height"], "m"),
                 "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
                 "cantilever_torque": Measure(facts["cantilever"], "N m"),
@@ -204,12 +203,13 @@ class BipedalReach(Experiment):
             },
         )
         for name, torque in zip(
-            record.servo.values, peak_torque(record.isel(run=0), rise_at, leave).values, strict=True
+            record.servo.values, peak_torque(record.isel(run=0), rise_time, leave_time).values, strict=True
         ):
             measures[f"torque_rising_{name}"] = Measure(float(torque), "N m")
         return measures | _pushes(record) | _gains(record)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the run of the figures, by file name."""
         return replayed(
             "standing_replay.html",
             record,
@@ -219,17 +219,25 @@ class BipedalReach(Experiment):
             caption="From the crawl up on hind legs and tail, and down again into the crawl.",
         )
 
-    def _story(self, standing: Standing, progress: Any) -> xr.Dataset:
-        """Return the run of the figures, and the heights of its repeats."""
+    def _standing_record(self, standing: Standing, progress: Any) -> xr.Dataset:
+        """Simulate the run of the figures, and its repeats with and without feedback.
+
+        Args:
+            standing: control that lets the robot stand up, hold the stand and sit down.
+            progress: callback that gets the finished fraction.
+
+        Returns:
+            The record of the run, with ``repeat_reach`` (feedback, repeat, repeat_time) [m] and the stage times [s].
+        """
         duration = standing.down_from(self.robot) + self.gait.period
-        calm = Run(robot=self.robot, gait=self.gait, control=standing)
+        run = Run(robot=self.robot, gait=self.gait, control=standing)
         record = simulate(
-            [calm], duration=duration, timestep=self.timestep, every=2, progress=staged(progress, "", 0.0, 0.5)
+            [run], duration=duration, timestep=self.timestep, every=2, progress=staged(progress, "", 0.0, 0.5)
         )
-        blind = replace(calm, control=replace(standing, balance=None))
-        built = self.tolerances.repeats((calm, blind), self.repeats)
+        run_without_feedback = replace(run, control=replace(standing, balance=None))
+        repeat_runs = self.tolerances.repeats((run, run_without_feedback), self.repeats)
         repeats = simulate(
-            built, duration=duration, timestep=_COARSE, every=10, progress=staged(progress, "", 0.5, 1.0)
+            repeat_runs, duration=duration, timestep=_COARSE_TIMESTEP, every=10, progress=staged(progress, "", 0.5, 1.0)
         )
         heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
         record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
@@ -240,38 +248,46 @@ class BipedalReach(Experiment):
         data.attrs["stages"] = [*stages, standing.down_from(self.robot), duration]
         return data
 
-    def _settled(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
-        """Return reach and lead of robots that stood up; zero where the postures are out of reach."""
+    def _stand_results(self, robots: Sequence[Robot], leads: Sequence[float], progress: Any) -> xr.Dataset:
+        """Return reach and lead of each robot once it stands [m]; zero where its joints cannot take the postures.
+
+        Args:
+            robots: robots that stand up, one per case.
+            leads: commanded distance of the centre of mass behind the feet, one per case [m].
+            progress: callback that gets the finished fraction.
+        """
         controls = [
             stand_soon(*variant, self.balance, size_of(self.robot)) for variant in zip(robots, leads, strict=True)
         ]
-        able = [control is not None for control in controls]
-        found = {name: np.zeros(len(able)) for name in ("reach", "lead")}
+        is_feasible = [control is not None for control in controls]
+        results = {name: np.zeros(len(is_feasible)) for name in ("reach", "lead")}
         runs = [
             Run(robot=robot, gait=self.straight, control=control)
             for robot, control in zip(robots, controls, strict=True)
             if control is not None
         ]
         if not runs:
-            return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
-        duration = max(up_at(robot) for robot, stands in zip(robots, able, strict=True) if stands) + self.wait
-        record = simulate(runs, duration=duration, timestep=_COARSE, every=10, progress=progress)
-        last = record.sel(time=slice(duration - 0.5, None))
-        for i, case in enumerate(np.flatnonzero(able)):
-            one = last.isel(run=i)
-            found["reach"][case] = float(reach(runs[i].robot, one).min())
-            found["lead"][case] = float(lead(one).mean())
-        return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in found.items()})
+            return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in results.items()})
+        duration = (
+            max(up_at(robot) for robot, feasible in zip(robots, is_feasible, strict=True) if feasible) + self.wait
+        )
+        record = simulate(runs, duration=duration, timestep=_COARSE_TIMESTEP, every=10, progress=progress)
+        final_interval = record.sel(time=slice(duration - 0.5, None))
+        for i, case in enumerate(np.flatnonzero(is_feasible)):
+            final_record = final_interval.isel(run=i)
+            results["reach"][case] = float(reach(runs[i].robot, final_record).min())
+            results["lead"][case] = float(lead(final_record).mean())
+        return xr.Dataset({name: ("case", values, {"units": "m"}) for name, values in results.items()})
 
     def _limits(self, progress: Any) -> xr.Dataset:
-        """Return what robots with other trunk servos and other forebodies reach."""
+        """Return the reach over the torque of the trunk's servos and the mass of the forebody."""
         cells = [heavier(self.robot, mass, torque) for torque in self.torques for mass in self.forebodies]
-        found = self._settled(cells, [self._lead] * len(cells), progress)
+        stand_results = self._stand_results(cells, [self._lead] * len(cells), progress)
         shape = len(self.torques), len(self.forebodies)
         cantilever = [cantilever_torque(heavier(self.robot, mass, 1.0)) for mass in self.forebodies]
         data = xr.Dataset(
             {
-                "map_reach": (("torque", "forebody"), found.reach.values.reshape(shape), {"units": "m"}),
+                "map_reach": (("torque", "forebody"), stand_results.reach.values.reshape(shape), {"units": "m"}),
                 "map_cantilever": ("forebody", cantilever, {"units": "N m"}),
             },
             coords={"torque": list(self.torques), "forebody": list(self.forebodies)},
@@ -280,11 +296,11 @@ class BipedalReach(Experiment):
         data.forebody.attrs.update(units="kg", long_name="mass of thorax and head")
         return data
 
-    def _pushed(self, progress: Any) -> xr.Dataset:
-        """Return the smallest pushes that topple, with feedback and without, over the lead."""
+    def _toppling_pushes(self, progress: Any) -> xr.Dataset:
+        """Return the smallest forces that topple the robot, with feedback and without, over the commanded lead [N]."""
         leads = sorted({*self.leads, self._lead})
         balances = {"on": self.balance, "off": None}
-        stood = self._settled([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
+        stand_results = self._stand_results([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
         runs = [
             Run(robot=self.robot, gait=self.straight, control=control or OpenLoop())
             for balance in balances.values()
@@ -297,11 +313,11 @@ class BipedalReach(Experiment):
             levels=self.pushes,
             finer=self.finer,
             wait=self.wait,
-            fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _UP * stretched(self.robot),
-            timestep=_COARSE,
+            fell=lambda record: record.snout.sel(xyz="z").isel(time=-1) < _STANDING_FRACTION * stretched(self.robot),
+            timestep=_COARSE_TIMESTEP,
             progress=staged(progress, "", 0.1, 1.0),
         ).reshape(len(balances), len(leads), len(_DIRECTIONS))
-        stands = stood.reach.values > _UP * stretched(self.robot)
+        stands = stand_results.reach.values > _STANDING_FRACTION * stretched(self.robot)
         return xr.Dataset(
             {
                 "push": (
@@ -309,16 +325,16 @@ class BipedalReach(Experiment):
                     np.where(stands[:, None], forces, 0.0),
                     {"units": "N"},
                 ),
-                "lead_reach": ("commanded", np.where(stands, stood.reach, np.nan), {"units": "m"}),
-                "lead_found": ("commanded", np.where(stands, stood.lead, np.nan), {"units": "m"}),
+                "lead_reach": ("commanded", np.where(stands, stand_results.reach, np.nan), {"units": "m"}),
+                "lead_found": ("commanded", np.where(stands, stand_results.lead, np.nan), {"units": "m"}),
             },
             coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
         )
 
     def _lengths(self, progress: Any) -> xr.Dataset:
-        """Return how crawling and standing reach change with the lengths of legs, spine and head."""
-        robots = [self.robot, *(lengthened(self.robot, part, 1 + self.longer) for part in PARTS)]
-        stood = self._settled(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
+        """Return the reach of crawls over the hip height, and the gain of reach per added length of each body part."""
+        robots = [self.robot, *(lengthened(self.robot, body_part, 1 + self.longer) for body_part in PARTS)]
+        stand_results = self._stand_results(robots, [self._lead] * len(robots), staged(progress, "", 0.0, 0.5))
         leg = length(self.robot, "leg")
         crawls = [(self.robot, self.gait.with_numbers(height=hips / leg)) for hips in self.hips]
         crawls += [(robot, fitted(self.gait, robot, self.robot)) for robot in robots]
@@ -326,36 +342,42 @@ class BipedalReach(Experiment):
         record = simulate(
             runs,
             duration=START + self.gait.period,
-            timestep=_COARSE,
+            timestep=_COARSE_TIMESTEP,
             every=5,
             progress=staged(progress, "", 0.5, 1.0),
         ).sel(time=slice(START, None))
         heights = np.array([float(reach(robot, record.isel(run=i)).max()) for i, (robot, _) in enumerate(crawls)])
-        walking = heights[len(self.hips) :]
-        longer = np.array(
-            [length(robot, part) - length(self.robot, part) for robot, part in zip(robots[1:], PARTS, strict=True)]
+        crawl_heights = heights[len(self.hips) :]
+        length_increases = np.array(
+            [
+                length(robot, body_part) - length(self.robot, body_part)
+                for robot, body_part in zip(robots[1:], PARTS, strict=True)
+            ]
         )
-        changes = np.stack([walking[1:] - walking[0], stood.reach.values[1:] - stood.reach.values[0]], axis=-1)
-        ahead = record.centre_of_mass.sel(xyz="x")
+        changes = np.stack(
+            [crawl_heights[1:] - crawl_heights[0], stand_results.reach.values[1:] - stand_results.reach.values[0]],
+            axis=-1,
+        )
+        com_x = record.centre_of_mass.sel(xyz="x")
         return xr.Dataset(
             {
                 "crawl_reach": ("hip_height", heights[: len(self.hips)], {"units": "m"}),
                 "crawl_way": (
                     "hip_height",
-                    (ahead[: len(self.hips), -1] - ahead[: len(self.hips), 0]).values,
+                    (com_x[: len(self.hips), -1] - com_x[: len(self.hips), 0]).values,
                     {"units": "m"},
                 ),
-                "gain": (("part", "pose"), changes / longer[:, None], {"units": "1"}),
+                "gain": (("part", "pose"), changes / length_increases[:, None], {"units": "1"}),
             },
             coords={"hip_height": list(self.hips), "part": list(PARTS), "pose": ["crawling", "standing"]},
         )
 
     def _ceiling(self) -> xr.Dataset:
-        """Return how high any posture could reach over the distance of the centre of mass behind the feet."""
-        behind = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
+        """Return the greatest reach of any posture over the distance of the centre of mass behind the feet [m]."""
+        leads = size_of(self.robot) * np.linspace(0.0, 0.1, 11)
         return xr.Dataset(
-            {"ceiling": ("behind", tallest(self.robot, behind), {"units": "m"})},
-            coords={"behind": ("behind", behind, {"units": "m"})},
+            {"ceiling": ("behind", tallest(self.robot, leads), {"units": "m"})},
+            coords={"behind": ("behind", leads, {"units": "m"})},
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -365,37 +387,44 @@ class BipedalReach(Experiment):
             "side_views": draw_side_views(self.robot, record),
             "angles": draw_angles(self.robot, record),
             "height_over_time": draw_heights(record, self.hold),
-            "torque_and_mass": draw_limits(self.robot, record, _UP * stretched(self.robot)),
+            "torque_and_mass": draw_limits(self.robot, record, _STANDING_FRACTION * stretched(self.robot)),
             "ceiling": draw_ceiling(self.robot, record),
             "pushes": draw_pushes(record, record.attrs["commanded_lead"]),
         }
 
 
 def _heights(record: xr.Dataset) -> Measures:
-    """Return what robots as built reach crawling and standing, their ratio, and for how long they stand."""
-    start, rise_at, up, leave, _, _ = record.attrs["stages"]
-    reached = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
-    crawl = reached.sel(time=slice(start, rise_at)).max("time")
-    stand = reached.sel(time=slice(up, leave)).min("time")
-    stood = held(reached, record.attrs["least"])
+    """Return reach when crawling and when standing, their ratio, and the duration of the stand, as built."""
+    start, rise_time, upright_time, leave_time, _, _ = record.attrs["stages"]
+    heights = record.repeat_reach.sel(feedback="on").rename(repeat_time="time")
+    crawl = heights.sel(time=slice(start, rise_time)).max("time")
+    stand = heights.sel(time=slice(upright_time, leave_time)).min("time")
+    standing_time = held(heights, record.attrs["least"])
     return (
         estimated("reach_crawl", crawl, "m")
-        | estimated("hips_at_printed_height", _hips_at(record, CLAIMS["height_crawl"].value or 0.0, crawl.values), "m")
+        | estimated(
+            "hips_at_printed_height",
+            _required_hip_height(record, CLAIMS["height_crawl"].value or 0.0, crawl.values),
+            "m",
+        )
         | estimated("reach_standing", stand, "m")
         | estimated("reach_ratio", stand / crawl, "-")
-        | estimated("held", stood, "s")
-        | estimated("held_share", stood / record.attrs["hold"], "-")
+        | estimated("held", standing_time, "s")
+        | estimated("held_share", standing_time / record.attrs["hold"], "-")
     )
 
 
 def _pushes(record: xr.Dataset) -> Measures:
-    """Return how many robots as built stay up, and the smallest pushes that topple it, with feedback and without."""
-    _, _, up, leave, _, _ = record.attrs["stages"]
+    """Return the fraction of the robots as built that stay upright, and the smallest toppling pushes [N].
+
+    Both are given with feedback and without; the pushes are those on the robot as designed.
+    """
+    _, _, upright_time, leave_time, _, _ = record.attrs["stages"]
     measures = Measures()
     for feedback in ("on", "off"):
-        reach = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(up, leave))
-        stays = (reach > record.attrs["least"]).all("repeat_time")
-        measures[f"stays_up_{feedback}"] = Measure(float(stays.mean()), "-")
+        height = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(upright_time, leave_time))
+        is_upright = (height > record.attrs["least"]).all("repeat_time")
+        measures[f"stays_up_{feedback}"] = Measure(float(is_upright.mean()), "-")
         for direction in record.direction.values:
             force = record.push.sel(feedback=feedback, commanded=record.attrs["commanded_lead"], direction=direction)
             measures[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
@@ -403,58 +432,63 @@ def _pushes(record: xr.Dataset) -> Measures:
 
 
 def _gains(record: xr.Dataset) -> Measures:
-    """Return by how much the heights grow with the lengths of legs, spine and head [-]."""
+    """Return the gain of reach per added length of legs, spine and head, for both poses [-]."""
     gains = Measures(
         {
-            f"gain_{part}_{pose}": Measure(float(record.gain.sel(part=part, pose=pose)), "-")
-            for part in record.part.values
+            f"gain_{body_part}_{pose}": Measure(float(record.gain.sel(part=body_part, pose=pose)), "-")
+            for body_part in record.part.values
             for pose in record.pose.values
         }
     )
-    others = record.gain.sel(pose="crawling", part=["spine", "head"])
-    gains["gain_others_crawling"] = Measure(float(abs(others).max()), "-")
+    other_gains = record.gain.sel(pose="crawling", part=["spine", "head"])
+    gains["gain_others_crawling"] = Measure(float(abs(other_gains).max()), "-")
     gains["gain_least_standing"] = Measure(float(record.gain.sel(pose="standing").min()), "-")
     return gains
 
 
 def least_lead(record: xr.Dataset) -> float:
-    """Return the least distance of the centre of mass behind the feet from lifting the front to standing [m].
+    """Return the smallest distance of the centre of mass behind the feet from lift-off of the front to standing [m].
 
-    Not a number for a robot whose front does not leave the ground before it should stand.
+    The result is NaN for a robot whose front does not leave the ground before it should stand.
     """
-    _, rise_at, up, *_ = record.attrs["stages"]
-    rising = record.isel(run=0).sel(time=slice(rise_at, up))
-    off = np.flatnonzero(rising.reach.values > _LIFTED * record.attrs["stretched"])
-    return float(rising.lead[off[0] :].min()) if off.size else float("nan")
+    _, rise_time, upright_time, *_ = record.attrs["stages"]
+    rising = record.isel(run=0).sel(time=slice(rise_time, upright_time))
+    lifted_samples = np.flatnonzero(rising.reach.values > _LIFTED_FRACTION * record.attrs["stretched"])
+    return float(rising.lead[lifted_samples[0] :].min()) if lifted_samples.size else float("nan")
 
 
-def _distance(place: xr.DataArray, since: float) -> float:
-    """Return how far a place moves forward from a time on [m]."""
-    x = place.sel(xyz="x", time=slice(since, None))
+def _distance(position: xr.DataArray, start_time: float) -> float:
+    """Return the forward displacement of a point after a start time [m].
+
+    Args:
+        position: position of the point (time, xyz) [m].
+        start_time: time from which the displacement counts [s].
+    """
+    x = position.sel(xyz="x", time=slice(start_time, None))
     return float(x[-1] - x[0])
 
 
 def _decided_by_torque(record: xr.Dataset) -> float:
-    """Return for which share of the robots on the map the cantilever's torque alone decides whether they stand [-]."""
+    """Return the fraction of robots on the map for which the cantilever torque alone predicts the outcome [-]."""
     stands = record.map_reach > record.attrs["up"]
     return float((stands == (record.torque > record.map_cantilever)).mean())
 
 
-def _hips_at(record: xr.Dataset, height: float, built: np.ndarray) -> np.ndarray:
-    """Return the height of the hips at which each robot as built would reach a height when it crawls [m].
+def _required_hip_height(record: xr.Dataset, height: float, crawl_heights: np.ndarray) -> np.ndarray:
+    """Return the hip height at which each robot as built would reach a given height when it crawls [m].
 
-    By a line through the crawls of the design at other heights of the hips, moved to what the robot as built reaches
-    with hips at their own height.
+    A line is fitted through the crawls of the design at several hip heights. The line is then shifted to the height
+    that the robot as built reaches with its own hip height.
 
     Args:
-        record: of the experiment.
-        height: that is to be reached [m].
-        built: what robots as built reach in the crawl, any shape [m].
+        record: record of the experiment.
+        height: reach to be attained [m].
+        crawl_heights: reach of the robots as built in the crawl, any shape [m].
     """
-    hips, reached = record.hip_height.values, record.crawl_reach.values
-    higher = built - np.polyval(np.polyfit(hips, reached, 1), record.attrs["hip_height"])
-    at: np.ndarray = np.polyval(np.polyfit(reached, hips, 1), height - higher)
-    return at
+    hip_heights, design_heights = record.hip_height.values, record.crawl_reach.values
+    height_offset = crawl_heights - np.polyval(np.polyfit(hip_heights, design_heights, 1), record.attrs["hip_height"])
+    required_height: np.ndarray = np.polyval(np.polyfit(design_heights, hip_heights, 1), height - height_offset)
+    return required_height
 
 
 experiment = BipedalReach()

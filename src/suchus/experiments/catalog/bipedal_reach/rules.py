@@ -120,7 +120,7 @@ _RATIO = {
     "hips_at_printed_height": 0.119,
 }
 _LEGS = {"gain_leg_crawling": 0.5, "gain_others_crawling": 0.02}
-_ALL = {
+_STANDING_GAINS = {
     "gain_least_standing": 0.8,
     "gain_leg_standing": 0.8,
     "gain_spine_standing": 1.0,
@@ -176,8 +176,8 @@ EXAMPLES: Examples = {
         (_LEGS | {"gain_others_crawling": 0.51}, "contradicted"),
     ],
     "height_from_spine_head_legs": [
-        (_ALL, "reproduced"),
-        (_ALL | {"gain_least_standing": 0.505}, "reproduced"),
-        (_ALL | {"gain_least_standing": 0.495}, "contradicted"),
+        (_STANDING_GAINS, "reproduced"),
+        (_STANDING_GAINS | {"gain_least_standing": 0.505}, "reproduced"),
+        (_STANDING_GAINS | {"gain_least_standing": 0.495}, "contradicted"),
     ],
 }

@@ -1,4 +1,4 @@
-"""Who else stands up: robots with another forebody, other servos, longer parts; and how, at once and for good."""
+"""Robots with another forebody, other servos or longer parts, and the control that lets them stand up at once."""
 
 from operator import attrgetter
 
@@ -12,57 +12,63 @@ from suchus.robot.motion.posture import plan
 from suchus.robot.motion.rising import stand_up
 
 SOON = 0.2
-"""When standing up begins where no crawl is needed [s]."""
+"""Start of standing up in runs without a crawl [s]."""
 PARTS = {
     "leg": ("hind_leg.femur", "hind_leg.tibia", "front_leg.femur", "front_leg.tibia"),
     "spine": ("spine.base", "spine.link"),
     "head": ("head.snout",),
 }
-"""Names of the numbers that make up the length of a part."""
+"""Fields of the robot that make up the length of each body part."""
 
 
 def heavier(robot: Robot, mass: float, torque: float) -> Robot:
-    """Return the robot with another forebody, the pelvis taking the rest, and other pitch servos in the trunk."""
-    own = robot.thorax.mass + robot.head.mass
+    """Return the robot with another forebody mass and another torque of the trunk's pitch servos.
+
+    Args:
+        robot: robot that is changed; its pelvis takes up the difference in mass.
+        mass: mass of thorax and head together [kg].
+        torque: torque limit of the trunk's pitch servos [N m].
+    """
+    forebody_mass = robot.thorax.mass + robot.head.mass
     return with_values(
         robot,
         {
-            "thorax.mass": robot.thorax.mass * mass / own,
-            "head.mass": robot.head.mass * mass / own,
-            "pelvis.mass": max(robot.pelvis.mass + own - mass, 0.02),
+            "thorax.mass": robot.thorax.mass * mass / forebody_mass,
+            "head.mass": robot.head.mass * mass / forebody_mass,
+            "pelvis.mass": max(robot.pelvis.mass + forebody_mass - mass, 0.02),
             "spine.pitch_servo.torque": torque,
         },
     )
 
 
-def lengthened(robot: Robot, part: str, factor: float) -> Robot:
-    """Return the robot with longer legs, a longer spine, or a longer head; masses stay."""
-    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[part]})
+def lengthened(robot: Robot, body_part: str, factor: float) -> Robot:
+    """Return the robot with one body part scaled in length; its masses do not change."""
+    return with_values(robot, {path: factor * attrgetter(path)(robot) for path in PARTS[body_part]})
 
 
-def length(robot: Robot, part: str) -> float:
-    """Return the length of a part, of the hind leg for the legs [m]."""
+def length(robot: Robot, body_part: str) -> float:
+    """Return the length of a body part [m]; for the legs that of the hind leg."""
     leg = robot.hind_leg
-    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[part]
+    return {"leg": leg.femur + leg.tibia, "spine": robot.spine.length, "head": robot.head.snout}[body_part]
 
 
 def fitted(gait: Gait, robot: Robot, original: Robot) -> Gait:
-    """Return the gait with its heights and reaches in proportion to a robot's legs, its strokes and lifts as before."""
+    """Return the gait with heights and reaches in proportion to a robot's legs; strokes and lifts stay the same."""
     factor = length(robot, "leg") / length(original, "leg")
     return gait.with_numbers(stroke=gait.number("stroke") / factor, lift=gait.number("lift") / factor)
 
 
-def stand_soon(robot: Robot, ahead: float, balance: Balance | None, size: float) -> Standing | None:
-    """Return a control that stands up at once and stays, or None for a robot that cannot take the postures.
+def stand_soon(robot: Robot, lead: float, balance: Balance | None, size: float) -> Standing | None:
+    """Return a control that stands up at once and keeps standing; None where the joints cannot take the postures.
 
     Args:
-        robot: that stands up.
-        ahead: how far its feet are ahead of its centre of mass when it stands [m].
-        balance: by which it keeps its balance.
-        size: of the robot of which it is a variant, over that of the article's [-].
+        robot: robot that stands up.
+        lead: distance of its feet ahead of its centre of mass when it stands [m].
+        balance: feedback rule by which it keeps its balance; None for no feedback.
+        size: size of the design from which it is varied, over that of the article's robot [-].
     """
     try:
-        rise = stand_up(robot, lead=ahead, size=size)
+        rise = stand_up(robot, lead=lead, size=size)
         plan(robot, rise, np.linspace(0.0, rise.duration, 200))
     except OutsideLimits:
         return None
@@ -70,5 +76,5 @@ def stand_soon(robot: Robot, ahead: float, balance: Balance | None, size: float)
 
 
 def up_at(robot: Robot) -> float:
-    """Return when a robot that stands up at once is upright [s]."""
+    """Return the time at which a robot that stands up at once is upright [s]."""
     return Standing(at=SOON, hold=0.0).upright_from(robot)

@@ -42,13 +42,13 @@ from suchus.sim.metrics import (
     two_feet_alone_share,
 )
 
-_EQUAL = "limbs_only_equal_displacement"
-_SHOWN = ("coordinated", "limbs_only", "limbs_tail_lifted")
-"""Conditions whose snapshots are looked at."""
+_EQUAL_DISPLACEMENT = "limbs_only_equal_displacement"
+_SNAPSHOT_CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted")
+"""Conditions whose snapshots are evaluated."""
 _CHANGES = (
     ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
     ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
-    ("com_height_pp_change_equal_displacement", "com_height_pp", "coordinated", _EQUAL),
+    ("com_height_pp_change_equal_displacement", "com_height_pp", "coordinated", _EQUAL_DISPLACEMENT),
     ("wagging_pp_change", "com_height_pp", "coordinated", "tail_still"),
     ("tail_contact_pp_change", "com_height_pp", "tail_still", "spine_only"),
     ("tail_contact_pp_change_limbs_only", "com_height_pp", "limbs_only", "limbs_tail_lifted"),
@@ -56,19 +56,19 @@ _CHANGES = (
     ("com_height_std_change", "com_height_std", "coordinated", "limbs_only"),
     ("roll_pp_change", "roll_pp", "coordinated", "limbs_only"),
 )
-"""Relative changes: name, of which number, condition, what it is compared with."""
-_OF_ALL = (*(name for name, *_ in _CHANGES), "stroke_equal_displacement", "spine_sine_r2")
-"""Measures that are not of the robots as built in one condition."""
+"""Relative changes: name, quantity, condition, reference condition."""
+_COMPARISON_MEASURES = (*(name for name, *_ in _CHANGES), "stroke_equal_displacement", "spine_sine_r2")
+"""Measures that need more than the robots as built in one condition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrawlStability(TwoGroups):
     """The height of the centre of mass over time, for every combination of spine and tail.
 
-    The article compares spine and tail together with neither, at the same leg commands. That mixes four things, so all
-    conditions stand side by side here, and the group without spine and tail walks once more with strokes long enough to
-    get as far. Of another body those conditions are run that its parts make possible. Fluctuation is the amplitude that
-    the article's Fig. 15 shows: the highest less the lowest height.
+    The article compares spine and tail together with neither of them, at the same leg commands. This comparison mixes
+    four effects, so each combination is simulated here. Limbs only are simulated once more, with strokes that give
+    the same displacement. Another body gets those conditions that its parts allow. The fluctuation is that of the
+    article's Fig. 15: the highest minus the lowest height.
     """
 
     title = "Does it crawl more steadily with spine and tail than without?"
@@ -88,31 +88,32 @@ class CrawlStability(TwoGroups):
         return replace(self, cycles=1, repeats=2)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, and as far with the legs alone, as designed and with robots as built."""
+        """Simulate every condition, and limbs only with strokes for equal displacement, as designed and as built."""
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
-        first = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
-        share = self._equal_stroke(first, end, staged(progress, "equal displacement", 0.1, 0.4))
-        runs.append(Run(robot=self.robot, gait=self.control_group.strode(share), label=_EQUAL))
+        first_record = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
+        stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
+        runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
         record = simulate(runs, duration=end, progress=staged(progress, "as designed", 0.4, 0.5))
-        built = staged(progress, "robots as built", 0.5, 1.0)
-        record = record.merge(self.repeated(runs, _numbers, _UNITS | _looked_at(), end, built))
-        record.attrs["equal_stroke"] = share * self._stroke()
+        built_progress = staged(progress, "robots as built", 0.5, 1.0)
+        record = record.merge(self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, built_progress))
+        record.attrs["equal_stroke"] = stroke_factor * self._stroke()
         return Simulated(record=record, replays=self._replays(record))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; of single conditions no other condition walks."""
-        if any(name.startswith(_OF_ALL) or _EQUAL in name for name in wanted):
+        """Return at least the requested measures; only the conditions that they name are simulated."""
+        if any(name.startswith(_COMPARISON_MEASURES) or _EQUAL_DISPLACEMENT in name for name in wanted):
             return super(CrawlStability, self).measured(wanted, progress)
         arms = conditions_of(self.robot, self.gait, self.control_group)
-        named = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in wanted)}
-        runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in named.items()]
+        requested_gaits = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in wanted)}
+        runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in requested_gaits.items()]
         end = START + self.cycles * self.gait.period
-        record = self.repeated(runs, _numbers, _UNITS | _looked_at(), end, progress)
+        record = self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, progress)
         return of_repeats(record, _UNITS) | self._snapshots(record)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone."""
         return replayed(
             "stability_replay.html",
             record.isel(run=0),
@@ -124,29 +125,34 @@ class CrawlStability(TwoGroups):
         )
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
-        """Return the stroke with which the legs alone get as far as with spine and tail, or their longest.
+        """Return the stroke with which the legs alone get as far as with spine and tail [stroke of the gait].
 
-        In strokes of the gait.
+        The result is the longest stroke that the legs can follow where even that one does not get as far.
+
+        Args:
+            record: record of the condition with spine and tail.
+            end: duration of each run [s].
+            progress: callback that gets the finished fraction.
         """
         strokes = np.linspace(1.0, longest_strokes(self.robot, self.control_group), 10)
         runs = [Run(robot=self.robot, gait=self.control_group.strode(float(s))) for s in strokes]
-        tried = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
-        reached = displacement(tried).sel(xyz="x").values
-        wanted = float(displacement(record).sel(xyz="x")[0])
-        return float(np.interp(wanted, np.maximum.accumulate(reached), strokes))
+        sweep = simulate(runs, duration=end, timestep=coarse_step(self.robot), every=100, progress=progress)
+        distances = displacement(sweep).sel(xyz="x").values
+        target_distance = float(displacement(record).sel(xyz="x")[0])
+        return float(np.interp(target_distance, np.maximum.accumulate(distances), strokes))
 
     def _stroke(self) -> float:
-        """Return the longest half stroke of the gait's foot paths; 0 where it has none [m]."""
+        """Return the longest half stroke of the gait's foot paths [m]; 0 where the gait has none."""
         girdles = zip(self.robot.girdles, self.control_group.limbs, strict=False)
         return max((g.limb.reach * abs(path.stroke) for g, path in girdles if isinstance(path, FootPath)), default=0.0)
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
         measures = of_repeats(record, _UNITS)
-        for name, quantity, arm, without in _CHANGES:
+        for name, quantity, arm, reference in _CHANGES:
             values = record[f"repeated_{quantity}"]
-            if {arm, without} <= set(values.condition.values):
-                change = values.sel(condition=arm, drop=True) / values.sel(condition=without, drop=True) - 1
+            if {arm, reference} <= set(values.condition.values):
+                change = values.sel(condition=arm, drop=True) / values.sel(condition=reference, drop=True) - 1
                 measures |= estimated(name, change, "-")
         measures |= {
             "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
@@ -155,14 +161,20 @@ class CrawlStability(TwoGroups):
         return measures | self._snapshots(record)
 
     def _snapshots(self, record: xr.Dataset) -> Measures:
-        """Return what the snapshots of the conditions show that are looked at."""
+        """Return the measures at the times of the article's snapshots, for each of the snapshot conditions."""
         measures = Measures()
-        for name in self._shown(list(record.condition.values)):
-            looked = {number: record[f"repeated_{number}"].sel(condition=name) for number in _looked_at()}
-            for number, unit in _looked_at().items():
-                moment = number.removesuffix("_ms").rpartition("_")
-                called = f"{moment[0]}_{name}_{moment[2]}_ms" if number.endswith("_ms") else f"{number}_{name}"
-                measures |= _of_most(called, looked[number], unit)
+        for condition in self._snapshot_runs(list(record.condition.values)):
+            snapshots = {
+                quantity: record[f"repeated_{quantity}"].sel(condition=condition) for quantity in _snapshot_quantities()
+            }
+            for quantity, unit in _snapshot_quantities().items():
+                name_parts = quantity.removesuffix("_ms").rpartition("_")
+                measure_name = (
+                    f"{name_parts[0]}_{condition}_{name_parts[2]}_ms"
+                    if quantity.endswith("_ms")
+                    else f"{quantity}_{condition}"
+                )
+                measures |= _estimate_if_majority(measure_name, snapshots[quantity], unit)
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -175,33 +187,41 @@ class CrawlStability(TwoGroups):
         return {
             "height_of_mass": draw_heights(outcome.record, arms),
             "fluctuation": draw_spreads(outcome.record, arms),
-            "snapshots": draw_snapshots(self.robot, outcome.record, self._shown(arms), SNAPSHOT_TIMES),
+            "snapshots": draw_snapshots(self.robot, outcome.record, self._snapshot_runs(arms), SNAPSHOT_TIMES),
         }
 
     @staticmethod
-    def _shown(arms: Sequence[str]) -> dict[str, int]:
-        """Return the conditions whose snapshots are looked at, and their runs."""
-        return {name: arms.index(name) for name in _SHOWN if name in arms}
+    def _snapshot_runs(arms: Sequence[str]) -> dict[str, int]:
+        """Return the index of the run of each snapshot condition."""
+        return {name: arms.index(name) for name in _SNAPSHOT_CONDITIONS if name in arms}
 
 
 _UNITS = {
     "com_height_pp": "m", "com_height_std": "m", "roll_pp": "rad", "forward": "m", "tail_load_share": "-",
     "hind_duty": "-",
 }  # fmt: skip
-"""Numbers of every condition, and their units."""
-_AT = {"support_distance": "m", "line_distance": "m", "standing_feet": "-", "lean": "rad", "lean_on_two_feet": "rad"}
-"""Numbers of each of the article's three snapshots, and their units."""
+"""Quantities of every condition, and their units."""
+_SNAPSHOT_UNITS = {
+    "support_distance": "m",
+    "line_distance": "m",
+    "standing_feet": "-",
+    "lean": "rad",
+    "lean_on_two_feet": "rad",
+}
+"""Quantities at each of the article's three snapshot times, and their units."""
 
 
-def _looked_at() -> dict[str, str]:
-    """Return the numbers of what the article's snapshots show, and their units: of the whole crawl, then of moments."""
-    whole = {"line_distance_max": "m", "two_feet_alone_share": "-"}
-    return whole | {f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _AT.items()}
+def _snapshot_quantities() -> dict[str, str]:
+    """Return the unit of each quantity that the article's snapshots show: of the whole crawl, then of each time."""
+    crawl_units = {"line_distance_max": "m", "two_feet_alone_share": "-"}
+    return crawl_units | {
+        f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _SNAPSHOT_UNITS.items()
+    }
 
 
-def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the numbers of each run by the names of ``_UNITS`` and of what the snapshots show."""
-    numbers = {
+def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the quantities of each run, by the names of ``_UNITS`` and of ``_snapshot_quantities``."""
+    quantities = {
         "com_height_pp": height_peak_to_peak(record),
         "com_height_std": height_std(record),
         "roll_pp": roll_peak_to_peak(record),
@@ -216,24 +236,30 @@ def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
     )
     moments["lean_on_two_feet"] = moments.lean.where(moments.standing_feet == 2)
     for time in SNAPSHOT_TIMES:
-        now = moments.sel(time=time, method="nearest")
-        each = [support_distance(record.isel(run=i), time) for i in range(record.sizes["run"])]
-        now["support_distance"] = ("run", each)
-        numbers |= {f"{name}_{1000 * time:.0f}_ms": now[name] for name in _AT}
-    return numbers
+        snapshot = moments.sel(time=time, method="nearest")
+        distances = [support_distance(record.isel(run=i), time) for i in range(record.sizes["run"])]
+        snapshot["support_distance"] = ("run", distances)
+        quantities |= {f"{name}_{1000 * time:.0f}_ms": snapshot[name] for name in _SNAPSHOT_UNITS}
+    return quantities
 
 
 def _lean(record: xr.Dataset) -> xr.DataArray:
-    """Return over time the angle between the pelvis's vertical and the world's [rad]."""
+    """Return the angle between the pelvis's vertical axis and that of the world over time [rad]."""
     tilted = tilt(record)
     upright = np.cos(tilted["roll"].values) * np.cos(tilted["pitch"].values)
     return tilted["roll"].copy(data=np.arccos(upright))
 
 
-def _of_most(name: str, values: xr.DataArray, unit: str) -> Measures:
-    """Return the middle of the robots of which there is a number, where that are most of them."""
-    there = values.values[np.isfinite(values.values)]
-    return estimated(name, there if 2 * there.size > values.size else values, unit)
+def _estimate_if_majority(name: str, values: xr.DataArray, unit: str) -> Measures:
+    """Estimate a measure from its finite values if these are the majority, else from all values.
+
+    Args:
+        name: name of the measure.
+        values: one value per repeat, NaN where it is undefined.
+        unit: unit of the values.
+    """
+    finite_values = values.values[np.isfinite(values.values)]
+    return estimated(name, finite_values if 2 * finite_values.size > values.size else values, unit)
 
 
 experiment = CrawlStability()

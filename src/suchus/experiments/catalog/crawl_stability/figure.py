@@ -21,21 +21,21 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
         record: of one run per condition, then the legs alone at equal displacement.
         names: of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
     """
-    part = between(record)
-    height = part.centre_of_mass.sel(xyz="z")
+    walk = between(record)
+    height = walk.centre_of_mass.sel(xyz="z")
     height = height - height.mean("time")
     with styled():
         figure, axes = panels(2, 1, height=7.0, sharex=True, sharey=True)
-        upper, lower = axes[:, 0]
-        draw_lines(upper, height.isel(run=slice(0, len(names))), names, scale=1000.0)
-        upper.set_title("equal commands to the legs")
-        draw_lines(lower, height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
-        lower.set_title("equal displacement: longer strokes for the legs alone")
-        for ax in (upper, lower):
+        upper_ax, lower_ax = axes[:, 0]
+        draw_lines(upper_ax, height.isel(run=slice(0, len(names))), names, scale=1000.0)
+        upper_ax.set_title("equal commands to the legs")
+        draw_lines(lower_ax, height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
+        lower_ax.set_title("equal displacement: longer strokes for the legs alone")
+        for ax in (upper_ax, lower_ax):
             ax.set_ylabel("height of centre of mass\nless its mean [mm]")
-            mark_cycles(ax, list(np.arange(START, float(part.time[-1]) + 0.01, float(part.period[0]))))
-        upper.set_xlabel("")
-        upper.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False)
+            mark_cycles(ax, list(np.arange(START, float(walk.time[-1]) + 0.01, float(walk.period[0]))))
+        upper_ax.set_xlabel("")
+        upper_ax.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False)
     return captioned(
         figure,
         "Height of the centre of mass about its mean. Above: all conditions with identical leg commands. Below: the "
@@ -45,22 +45,30 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
 
 
 def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
-    """Draw the fluctuation of the height in every condition, of the robots as built and as designed.
+    """Draw the fluctuation of the height in every condition, of the robots as built and of the design.
 
     Args:
-        record: of one run per condition, with the fluctuation of the robots as built.
-        names: of the conditions, roles of ``style.LINES``.
+        record: record with one run per condition and the fluctuation of the robots as built.
+        names: conditions, roles of ``style.LINES``.
     """
     fluctuation = 1000 * height_peak_to_peak(record)
     with styled():
         figure, axes = panels(1, 1, height=4.0)
         ax = axes[0, 0]
         for i, name in enumerate(names):
-            built, here = 1000 * record.repeated_com_height_pp.sel(condition=name), len(names) - i
+            repeat_fluctuations, row = 1000 * record.repeated_com_height_pp.sel(condition=name), len(names) - i
             labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
-            ax.plot(built, [here] * built.size, "|", color=COLOURS[name], markersize=13, alpha=0.6, label=labels[0])
-            ax.plot(float(built.median()), here, "o", color=COLOURS[name], markersize=9, label=labels[1])
-            ax.plot(float(fluctuation[i]), here, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
+            ax.plot(
+                repeat_fluctuations,
+                [row] * repeat_fluctuations.size,
+                "|",
+                color=COLOURS[name],
+                markersize=13,
+                alpha=0.6,
+                label=labels[0],
+            )
+            ax.plot(float(repeat_fluctuations.median()), row, "o", color=COLOURS[name], markersize=9, label=labels[1])
+            ax.plot(float(fluctuation[i]), row, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
         ax.legend(loc="lower left")
         ax.set_yticks(range(len(names), 0, -1), [str(LINES[name]["label"]) for name in names])
         ax.set_ylim(0.4, len(names) + 0.6)

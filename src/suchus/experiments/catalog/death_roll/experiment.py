@@ -20,18 +20,18 @@ from suchus.sim.land import VACUUM, WATER, Afloat, Run, simulate
 from suchus.sim.metrics import between, peak_torque, roll_rate, whole
 from suchus.sim.model import longest_step
 
-_NEARLY = 1.25  # how much stiffer a robot may be before it is asked in shorter steps [-]
+_STIFFNESS_TOLERANCE = 1.25  # [-]; stiffness ratio from which the time steps are shortened
 _MEDIA = ("vacuum", "water")
 _ARMS = ("trunk", "tail", "c_shape", "s_shape", "lateral_only", "vertical_only", "reversed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeathRoll(Experiment):
-    """The crocodile's roll, without ground and gravity, from rest; limbs folded back.
+    """The crocodile's roll from rest, without ground and gravity, with the limbs folded back.
 
-    A bend that goes around the body once in a cycle turns the body the other way. In vacuum nothing acts from
-    outside, so that the angular momentum must stay zero while the body turns; water adds MuJoCo's ellipsoid drag,
-    which knows no wake and not all of the added mass. The rate is the twist about the mean long axis over whole
+    A bend that goes around the body once a cycle turns the body in the opposite sense. In vacuum no external moment
+    acts, so the angular momentum must stay zero while the body turns. In water MuJoCo's ellipsoid drag acts, which
+    models no wake and only part of the added mass. The rate is the rotation about the mean long axis over whole
     cycles, after a first cycle in which the bends grow.
     """
 
@@ -93,31 +93,32 @@ class DeathRoll(Experiment):
         )
 
     def on(self, robot: Robot) -> "DeathRoll":
-        """Return the same question for another robot, in time steps that hold its joints as they hold those of now."""
-        asked = super(DeathRoll, self).on(robot)  # a class with slots has no short form
-        finer, longest = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
-        while finer * max(asked.timesteps) > _NEARLY * longest:
-            finer /= 2  # control periods stay whole numbers of steps
-        steps = tuple(finer * step for step in asked.timesteps)
-        timestep, coarse = finer * asked.timestep, finer * asked.coarse_timestep
-        return replace(asked, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
+        """Return the same question for another robot, with time steps that are as stable for it as those of now."""
+        variant = super(DeathRoll, self).on(robot)  # super() without arguments fails in a class with slots
+        step_factor, max_timestep = 1.0, max(self.timesteps) * longest_step(robot) / longest_step(self.robot)
+        while step_factor * max(variant.timesteps) > _STIFFNESS_TOLERANCE * max_timestep:
+            step_factor /= 2  # a control period remains a whole number of steps
+        steps = tuple(step_factor * step for step in variant.timesteps)
+        timestep, coarse = step_factor * variant.timestep, step_factor * variant.coarse_timestep
+        return replace(variant, timestep=timestep, coarse_timestep=coarse, timesteps=steps)
 
     @property
     def _duration(self) -> float:
         return self.cycles / self.frequency
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Roll in vacuum and in water, and over phase, amplitude, frequency and time step."""
+        """Simulate rolls in vacuum and in water, and over phase, amplitude, frequency and time step."""
         arms = self._simulate(self._arms(), self.timestep, staged(progress, "arms", 0.0, 0.55))
         record = arms.assign(rate=(("run"), self._rates(arms, self.frequency), {"units": "Hz"}))
         record = record.merge(self._curves(staged(progress, "curves", 0.55, 0.9)))
         return Simulated(record=record.merge(self._steps(staged(progress, "time steps", 0.9, 1.0))))
 
     def _roll(self, *, frequency: float | None = None, **changes: Any) -> Gait:
-        """Return the roll with the trunk alone, or with what is changed."""
+        """Return the roll with the trunk alone, or with changed arguments of ``motion.roll``."""
         return roll(self.robot, period=1.0 / (frequency or self.frequency), **({"trunk": (self.trunk,) * 2} | changes))
 
     def _arms(self) -> dict[str, Gait]:
+        """Return the gaits that are compared, by the names of ``_ARMS``."""
         tail = (self.tail_lateral, self.tail_vertical)
         return {
             "trunk": self._roll(),
@@ -132,20 +133,28 @@ class DeathRoll(Experiment):
     def _simulate(
         self, rolls: Mapping[str, Gait], timestep: float, progress: Any, media: tuple[str, ...] = _MEDIA
     ) -> xr.Dataset:
-        """Simulate rolls, all of them in one medium after the other."""
-        runs = [self._afloat(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
+        """Simulate all rolls in each medium.
+
+        Args:
+            rolls: gaits by label.
+            timestep: time step of the physics [s].
+            progress: callback that gets the finished fraction.
+            media: ``vacuum`` or ``water``; the runs of the first one come first.
+        """
+        runs = [self._floating_run(gait, arm, medium) for medium in media for arm, gait in rolls.items()]
         record = whole(simulate(runs, duration=self._duration, timestep=timestep, progress=progress))
         return record.assign_coords(medium=("run", [medium for medium in media for _ in rolls]))
 
-    def _afloat(self, gait: Gait, arm: str, medium: str) -> Run:
-        afloat: Afloat = VACUUM if medium == "vacuum" else WATER
-        grows = OpenLoop(begin=0.0, ramp=gait.period)
-        return Run(robot=self.robot, gait=gait, control=grows, afloat=afloat, label=arm)
+    def _floating_run(self, gait: Gait, arm: str, medium: str) -> Run:
+        """Return the run of one roll in one medium; its bends grow over the first cycle."""
+        fluid: Afloat = VACUUM if medium == "vacuum" else WATER
+        control = OpenLoop(begin=0.0, ramp=gait.period)
+        return Run(robot=self.robot, gait=gait, control=control, afloat=fluid, label=arm)
 
     def _window(self, frequency: float) -> float:
-        """Return where the measurement begins: whole cycles before the end, after the first cycle [s]."""
-        measured = int(frequency * self._duration + 1e-9) - 1
-        return self._duration - measured / frequency
+        """Return the start of the measurement [s]: whole cycles before the end, after the first cycle."""
+        measured_cycles = int(frequency * self._duration + 1e-9) - 1
+        return self._duration - measured_cycles / frequency
 
     def _rates(self, record: xr.Dataset, frequency: float) -> np.ndarray:
         return np.asarray(roll_rate(record, self._window(frequency)).values / (2 * pi))
@@ -154,21 +163,23 @@ class DeathRoll(Experiment):
         """Return the rate over phase, amplitude and frequency of the trunk's bends [Hz]."""
         phases = {f"phase {p}": self._roll(lag=p) for p in self.phases}
         bends = {f"bend {b}": self._roll(trunk=(b, b)) for b in self.bends}
-        speeds = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
-        lagging = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
-        both = self._simulate(bends | speeds, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
-        by_medium = [both.isel(run=both.medium.values == medium) for medium in _MEDIA]
+        frequencies = {f"frequency {f}": self._roll(frequency=f) for f in self.frequencies}
+        phase_record = self._simulate(phases, self.coarse_timestep, staged(progress, "", 0.0, 0.25), ("vacuum",))
+        sweep_record = self._simulate(bends | frequencies, self.coarse_timestep, staged(progress, "", 0.25, 1.0))
+        medium_records = [sweep_record.isel(run=sweep_record.medium.values == medium) for medium in _MEDIA]
         count = len(bends)
-        bent = [self._rates(part.isel(run=slice(0, count)), self.frequency) for part in by_medium]
-        fast = [
-            [self._rates(part.isel(run=[count + i]), f)[0] for i, f in enumerate(self.frequencies)]
-            for part in by_medium
+        bend_rates = [
+            self._rates(medium_record.isel(run=slice(0, count)), self.frequency) for medium_record in medium_records
+        ]
+        frequency_rates = [
+            [self._rates(medium_record.isel(run=[count + i]), f)[0] for i, f in enumerate(self.frequencies)]
+            for medium_record in medium_records
         ]
         data = xr.Dataset(
             {
-                "rate_by_phase": ("late", self._rates(lagging, self.frequency), {"units": "Hz"}),
-                "rate_by_bend": (("fluid", "bend"), np.array(bent), {"units": "Hz"}),
-                "rate_by_frequency": (("fluid", "frequency"), np.array(fast), {"units": "Hz"}),
+                "rate_by_phase": ("late", self._rates(phase_record, self.frequency), {"units": "Hz"}),
+                "rate_by_bend": (("fluid", "bend"), np.array(bend_rates), {"units": "Hz"}),
+                "rate_by_frequency": (("fluid", "frequency"), np.array(frequency_rates), {"units": "Hz"}),
             },
             coords={
                 "late": list(self.phases),
@@ -182,16 +193,16 @@ class DeathRoll(Experiment):
         return data
 
     def _steps(self, progress: Any) -> xr.Dataset:
-        """Return what is left of the angular momentum in vacuum, and the rate, over the time step."""
-        left, rate, count = [], [], len(self.timesteps)
+        """Return the spurious angular momentum in vacuum [kg m2/s] and the rate [Hz] over the time step."""
+        momenta, rates, count = [], [], len(self.timesteps)
         for i, step in enumerate(self.timesteps):
-            rolled = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
-            left.append(float(abs(rolled.angular_momentum).max()))
-            rate.append(float(self._rates(rolled, self.frequency)[0]))
+            record = self._simulate({"trunk": self._roll()}, step, portion(progress, i, count), ("vacuum",))
+            momenta.append(float(abs(record.angular_momentum).max()))
+            rates.append(float(self._rates(record, self.frequency)[0]))
         data = xr.Dataset(
             {
-                "momentum_by_timestep": ("timestep", left, {"units": "kg m2/s"}),
-                "rate_by_timestep": ("timestep", rate, {"units": "Hz"}),
+                "momentum_by_timestep": ("timestep", momenta, {"units": "kg m2/s"}),
+                "rate_by_timestep": ("timestep", rates, {"units": "Hz"}),
             },
             coords={"timestep": list(self.timesteps)},
         )
@@ -199,11 +210,11 @@ class DeathRoll(Experiment):
         return data
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return rate, power and loads of each roll, and what is left of the angular momentum."""
+        """Return rate, power and loads of each roll, and the residual angular momentum in vacuum."""
         start = self._window(self.frequency)
-        torque, measured = peak_torque(record, start), between(record, start)
-        power = (measured.servo_torque * measured.servo_velocity).clip(min=0.0).sum("servo").mean("time")
-        speed = abs(measured.servo_velocity).max("time")
+        torque, window = peak_torque(record, start), between(record, start)
+        power = (window.servo_torque * window.servo_velocity).clip(min=0.0).sum("servo").mean("time")
+        speed = abs(window.servo_velocity).max("time")
         measures = Measures()
         for medium in _MEDIA:
             for arm in _ARMS:
@@ -213,14 +224,16 @@ class DeathRoll(Experiment):
                     measures[f"power_{arm}_{medium}"] = Measure(float(power[run]), "W")
                 if arm == "c_shape":
                     for group, servos in servo_groups(self.robot).items():
-                        for what, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
-                            greatest = float(values.isel(run=run).sel(servo=list(servos)).max())
-                            measures[f"{what}_peak_{group}_{medium}"] = Measure(greatest, unit)
+                        for quantity, values, unit in (("torque", torque, "N m"), ("speed", speed, "rad/s")):
+                            max_load = float(values.isel(run=run).sel(servo=list(servos)).max())
+                            measures[f"{quantity}_peak_{group}_{medium}"] = Measure(max_load, unit)
         free = record.medium == "vacuum"
-        trunk, tail, both = (measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape"))
+        trunk_rate, tail_rate, c_shape_rate = (
+            measures[f"rate_{arm}_vacuum"].value for arm in ("trunk", "tail", "c_shape")
+        )
         return measures | {
-            "share_trunk": Measure(trunk / both, "-"),
-            "share_tail": Measure(tail / both, "-"),
+            "share_trunk": Measure(trunk_rate / c_shape_rate, "-"),
+            "share_tail": Measure(tail_rate / c_shape_rate, "-"),
             "momentum_left_vacuum": Measure(float(abs(record.angular_momentum.isel(run=free.values)).max()), "kg m2/s"),
             "momentum_exchanged_water": Measure(
                 float(abs(record.angular_momentum.isel(run=~free.values)).max()), "kg m2/s"
@@ -233,12 +246,18 @@ class DeathRoll(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say what the phase of the bends, the shape and the water do to the rate, and what limits it."""
-        return self.told(measures, **{what: self._load(measures, what) for what in ("speed", "torque")})
+        return self.told(measures, **{quantity: self._load(measures, quantity) for quantity in ("speed", "torque")})
 
-    def _load(self, measures: Mapping[str, float], what: str) -> float:
-        """Return the greatest ``torque`` or ``speed`` of the roll as a C over what the servo can do [-]."""
+    def _load(self, measures: Mapping[str, float], quantity: str) -> float:
+        """Return the greatest load of the C-shaped roll over the servo's limit [-].
+
+        Args:
+            measures: numbers of the run by name.
+            quantity: ``torque`` or ``speed``.
+        """
         return max(
-            measures[f"{what}_peak_{group}_{medium}"] / min(getattr(self.robot.servo(servo), what) for servo in servos)
+            measures[f"{quantity}_peak_{group}_{medium}"]
+            / min(getattr(self.robot.servo(servo), quantity) for servo in servos)
             for group, servos in servo_groups(self.robot).items()
             for medium in _MEDIA
         )
@@ -254,9 +273,9 @@ class DeathRoll(Experiment):
 
 
 def _drift(record: xr.Dataset) -> float:
-    """Return how far the centre of mass moves at most [m]."""
-    moved = record.centre_of_mass - record.centre_of_mass.isel(time=0)
-    return float(((moved**2).sum("xyz") ** 0.5).max())
+    """Return the greatest distance of the centre of mass from its start [m]."""
+    displacement = record.centre_of_mass - record.centre_of_mass.isel(time=0)
+    return float(((displacement**2).sum("xyz") ** 0.5).max())
 
 
 experiment = DeathRoll()

@@ -35,18 +35,18 @@ from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
 _CRAWL = belly_crawl.metres
-"""The crawl for which strokes and bends of the map are chosen."""
-_LEAST = 0.00198  # [body length]; below this displacement a ratio means nothing
+"""The crawl from which strokes and bends of the map are derived."""
+_MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; a ratio over less displacement is meaningless
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displacement(TwoGroups):
-    """The article's two groups side by side, what each part of spine and tail adds, and the map of what decides.
+    """The article's two groups, the gain by each part of spine and tail, and a map over the free parameters.
 
-    Displacement is forward, along the direction that the body faced at the start, and that of the centre of mass from
-    the beginning of the first cycle to the end of the last. The control group's tail lies still on the ground; with its
-    tail in the air it is simulated beside. Of another body those conditions are run that its parts make possible, and
-    of the map as much as its limbs reach.
+    The displacement is that of the centre of mass from the start of the first cycle to the end of the last, along the
+    initial direction of the body. The tail of the control group lies still on the ground; a further condition lifts
+    it into the air. Another body gets those conditions that its parts allow, and the part of the map that its limbs
+    reach.
     """
 
     title = "How far does it crawl, with spine and tail and without?"
@@ -87,18 +87,19 @@ class Displacement(TwoGroups):
         return replace(corners, cycles=1, repeats=2, phases=(0.0, 0.5))
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl in every condition, as designed and with robots as built, and map what decides."""
+        """Simulate every condition as designed and as built, and the map over strokes, bends, pitches and phases."""
         duration = START + self.cycles * self.gait.period
         gaits = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        built = staged(progress, "robots as built", 0.1, 0.5)
-        record = record.merge(self.repeated(runs, _numbers, _UNITS, duration, built))
-        record = record.merge(self._mapped(duration, staged(progress, "map", 0.5, 1.0)))
-        record.attrs["least"] = _LEAST * self.robot.length
+        built_progress = staged(progress, "robots as built", 0.1, 0.5)
+        record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress))
+        record = record.merge(self._displacement_map(duration, staged(progress, "map", 0.5, 1.0)))
+        record.attrs["least"] = _MIN_DISPLACEMENT_FRACTION * self.robot.length
         return Simulated(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the crawl with spine and tail and of that with limbs only."""
         return replayed(
             "crawl_replay.html",
             record.isel(run=0),
@@ -109,25 +110,30 @@ class Displacement(TwoGroups):
             caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
         )
 
-    def _mapped(self, duration: float, progress: Any) -> xr.Dataset:
-        """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m]."""
+    def _displacement_map(self, duration: float, progress: Any) -> xr.Dataset:
+        """Return the displacement over stroke and bend, over the tail's pitch, and over the trunk's phase lag [m].
+
+        Args:
+            duration: duration of each run [s].
+            progress: callback that gets the finished fraction.
+        """
         strokes, bends, pitches = self._grid()
-        limbs = [self.control_group.strode(s) for s in strokes]
-        bent = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
-        pitched = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
-        lagging = [self.gait.lagged(p) for p in self.phases]
-        runs = [Run(robot=self.robot, gait=gait) for gait in (*limbs, *bent, *pitched, *lagging)]
-        reached = _forward(
+        limb_gaits = [self.control_group.strode(s) for s in strokes]
+        bent_gaits = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
+        pitched_gaits = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
+        lagged_gaits = [self.gait.lagged(p) for p in self.phases]
+        runs = [Run(robot=self.robot, gait=gait) for gait in (*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits)]
+        distances = _forward(
             simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=100, progress=progress)
         ).values
-        cut = np.split(reached, np.cumsum([len(limbs), len(bent), len(pitched)]))
+        distance_groups = np.split(distances, np.cumsum([len(limb_gaits), len(bent_gaits), len(pitched_gaits)]))
         metres = {"units": "m"}
         data = xr.Dataset(
             {
-                "map_limbs_only": ("stroke", cut[0], metres),
-                "map_coordinated": (("stroke", "bend"), cut[1].reshape(len(strokes), -1), metres),
-                "pitched": (("group", "pitch"), cut[2].reshape(2, -1), metres),
-                "late_coordinated": ("late", cut[3], metres),
+                "map_limbs_only": ("stroke", distance_groups[0], metres),
+                "map_coordinated": (("stroke", "bend"), distance_groups[1].reshape(len(strokes), -1), metres),
+                "pitched": (("group", "pitch"), distance_groups[2].reshape(2, -1), metres),
+                "late_coordinated": ("late", distance_groups[3], metres),
             },
             coords={
                 "stroke": list(strokes),
@@ -137,41 +143,49 @@ class Displacement(TwoGroups):
                 "late": list(self.phases),
             },
         )
-        for name, unit, what in (
+        for name, unit, long_name in (
             ("stroke", "1", "strokes over those of the gait"),
             ("bend", "1", "bends over those of the gait"),
             ("pitch", "rad", "pitch of the tail, down positive"),
             ("late", "1", "phase lag of the trunk's bend, in cycles"),
         ):
-            data[name].attrs.update(units=unit, long_name=what)
+            data[name].attrs.update(units=unit, long_name=long_name)
         return data
 
     def _grid(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Return strokes, bends and pitches of the tail on the map, as far as the body can follow them."""
-        strides, lifts = self.gait.has("strokes"), self.gait.has("steering") and layout(self.robot).tail_pitch
-        strokes = self._followed(self.strokes, self.gait.strode) if strides else ()
-        bends = self._followed(self.bends, self.gait.bent)
-        pitches = self._followed(self.pitches, self.gait.lifted) if lifts else ()
+        """Return those strokes, bends and tail pitches of the map that the body can follow."""
+        has_strokes, has_tail_pitch = (
+            self.gait.has("strokes"),
+            self.gait.has("steering") and layout(self.robot).tail_pitch,
+        )
+        strokes = self._feasible(self.strokes, self.gait.strode) if has_strokes else ()
+        bends = self._feasible(self.bends, self.gait.bent)
+        pitches = self._feasible(self.pitches, self.gait.lifted) if has_tail_pitch else ()
         return strokes or (1.0,), bends or (1.0,), pitches
 
-    def _followed(self, numbers: Sequence[float], change: Callable[[float], Gait]) -> tuple[float, ...]:
-        """Return the numbers that make a gait, and one that the body can follow."""
+    def _feasible(self, candidates: Sequence[float], change: Callable[[float], Gait]) -> tuple[float, ...]:
+        """Return the candidates that give a gait which the body can follow.
 
-        def follows(number: float) -> bool:
+        Args:
+            candidates: values of one gait parameter.
+            change: returns the gait with a value of that parameter; may raise ``InvalidDesign``.
+        """
+
+        def is_feasible(candidate: float) -> bool:
             try:
-                return suits(self.robot, change(number))
+                return suits(self.robot, change(candidate))
             except InvalidDesign:
                 return False  # as a stroke beyond the limbs' reach
 
-        return tuple(number for number in numbers if follows(number))
+        return tuple(candidate for candidate in candidates if is_feasible(candidate))
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return what each condition does and what each part adds, of the robots as built, and the map."""
+        """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
         measures = of_repeats(record, _UNITS)
         forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
-        for name, arm, without in _GAINS:
-            if {arm, without} <= set(forward):
-                measures |= estimated(f"gain_{name}", forward[arm] - forward[without], "m")
+        for name, arm, reference in _GAINS:
+            if {arm, reference} <= set(forward):
+                measures |= estimated(f"gain_{name}", forward[arm] - forward[reference], "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
             if control in forward:
                 measures |= estimated(name, forward["coordinated"] / forward[control], "-")
@@ -183,14 +197,14 @@ class Displacement(TwoGroups):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the crawls, what each part adds, the displacement over time and what decides it."""
-        record, printed = outcome.record, {arm: CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _GROUPS}
-        article = self._article()
-        full = self.cycles == CYCLES and not self.unjudged()
+        record, printed_distances = outcome.record, {arm: CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in _GROUPS}
+        is_article = self._article()
+        is_full_run = self.cycles == CYCLES and not self.unjudged()
         return {
             "crawling": draw_crawls(self.robot, record.isel(run=[0, 1]), _GROUPS),
-            "parts": draw_parts(record, _forward(record), printed if article else {}),
-            "displacement_over_time": draw_course(record, _GROUPS, printed if full else {}),
-            "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=article),
+            "parts": draw_parts(record, _forward(record), printed_distances if is_article else {}),
+            "displacement_over_time": draw_course(record, _GROUPS, printed_distances if is_full_run else {}),
+            "displacement_map": draw_decisions(record, _ratio(record), self.gait, self._stroke(), article=is_article),
         }
 
     def _stroke(self) -> float:
@@ -200,8 +214,10 @@ class Displacement(TwoGroups):
 
     def _article(self) -> bool:
         """Whether the article's numbers are for this robot and its gaits."""
-        shelf = type(self)()
-        return all(getattr(self, name) == getattr(shelf, name) for name in ("robot", "gait", "control_group"))
+        default_experiment = type(self)()
+        return all(
+            getattr(self, name) == getattr(default_experiment, name) for name in ("robot", "gait", "control_group")
+        )
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:
@@ -218,11 +234,11 @@ _UNITS = {
     "hind_clearance": "m",
     "two_feet_share": "-",
 }
-"""Numbers of every condition, and their units."""
+"""Quantities of every condition, and their units."""
 
 
-def _numbers(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the numbers of each run by the names of ``_UNITS``; of the hind feet those of the worse one."""
+def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the quantities of each run by the names of ``_UNITS``; of the two hind feet the worse one counts."""
     hind = {"leg": record.leg.values[-2:]}
     return {
         "forward": _forward(record),
@@ -242,7 +258,7 @@ _GAINS = (
     ("tail_contact", "tail_still", "spine_only"),
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
 )
-"""What two conditions differ in: name, the condition with it, the one without it."""
+"""Gains: name, condition with the motion, condition without it."""
 
 
 def _ratio(record: xr.Dataset) -> xr.DataArray:

@@ -18,9 +18,9 @@ from suchus.visual.figures.posture import draw_strip
 from suchus.visual.figures.style import COLOURS, LINES, SEQUENTIAL, captioned, panels, styled
 from suchus.visual.figures.timeseries import draw_lines, mark_cycles, mark_printed
 
-_USUAL = ROBOTS["caiman"].length
-"""Length of the robot for which distances between the strips are [m]."""
-_SHOWN = "crawl of the other figures"
+_REFERENCE_LENGTH = ROBOTS["caiman"].length
+"""Length of the robot to which the distances between strips refer [m]."""
+_REFERENCE_LABEL = "crawl of the other figures"
 
 
 def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure:
@@ -33,25 +33,28 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     """
     end = float(record.time[-1])
     times = [START, (START + end) / 2, end]
-    size = robot.length / _USUAL
-    wide = _width(record.sel(time=times, method="nearest"), size)
-    apart = 2 * wide + 0.04 * size
+    size = robot.length / _REFERENCE_LENGTH
+    half_width = _width(record.sel(time=times, method="nearest"), size)
+    spacing = 2 * half_width + 0.04 * size
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=10.5, height=5.2)
         ax = axes[0, 0]
-        ahead = record.centre_of_mass.sel(xyz="x")
+        forward_position = record.centre_of_mass.sel(xyz="x")
         for i, role in enumerate(arms):
-            run, aside = record.isel(run=i), -apart * i
-            draw_strip(ax, robot, run, times, role=role, aside=aside)
-            start, stop = (float(ahead.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
-            dim = aside - wide - 0.02 * size
+            run, lateral_offset = record.isel(run=i), -spacing * i
+            draw_strip(ax, robot, run, times, role=role, aside=lateral_offset)
+            start, stop = (float(forward_position.isel(run=i).sel(time=t, method="nearest")) for t in (START, end))
+            dimension_y = lateral_offset - half_width - 0.02 * size
             ax.annotate(
-                "", (start, dim), (stop, dim), arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2}
+                "",
+                (start, dimension_y),
+                (stop, dimension_y),
+                arrowprops={"arrowstyle": "|-|", "color": COLOURS[role], "lw": 2},
             )
-            ax.update_datalim([(start, dim - 0.06 * size)])
+            ax.update_datalim([(start, dimension_y - 0.06 * size)])
             ax.text(
                 max(stop, start + 0.02 * size) + 0.03 * size,
-                dim,
+                dimension_y,
                 f"{stop - start:.{2 if size > 0.5 else 4}f} m, {LINES[role]['label']}",
                 color=COLOURS[role],
                 va="center",
@@ -67,34 +70,42 @@ def draw_crawls(robot: Robot, record: xr.Dataset, arms: Sequence[str]) -> Figure
     )
 
 
-def _width(shown: xr.Dataset, size: float) -> float:
-    """Return how far a strip reaches to either side: to the farthest foot with its toes, at least to the usual [m]."""
-    feet = np.abs(shown.foot_position.sel(xyz="y").values).max(initial=0.0)
+def _width(snapshots: xr.Dataset, size: float) -> float:
+    """Return the half width of a strip [m]: to the outermost foot with its toes, or more for a narrow stance."""
+    feet = np.abs(snapshots.foot_position.sel(xyz="y").values).max(initial=0.0)
     return max(0.19 * size, float(feet) + 0.06 * size)
 
 
-def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed: Mapping[str, float]) -> Figure:
+def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Mapping[str, float]) -> Figure:
     """Draw how far each condition gets, of the robots as built and as designed.
 
     Args:
         record: of the experiment.
         designed: displacement of each condition of the robot as designed [m].
-        printed: the article's displacements by condition [m]; empty for another robot or gait.
+        printed_distances: the article's displacements by condition [m]; empty for another robot or gait.
     """
     arms = [str(arm) for arm in record.condition.values]
     with styled():
         figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
         ax = axes[0, 0]
         for i, arm in enumerate(arms):
-            built, here = record.repeated_forward.sel(condition=arm), len(arms) - i
-            middle = float(built.median())
+            repeat_distances, row = record.repeated_forward.sel(condition=arm), len(arms) - i
+            median = float(repeat_distances.median())
             labels = ("each robot as built", "their middle", "as designed") if i == 0 else (None,) * 3
-            ax.plot(built, [here] * built.size, "|", color=COLOURS[arm], markersize=13, alpha=0.6, label=labels[0])
-            ax.plot(middle, here, "o", color=COLOURS[arm], markersize=9, label=labels[1])
-            ax.plot(float(designed[i]), here, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
-            ax.annotate(f"{middle:.3g} m", (middle, here), (0, 10), ha="center", fontsize=11,
+            ax.plot(
+                repeat_distances,
+                [row] * repeat_distances.size,
+                "|",
+                color=COLOURS[arm],
+                markersize=13,
+                alpha=0.6,
+                label=labels[0],
+            )
+            ax.plot(median, row, "o", color=COLOURS[arm], markersize=9, label=labels[1])
+            ax.plot(float(designed[i]), row, "x", color=COLOURS["neutral"], markersize=7, label=labels[2])
+            ax.annotate(f"{median:.3g} m", (median, row), (0, 10), ha="center", fontsize=11,
                         textcoords="offset points")  # fmt: skip
-        for i, (arm, metres) in enumerate(printed.items()):
+        for i, (arm, metres) in enumerate(printed_distances.items()):
             ax.plot(metres, len(arms) - arms.index(arm), "D", markersize=11, markerfacecolor="none",
                     markeredgecolor="black", label=None if i else "article")  # fmt: skip
         ax.set_yticks(range(len(arms), 0, -1), [str(LINES[arm]["label"]) for arm in arms])
@@ -110,13 +121,13 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed: Mapping[str,
     )
 
 
-def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, float]) -> Figure:
+def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapping[str, float]) -> Figure:
     """Draw the displacement over time with all of the axis and without, and where the robots as built end.
 
     Args:
         record: of the experiment, the two conditions first.
         arms: names of the two conditions.
-        printed: the article's displacements by condition [m]; empty where they are not for this run.
+        printed_distances: the article's displacements by condition [m]; empty where they are not for this run.
     """
     with styled():
         figure, axes = panels(1, 1, height=4.2)
@@ -126,15 +137,27 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed: Mapping[str, f
         draw_lines(ax, x, arms)
         end = float(record.time[-1])
         for i, arm in enumerate(arms):
-            built, label = record.repeated_forward.sel(condition=arm), None if i else "each robot as built"
-            ax.plot([end] * built.size, built, "_", color=COLOURS[arm], markersize=11, clip_on=False, label=label)
+            repeat_distances, label = record.repeated_forward.sel(condition=arm), None if i else "each robot as built"
+            ax.plot(
+                [end] * repeat_distances.size,
+                repeat_distances,
+                "_",
+                color=COLOURS[arm],
+                markersize=11,
+                clip_on=False,
+                label=label,
+            )
         cycles = (end - START) / float(record.period[0])
         mark_cycles(ax, list(np.arange(START, end + 0.01, float(record.period[0]))))
-        if printed:
-            mark_printed(ax, printed, end)
+        if printed_distances:
+            mark_printed(ax, printed_distances, end)
         ax.set_ylabel("displacement forward [m]")
         ax.legend(loc="upper left")
-    diamonds = " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed) if printed else ""
+    diamonds = (
+        " Diamonds: the article's {coordinated:g} and {limbs_only:g} m.".format(**printed_distances)
+        if printed_distances
+        else ""
+    )
     return captioned(
         figure,
         f"Displacement of the centre of mass over {cycles:.3g} cycles with identical leg commands, as designed."
@@ -152,37 +175,43 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         stroke: half the distance that its front feet move back in stance; 0 where it has no foot paths [m].
         article: whether the article's numbers are for this robot and its gaits.
     """
-    pitched = record.sizes["pitch"] > 0
-    absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
+    has_pitches = record.sizes["pitch"] > 0
+    is_absolute = gait.has("foot paths") and gait.number("trunk_bend") > 0
     with styled(axes__grid=False):
-        ratios = [1.35, 1, 1] if pitched else [1.35, 1]
+        ratios = [1.35, 1, 1] if has_pitches else [1.35, 1]
         figure, axes = panels(1, len(ratios), width=12.5, height=4.3, width_ratios=ratios)
         star = (1.0, 1.0)
-        if absolute:
+        if is_absolute:
             star = 1000 * stroke, degrees(gait.number("trunk_bend"))
             ratio = ratio.assign_coords(stroke=record.stroke * star[0], bend=record.bend * star[1])
             ratio.stroke.attrs.update(units="mm", long_name="half stroke of the legs")
             ratio.bend.attrs.update(units="deg", long_name="bend of the trunk")
-        printed = CLAIMS["displacement_ratio"].value if article else None
+        printed_ratio = CLAIMS["displacement_ratio"].value if article else None
         ax = axes[0, 0]
         if min(ratio.shape) > 1:
             label = "ratio of displacements [-]"
-            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed, form="%.3g")
-            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_SHOWN)
-        else:  # of the strokes or the bends the body can follow one only
-            over = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
-            ax.plot(ratio[over], ratio.squeeze("bend" if over == "stroke" else "stroke"), marker="o")
-            ax.axvline(star[over == "bend"], color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
-            ax.set_xlabel(f"{ratio[over].attrs['long_name']} [{ratio[over].attrs['units']}]")
+            draw_map(ax, ratio.T, levels=(1, 1.5, 2, 3, 6, 12), label=label, emphasised=printed_ratio, form="%.3g")
+            ax.plot(*star, "*", markersize=15, color="white", markeredgecolor="black", label=_REFERENCE_LABEL)
+        else:  # the body can vary only its strokes or only its bends
+            dimension = "stroke" if ratio.sizes["stroke"] > 1 else "bend"
+            ax.plot(ratio[dimension], ratio.squeeze("bend" if dimension == "stroke" else "stroke"), marker="o")
+            ax.axvline(
+                star[dimension == "bend"],
+                color=COLOURS["neutral"],
+                linestyle=":",
+                linewidth=1.2,
+                label=_REFERENCE_LABEL,
+            )
+            ax.set_xlabel(f"{ratio[dimension].attrs['long_name']} [{ratio[dimension].attrs['units']}]")
             ax.set_ylabel("ratio of displacements [-]")
         ax.legend(loc="upper right", fontsize=10)
         ax.set_title("spine and tail over limbs only")
-        if pitched:
+        if has_pitches:
             ax = axes[0, 1]
             for arm in record.group.values:
                 ax.plot(np.degrees(record.pitch), record.pitched.sel(group=arm), marker="o", **LINES[str(arm)])
-            ours = degrees(gait.number("tail_pitch"))
-            ax.axvline(ours, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_SHOWN)
+            gait_pitch = degrees(gait.number("tail_pitch"))
+            ax.axvline(gait_pitch, color=COLOURS["neutral"], linestyle=":", linewidth=1.2, label=_REFERENCE_LABEL)
             ax.set_xlabel("pitch of the tail, down [deg]")
             ax.set_ylabel("displacement forward [m]")
             ax.set_ylim(bottom=0.0)
@@ -194,15 +223,15 @@ def draw_decisions(record: xr.Dataset, ratio: xr.DataArray, gait: Gait, stroke: 
         ax.set_xlabel("phase lag of the trunk [cycle]")
         ax.set_ylabel("displacement forward [m]")
         ax.set_title("phase lag of the trunk")
-    line = ", the orange line the article's ratio" if article else ""
-    shown = "star" if min(ratio.shape) > 1 else "dotted line"
-    what = "" if absolute else " over shares of the strokes and bends of the robot's gait"
-    middle = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if pitched else ""
+    article_text = ", the orange line the article's ratio" if article else ""
+    marker_text = "star" if min(ratio.shape) > 1 else "dotted line"
+    axes_text = "" if is_absolute else " over shares of the strokes and bends of the robot's gait"
+    pitch_text = " Middle: the steady pitch of the tail, the dotted line that of the crawl." if has_pitches else ""
     return captioned(
         figure,
-        f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{what}; the "
-        f"{shown} is the crawl of the other figures{line}.{middle} Right: the phase lag of the trunk's bend behind "
-        "the legs, with spine and tail.",
+        f"What decides. Left: the ratio of the displacements with spine and tail and with limbs only{axes_text}; the "
+        f"{marker_text} is the crawl of the other figures{article_text}.{pitch_text} Right: the phase "
+        "lag of the trunk's bend behind the legs, with spine and tail.",
     )
 
 
@@ -225,24 +254,31 @@ def draw_map(
         emphasised: level to draw thick.
         form: how a level is written.
     """
-    up, right = (values[d] for d in values.dims)
-    known = values.values.astype(float)
-    greatest = float(np.max(known, where=np.isfinite(known), initial=levels[0]))
-    while levels[-1] < greatest:
+    vertical, horizontal = (values[d] for d in values.dims)
+    quantity = values.values.astype(float)
+    max_value = float(np.max(quantity, where=np.isfinite(quantity), initial=levels[0]))
+    while levels[-1] < max_value:
         levels = (*levels, 2 * levels[-1])
-    least, most = levels[0], levels[-1]
-    data = np.ma.masked_invalid(np.clip(known, 0.5 * least, most))
-    filled = ax.contourf(right, up, data, levels=np.geomspace(least, most, 40), cmap=SEQUENTIAL,
-                         norm=LogNorm(least, most), extend="min" if (known < least).any() else "neither")  # fmt: skip
-    carry(filled, values.values, right.values, up.values)
-    lines = ax.contour(right, up, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
+    lowest_level, highest_level = levels[0], levels[-1]
+    data = np.ma.masked_invalid(np.clip(quantity, 0.5 * lowest_level, highest_level))
+    contours = ax.contourf(
+        horizontal,
+        vertical,
+        data,
+        levels=np.geomspace(lowest_level, highest_level, 40),
+        cmap=SEQUENTIAL,
+        norm=LogNorm(lowest_level, highest_level),
+        extend="min" if (quantity < lowest_level).any() else "neither",
+    )
+    carry(contours, values.values, horizontal.values, vertical.values)
+    lines = ax.contour(horizontal, vertical, data, levels=list(levels[1:-1]), colors="white", linewidths=1.1)
     ax.clabel(lines, fmt=form, fontsize=11)
     if emphasised is not None:
-        thick = ax.contour(right, up, data, levels=[emphasised], colors="#D55E00", linewidths=2.6)
-        ax.clabel(thick, fmt=form, fontsize=12)
-    for axis, coordinate in ((ax.set_xlabel, right), (ax.set_ylabel, up)):
+        emphasised_line = ax.contour(horizontal, vertical, data, levels=[emphasised], colors="#D55E00", linewidths=2.6)
+        ax.clabel(emphasised_line, fmt=form, fontsize=12)
+    for axis, coordinate in ((ax.set_xlabel, horizontal), (ax.set_ylabel, vertical)):
         axis(f"{coordinate.attrs['long_name']} [{coordinate.attrs['units']}]")
     assert ax.figure is not None
-    bar = ax.figure.colorbar(filled, ax=ax, ticks=list(levels), format=form)
+    bar = ax.figure.colorbar(contours, ax=ax, ticks=list(levels), format=form)
     bar.set_label(label)
     bar.minorticks_off()

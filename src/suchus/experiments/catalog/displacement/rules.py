@@ -3,24 +3,24 @@
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, between
 
-_FREE = (
+_FREE_PARAMETERS_REASON = (
     "Leg stroke and trunk bend are free in the article and were chosen so that its two displacements come out; "
     "the tail's pitch is free too and moves this one from {forward_over_tail_pitch_low:.2f} to "
     "{forward_over_tail_pitch_high:.2f} m over its plausible range."
 )
-_FORWARD = "forward is forward"
-_GAINS = "a gain is more than none"
-_WALKS = ("hind_duty_limbs_only", "two_feet_share_limbs_only")
-_LEGS_ALONE = ControlGroup(
+_FORWARD_REASON = "forward is forward"
+_GAIN_REASON = "a gain is more than none"
+_GAIT_MEASURES = ("hind_duty_limbs_only", "two_feet_share_limbs_only")
+_LIMBS_ONLY_GROUP = ControlGroup(
     group="limbs_only",
     why="Fig. 16: spine and tail are not engaged. It does not say where the tail is; ours lies still, and what is so "
     "with the tail in the air, as in section IV.A, is told beside.",
     needs=(
-        Clause(_WALKS[0], "<=", 0.85, "feet that hardly leave the ground walk in no gait"),
-        Clause(_WALKS[1], ">=", 0.3, "a diagonal gait stands on two feet for part of its cycle"),
+        Clause(_GAIT_MEASURES[0], "<=", 0.85, "feet that hardly leave the ground walk in no gait"),
+        Clause(_GAIT_MEASURES[1], ">=", 0.3, "a diagonal gait stands on two feet for part of its cycle"),
     ),
 )
-_UNSWUNG = ControlGroup(group="tail_drag", why="What bends adds: the same crawl with a straight trunk.")
+_STRAIGHT_TRUNK_GROUP = ControlGroup(group="tail_drag", why="What bends adds: the same crawl with a straight trunk.")
 
 RULES = (
     Rule(
@@ -28,19 +28,19 @@ RULES = (
         experiment="displacement",
         measure="forward_coordinated",
         kind="fitted",
-        holds=(Clause("forward_coordinated", ">", 0.0, _FORWARD),),
+        holds=(Clause("forward_coordinated", ">", 0.0, _FORWARD_REASON),),
         spread=("forward_coordinated",),
         of=BUILT,
-        why=_FREE,
+        why=_FREE_PARAMETERS_REASON,
     ),
     Rule(
         claim="displacement_limbs_only",
         experiment="displacement",
         measure="forward_limbs_only",
         kind="fitted",
-        holds=(Clause("forward_limbs_only", ">", 0.0, _FORWARD),),
-        control=_LEGS_ALONE,
-        spread=("forward_limbs_only", *_WALKS),
+        holds=(Clause("forward_limbs_only", ">", 0.0, _FORWARD_REASON),),
+        control=_LIMBS_ONLY_GROUP,
+        spread=("forward_limbs_only", *_GAIT_MEASURES),
         of=BUILT,
         why="The same legs with the trunk straight and the tail lying still; hind feet stand "
         "{hind_duty_limbs_only:.0%} of the time ({hind_duty_limbs_only_low:.0%} to {hind_duty_limbs_only_high:.0%}), "
@@ -55,8 +55,8 @@ RULES = (
         measure="forward_ratio",
         kind="fitted",
         holds=(Clause("forward_ratio", ">", 1.0, "farther with than without"),),
-        control=_LEGS_ALONE,
-        spread=("forward_ratio", *_WALKS),
+        control=_LIMBS_ONLY_GROUP,
+        spread=("forward_ratio", *_GAIT_MEASURES),
         of=BUILT,
         why="Both displacements were fitted, and so is their ratio: other strokes and bends give "
         "{ratio_on_map_low:.1f} to {ratio_on_map_high:.1f}. Against the control group with its tail in the air it is "
@@ -66,8 +66,8 @@ RULES = (
         claim="spine_swing",
         experiment="displacement",
         measure="gain_spine_swing",
-        holds=(Clause("gain_spine_swing", ">", 0.0, _GAINS),),
-        control=_UNSWUNG,
+        holds=(Clause("gain_spine_swing", ">", 0.0, _GAIN_REASON),),
+        control=_STRAIGHT_TRUNK_GROUP,
         spread=("gain_spine_swing",),
         of=BUILT,
         why="Against the same crawl with a straight trunk: the tail drags and swings in both. It changes the "
@@ -77,7 +77,7 @@ RULES = (
         claim="tail_swing",
         experiment="displacement",
         measure="gain_tail_swing",
-        holds=(Clause("gain_tail_swing", ">", 0.0, _GAINS),),
+        holds=(Clause("gain_tail_swing", ">", 0.0, _GAIN_REASON),),
         control=ControlGroup(
             group="tail_still", why="What swings adds: the same crawl whose tail is dragged without a swing."
         ),
@@ -92,8 +92,8 @@ RULES = (
         experiment="displacement",
         measure="gain_spine_swing",
         kind="animals",
-        holds=(Clause("gain_spine_swing", ">", 0.0, _GAINS),),
-        control=_UNSWUNG,
+        holds=(Clause("gain_spine_swing", ">", 0.0, _GAIN_REASON),),
+        control=_STRAIGHT_TRUNK_GROUP,
         spread=("gain_spine_swing",),
         of=BUILT,
         why="Said of crocodiles. The robot does the same: at equal strokes of the legs its bending trunk changes the "

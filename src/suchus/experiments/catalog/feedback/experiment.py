@@ -34,24 +34,24 @@ from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances, simulat
 from suchus.sim.metrics import heading
 from suchus.sim.metrics.coordination import WITHIN, cycles_until, phase_error
 
-_ALONE: Mapping[str, Any] = {"spine": None, "tail": None}
+_LIMB_RULE_ONLY: Mapping[str, Any] = {"spine": None, "tail": None}
 STARTS: Mapping[str, Coordinated] = {
-    **{law: Coordinated(limbs=LAWS[law], random_start=True, **_ALONE) for law in LAWS},
+    **{law: Coordinated(limbs=LAWS[law], random_start=True, **_LIMB_RULE_ONLY) for law in LAWS},
     "closed_noisy": Coordinated(random_start=True, load_noise=0.3),
     "isolated_noisy": Coordinated(random_start=True, load_noise=0.3, sharing=False),
 }
-"""What brings random limb phases in order: each law alone, then all rules with noisy feet, sharing and not sharing."""
-_DISTANCES = ("closed_noisy", "isolated_noisy")
-"""Whose distances are measured; of the others the phases are."""
+"""Controls of the random starts: each law alone, then all rules with noisy feet, with and without sharing."""
+_DISTANCE_LAWS = ("closed_noisy", "isolated_noisy")
+"""Laws whose displacement is measured; for the others only the phases are."""
 ARMS: Mapping[str, Coordinated] = {
-    "open": Coordinated(limbs=LAWS["off"], **_ALONE),
-    "limbs": Coordinated(**_ALONE),
+    "open": Coordinated(limbs=LAWS["off"], **_LIMB_RULE_ONLY),
+    "limbs": Coordinated(**_LIMB_RULE_ONLY),
     "spine": Coordinated(limbs=LAWS["off"], tail=None),
     "tail": Coordinated(limbs=LAWS["off"], spine=None),
     "closed": Coordinated(),
     "steered": Coordinated(heading=HeadingRule()),
 }
-"""Who is disturbed: no rule, each rule alone, all three, all three with the heading loop."""
+"""Controls that are disturbed: no rule, each rule alone, all three, all three with the heading loop."""
 DISTURBANCES = (
     "none",
     "kick",
@@ -64,30 +64,29 @@ DISTURBANCES = (
     "limp_yaw",
     "load_noise",
 )
-"""What happens after one cycle; a slope is there from the beginning."""
-_LAWS_OF_CLAIMS = ("off", "cross_load", "wrong_sign", *_DISTANCES)
-_DISTURBANCES_OF_CLAIMS = ("none", "locked_spine", "uphill")
-_OF_CLAIMS = {
+"""Disturbances; each begins after one cycle, except that a slope exists from the start."""
+_CLAIM_LAWS = ("off", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
+_CLAIM_DISTURBANCES = ("none", "locked_spine", "uphill")
+_CLAIM_MEASURES = {
     *(f"{name}{end}" for name in ("converged_cross_load", "converged_wrong_sign", "way_gain_shared", "way_shared",
       "way_isolated") for end in ("", "_low", "_high")),
     "way_shared_least", "way_isolated_least", "distortion", "spine_lacking_spine", "spine_lacking_open",
     "spine_lacking_growth", "kept_undisturbed_spine", "tail_load_tail", "tail_load_open", "tail_pitch_drift",
     "kept_undisturbed_tail", "locked_spine_loss_closed", "locked_spine_loss_open",
 }  # fmt: skip
-"""What the claims rest on, which these laws and disturbances are enough for."""
+"""Measures of the claims; the laws and disturbances of the claims suffice for them."""
 SHOWN = ("open", "closed", "steered")
-"""The arms whose measures are named."""
+"""Controls whose measures are reported."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feedback(Experiment):
     """Random limb phases under every law, then nine disturbances with and without the rules.
 
-    Converged: the largest of the four phase errors (two diagonal pairs, two girdles) is within 0.1 cycle at every
-    sample from some time on until the end of the run, and for at least ``hold`` cycles. Recovery is the distance
-    forward, along the heading at the start, over ``after`` cycles from the disturbance on. Drift is the distance down a
-    slope to the side, the mean of both sides. The rule of the tail is left out of a body without a servo that pitches
-    it.
+    A start converges when the largest of the four phase errors (two diagonal pairs, two girdles) stays within
+    0.1 cycle until the end of the run, and for at least ``hold`` cycles. Recovery is the displacement along the initial
+    heading over the ``after`` cycles from the disturbance on. Drift is the distance down a lateral slope, the mean of
+    both sides. A body without a servo that pitches its tail has no rule for the tail.
     """
 
     title = "Do three feedback rules coordinate limbs, spine and tail, and what do they help against?"
@@ -109,24 +108,24 @@ class Feedback(Experiment):
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
     """Gait of the robot; its limbs must form diagonal pairs."""
     starts: int = 32
-    """Random initial limb phases, the same for all laws [-]."""
+    """Number of random initial limb phases, the same for all laws [-]."""
     cycles: int = 12
-    """Duration for which each start is followed [cycle]."""
+    """Simulated duration of each start [cycle]."""
     hold: float = 2.0
     """Duration for which the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
-    """Duration for which a disturbed robot is followed from the disturbance on [cycle]."""
+    """Simulated duration from the disturbance on [cycle]."""
     kick: tuple[float, ...] = (0.5, 0.0, 0.0, 0.2)
-    """Phase by which each limb jumps ahead, in the order of the robot's limbs [cycle]; together almost the farthest
-    from the gait."""
+    """Phase jump of each limb, in the order of the robot's limbs [cycle]; the default is almost the farthest from the
+    gait."""
     slope: float = radians(10)
     """Slope of the ground [rad]."""
     push: tuple[float, float, float] = (0.0, 20.0, 0.0)
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
-    """Standard deviation of the noise on what the feet feel, as a part of the load [-]."""
+    """Standard deviation of the noise on the sensed loads of the feet, as a fraction of the load [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much the robots of the starts, each built of the design, and their grounds differ from it."""
+    """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
     """Seed of the first start and its robot; the others follow."""
 
@@ -152,47 +151,52 @@ class Feedback(Experiment):
         Raises:
             OutsideLimits: its own gait has measured curves.
         """
-        own = own_gait(robot)
-        own.needs_steering(self.name())
-        kick = (*self.kick, *(0.0,) * len(own.limb_phases))[: len(own.limb_phases)]
-        return {"gait": own, "kick": kick}
+        gait = own_gait(robot)
+        gait.needs_steering(self.name())
+        kick = (*self.kick, *(0.0,) * len(gait.limb_phases))[: len(gait.limb_phases)]
+        return {"gait": gait, "kick": kick}
 
-    def _suited(self, control: Coordinated) -> Coordinated:
+    def _suited_control(self, control: Coordinated) -> Coordinated:
         return control.suited(self.robot, self.gait)
 
     @property
     def _arms(self) -> dict[str, Coordinated]:
-        """Who is disturbed: those of ``ARMS`` whose rule the body can follow."""
+        """Those of ``ARMS`` whose rule the body can follow, by name."""
         return {
-            name: self._suited(one)
-            for name, one in ARMS.items()
-            if name != "tail" or self._suited(one).tail is not None
+            name: self._suited_control(control)
+            for name, control in ARMS.items()
+            if name != "tail" or self._suited_control(control).tail is not None
         }
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl from random starts, then disturb a robot whose phases are right."""
-        starts, pair = self._starts(staged(progress, "random starts", 0.0, 0.7))
-        record = xr.merge([starts, self._disturbed(staged(progress, "disturbances", 0.7, 1.0))])
+        """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
+        starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7))
+        record = xr.merge([starts, self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0))])
         return Simulated(record=record, replays=self._replays(pair))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of the claims fewer laws and disturbances."""
-        if not set(wanted) <= _OF_CLAIMS:
+        """Return at least the requested measures; those of the claims need fewer laws and disturbances."""
+        if not set(wanted) <= _CLAIM_MEASURES:
             return super(Feedback, self).measured(wanted, progress)
-        starts, _ = self._starts(staged(progress, "random starts", 0.0, 0.8), _LAWS_OF_CLAIMS)
-        found = start_measures(starts, self.gait, self.hold, self.cycles)
-        if not set(wanted) <= found.keys():
-            disturbed = self._disturbed(staged(progress, "disturbances", 0.8, 1.0), _DISTURBANCES_OF_CLAIMS)
-            found |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
-        return Measures({name: found[name] for name in wanted})
+        starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
+        measures = start_measures(starts, self.gait, self.hold, self.cycles)
+        if not set(wanted) <= measures.keys():
+            disturbed = self._disturbance_record(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
+            measures |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
+        return Measures({name: measures[name] for name in wanted})
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how many starts converge, and what each rule makes of each disturbance."""
+        """Return how many starts converge, and the effect of each rule on each disturbance."""
         return start_measures(record, self.gait, self.hold, self.cycles) | disturbed_measures(
             record, self.gait, self.hold, self.after
         )
 
     def _replays(self, pair: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of one random start with feedback and without.
+
+        Args:
+            pair: record of two runs, the one with feedback first.
+        """
         return replayed(
             "feedback_replay.html",
             pair.isel(run=0),
@@ -207,29 +211,35 @@ class Feedback(Experiment):
         )
 
     @property
-    def _front(self) -> str:
-        """The segment of the foremost girdle."""
+    def _front_segment(self) -> str:
+        """Name of the segment at the foremost girdle."""
         return self.robot.girdles[0].segment
 
     @property
-    def _pushed(self) -> float:
-        """How long the push lasts: 0.3 s for a body as long as the article's [s]."""
+    def _push_duration(self) -> float:
+        """Duration of the push [s]: 0.3 s for a body as long as the article's."""
         period = control_period(self.robot)
         return max(1, round(0.3 * (self.robot.length / ROBOTS["caiman"].length) ** 0.5 / period)) * period
 
     @property
-    def _at(self) -> float:
+    def _disturbance_time(self) -> float:
         """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
-    def _starts(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return limb phases and distances for every law and start, and one start as a record under two laws.
+    def _start_record(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
+        """Simulate every random start under every law.
 
-        NaN where a law is not asked for.
+        Args:
+            progress: callback that gets the finished fraction.
+            laws: names of ``STARTS`` to simulate; the result is NaN for the others.
+
+        Returns:
+            Limb phases (law, start, start_time, leg) [cycle] and displacements (law, start, start_time) [m]. The second
+            dataset is the record of the first start under the laws ``cross_load`` and ``off``.
         """
-        controls = {law: self._suited(STARTS[law]) for law in laws}
-        deaf = [law for law, control in controls.items() if not control.feels and law not in _DISTANCES]
-        cells = [(law, i) for law in laws for i in range(self.starts) if i == 0 or law not in deaf]
+        controls = {law: self._suited_control(STARTS[law]) for law in laws}
+        open_loop_laws = [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
+        cells = [(law, i) for law in laws for i in range(self.starts) if i == 0 or law not in open_loop_laws]
         runs = [
             self.tolerances.built(
                 Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
@@ -240,11 +250,11 @@ class Feedback(Experiment):
         record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         shape = (len(STARTS), self.starts, record.sizes["time"])
         phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
-        for law in deaf:
+        for law in open_loop_laws:
             phase[list(STARTS).index(law)] = self._phases(controls[law], record.time.values)
-        walked = tuple(np.array([(list(STARTS).index(law), i) for law, i in cells]).T)
-        phase[walked] = record.limb_phase.transpose("run", "time", "leg").values
-        distance[walked] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
+        simulated_indices = tuple(np.array([(list(STARTS).index(law), i) for law, i in cells]).T)
+        phase[simulated_indices] = record.limb_phase.transpose("run", "time", "leg").values
+        distance[simulated_indices] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
         pair = record.isel(run=[cells.index((law, 0)) for law in ("cross_load", "off")])
         dims, metre = ("law", "start", "start_time"), {"units": "m"}
         data = xr.Dataset(
@@ -261,9 +271,13 @@ class Feedback(Experiment):
         return data, pair
 
     def _phases(self, control: Coordinated, time: np.ndarray) -> np.ndarray:
-        """Return the limb phases of every start under a law that feels nothing, shape (start, time, limb) [cycle].
+        """Return the limb phases of every start under an open-loop law, shape (start, time, limb) [cycle].
 
-        Nothing that happens to the body changes them, so that nothing is simulated for them.
+        No state of the body changes these phases, so no physics is simulated for them.
+
+        Args:
+            control: control whose law senses nothing.
+            time: times at which the phases are returned [s].
         """
         period, count = control_period(self.robot), self.starts
         ticks = np.round(time / period).astype(int)
@@ -272,29 +286,41 @@ class Feedback(Experiment):
         controller = control.start(runs, period)
         return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
 
-    def _disturbed(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
-        """Return track, direction, limb phases and tail pitch over time for every disturbance and condition.
+    def _disturbance_record(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
+        """Simulate every disturbance under every control.
 
-        NaN where a disturbance is not asked for.
+        Args:
+            progress: callback that gets the finished fraction.
+            names: names of ``DISTURBANCES`` to simulate; the result is NaN for the others.
+
+        Returns:
+            Position [m], heading [rad], missing bend of the trunk [rad] and limb phases [cycle] over (disturbance, arm,
+            time); where a servo pitches the tail, also its commanded pitch [rad] and its torque [N m].
         """
-        arms, place = self._arms, layout(self.robot)
-        runs = [self._disturb(control, name) for name in names for control in arms.values()]
-        duration = self._at + self.after * self.gait.period
+        arms, body_layout = self._arms, layout(self.robot)
+        runs = [self._disturbed_run(control, name) for name in names for control in arms.values()]
+        duration = self._disturbance_time + self.after * self.gait.period
         record = simulate(runs, duration=duration, timestep=coarse_step(self.robot), every=10, progress=progress)
         dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
         track = record.centre_of_mass.transpose("run", "time", "xyz").values
         phase = record.limb_phase.transpose("run", "time", "leg").values
-        facing = heading(record).transpose("run", "time").values
-        bent = record.servo_angle.isel(servo=list(place.trunk_yaw)).sum("servo").transpose("run", "time").values
+        headings = heading(record).transpose("run", "time").values
+        trunk_bend = (
+            record.servo_angle.isel(servo=list(body_layout.trunk_yaw)).sum("servo").transpose("run", "time").values
+        )
         self.gait.needs_steering(self.name())
-        asked = movement(self.robot, self.gait)
-        lacking = asked.bend_of("trunk", asked.axis_phase(phase)) - bent
+        commanded_motion = movement(self.robot, self.gait)
+        missing_bend = commanded_motion.bend_of("trunk", commanded_motion.axis_phase(phase)) - trunk_bend
         data = xr.Dataset(
             {
                 "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),
                 "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "distance to the left"}),
-                "heading": (dims, facing.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
-                "lacking": (dims, lacking.reshape(shape), {"units": "rad", "long_name": "bend missing in the trunk"}),
+                "heading": (dims, headings.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
+                "lacking": (
+                    dims,
+                    missing_bend.reshape(shape),
+                    {"units": "rad", "long_name": "bend missing in the trunk"},
+                ),
                 "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),
             },
             coords={
@@ -305,32 +331,54 @@ class Feedback(Experiment):
             },
         )
         if "tail" in arms:
-            at = place.tail_pitch[0]
+            tail_servo = body_layout.tail_pitch[0]
             pitch, torque = (
-                one.isel(servo=at).transpose("run", "time").values.reshape(shape)
-                for one in (record.servo_target, record.servo_torque)
+                quantity.isel(servo=tail_servo).transpose("run", "time").values.reshape(shape)
+                for quantity in (record.servo_target, record.servo_torque)
             )
             data["tail_pitch"] = (dims, pitch, {"units": "rad", "long_name": "commanded, down positive"})
             data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
         return data.reindex(disturbance=list(DISTURBANCES))
 
-    def _disturb(self, control: Coordinated, name: str) -> Run:
+    def _disturbed_run(self, control: Coordinated, name: str) -> Run:
+        """Return the run of a control under a disturbance.
+
+        Args:
+            control: control of the robot.
+            name: one of ``DISTURBANCES``.
+        """
         run = Run(robot=self.robot, gait=self.gait, control=control, seed=self.seed, label=name)
-        place = layout(self.robot)
+        body_layout = layout(self.robot)
         match name:
             case "kick":
-                return replace(run, control=replace(control, kicks=(Kick(self._at, self.kick),)))
+                return replace(run, control=replace(control, kicks=(Kick(self._disturbance_time, self.kick),)))
             case "load_noise":
                 return replace(run, control=replace(control, load_noise=self.noise))
             case "locked_spine":
                 return replace(
-                    run, faults=(Locked(place.servos[place.trunk_yaw[len(place.trunk_yaw) // 2]], at=self._at),)
+                    run,
+                    faults=(
+                        Locked(
+                            body_layout.servos[body_layout.trunk_yaw[len(body_layout.trunk_yaw) // 2]],
+                            at=self._disturbance_time,
+                        ),
+                    ),
                 )
             case "limp_yaw":
-                return replace(run, faults=(Limp(place.servos[place.limbs[0].servos][0], at=self._at),))
+                return replace(
+                    run, faults=(Limp(body_layout.servos[body_layout.limbs[0].servos][0], at=self._disturbance_time),)
+                )
             case "push":
                 return replace(
-                    run, pushes=(Push(force=self.push, at=self._at, duration=self._pushed, body=self._front),)
+                    run,
+                    pushes=(
+                        Push(
+                            force=self.push,
+                            at=self._disturbance_time,
+                            duration=self._push_duration,
+                            body=self._front_segment,
+                        ),
+                    ),
                 )
             case "uphill" | "downhill":
                 return replace(run, ground=Ground(uphill=self.slope if name == "uphill" else -self.slope))
@@ -343,110 +391,117 @@ class Feedback(Experiment):
         record = outcome.record
         error = phase_error(record.start_phase, self.gait).rename(start_time="time")
         cycles = (error.time - START) / self.gait.period
-        part = record.sel(time=slice(self._at - 1e-9, None))
+        response = record.sel(time=slice(self._disturbance_time - 1e-9, None))
         return {
             "random_starts": draw_fans(error.assign_coords(time=cycles), WITHIN),
             "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
-            "what_each_rule_gains": draw_gain(part.x.isel(time=-1) - part.x.isel(time=0)),
+            "what_each_rule_gains": draw_gain(response.x.isel(time=-1) - response.x.isel(time=0)),
             "topology": draw_topology(topology(self.robot, self.gait)),
-            "disturbed_tracks": draw_tracks(part, ("limp_yaw", "push", "side_slope")),
+            "disturbed_tracks": draw_tracks(response, ("limp_yaw", "push", "side_slope")),
         }
 
 
 def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> Measures:
-    """Return how many starts converge, how fast and how well, and what the phases' sharing is worth.
+    """Return how many starts converge, how fast, with which phase error, and the gain by sharing the phases.
 
     Args:
-        record: what happened.
-        gait: how they were meant to walk.
-        hold: for how long a start stays to count as converged [cycle].
-        cycles: how many were walked [-].
+        record: record of the random starts.
+        gait: gait that the robots were commanded.
+        hold: duration for which a start must stay coordinated to count as converged [cycle].
+        cycles: simulated duration of each start [cycle].
     """
     error = phase_error(record.start_phase, gait).rename(start_time="time")
     period = gait.period
     cycles_taken = cycles_until(error, period, start=START, hold=hold)
     measures = Measures()
     for law in record.law.values:
-        taken = cycles_taken.sel(law=law).values
-        measures |= estimated(f"converged_{law}", np.isfinite(taken), "-", middle=np.mean)
-        measures[f"phase_error_{law}"] = Measure(float(_ending(error.sel(law=law), hold * period).mean()), "-")
+        convergence_cycles = cycles_taken.sel(law=law).values
+        measures |= estimated(f"converged_{law}", np.isfinite(convergence_cycles), "-", middle=np.mean)
+        measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error.sel(law=law), hold * period).mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
-            worst = np.quantile(np.minimum(taken, cycles), 0.9)
-            measures[f"cycles_to_converge_{law}"] = Measure(float(worst), "-")
+            upper_quantile = np.quantile(np.minimum(convergence_cycles, cycles), 0.9)
+            measures[f"cycles_to_converge_{law}"] = Measure(float(upper_quantile), "-")
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
     measures["converged_closed"] = measures["converged_cross_load"]
     measures["converged_open"] = measures["converged_off"]
-    distances = _ending(record.start_way.rename(start_time="time"), hold * period)
+    distances = _last_seconds(record.start_way.rename(start_time="time"), hold * period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
-    for name, law in zip(("shared", "isolated"), _DISTANCES, strict=True):
+    for name, law in zip(("shared", "isolated"), _DISTANCE_LAWS, strict=True):
         measures |= estimated(f"way_{name}", distances.sel(law=law), "m")
         measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
-    shared, isolated = (distances.sel(law=law, drop=True) for law in _DISTANCES)
+    shared, isolated = (distances.sel(law=law, drop=True) for law in _DISTANCE_LAWS)
     return measures | estimated("way_gain_shared", shared - isolated, "m")
 
 
-def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, after: int) -> Measures:
-    """Return distances and turns after each disturbance, and what the rules make of them.
+def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after: int) -> Measures:
+    """Return distances and turns after each disturbance, and the effect of the rules on them.
 
     Args:
-        record: what happened.
-        gait: how they walked; the disturbance comes after one cycle.
-        hold: for how long phases stay to count as recovered, at most [cycle].
-        after: how many cycles were walked after it [-].
+        record: record of the disturbances.
+        gait: gait of the robot; the disturbance begins after one cycle.
+        hold: longest duration for which phases must stay coordinated to count as recovered [cycle].
+        cycles_after: simulated duration after the disturbance [cycle].
     """
     disturbed_at = START + gait.period
-    part = record.sel(time=slice(disturbed_at - 1e-9, None))
-    change = part.isel(time=-1) - part.isel(time=0)
-    moved = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
-    distance = {key: float(value.x) for key, value in moved.items()}
+    response = record.sel(time=slice(disturbed_at - 1e-9, None))
+    change = response.isel(time=-1) - response.isel(time=0)
+    changes = {(d, a): change.sel(disturbance=d, arm=a) for d in record.disturbance.values for a in record.arm.values}
+    distance = {key: float(value.x) for key, value in changes.items()}
     measures = Measures()
     for name in record.disturbance.values:
         for arm in SHOWN:
             measures[f"recovery_{name}_{arm}"] = Measure(distance[name, arm], "m")
-            measures[f"heading_{name}_{arm}"] = Measure(float(moved[name, arm].heading), "rad")
+            measures[f"heading_{name}_{arm}"] = Measure(float(changes[name, arm].heading), "rad")
     error = phase_error(record.limb_phase.sel(disturbance="kick", arm="closed"), gait)
-    back = float(cycles_until(error, gait.period, start=disturbed_at, hold=min(hold, 0.5)))
-    shares = {
+    recovery_cycles = float(cycles_until(error, gait.period, start=disturbed_at, hold=min(hold, 0.5)))
+    ratios = {
         "kick_kept_open": distance["kick", "open"] / distance["none", "open"],
         "kick_kept_closed": distance["kick", "closed"] / distance["none", "closed"],
-        "cycles_after_kick": min(back, float(after)),
+        "cycles_after_kick": min(recovery_cycles, float(cycles_after)),
         "locked_spine_loss_open": 1.0 - distance["locked_spine", "open"] / distance["none", "open"],
         "locked_spine_loss_closed": 1.0 - distance["locked_spine", "closed"] / distance["none", "open"],
         "locked_spine_loss_of_own": 1.0 - distance["locked_spine", "closed"] / distance["none", "closed"],
         "uphill_gain_closed": distance["uphill", "closed"] / distance["uphill", "open"] - 1.0,
     }
     if ("uphill", "tail") in distance:
-        shares["uphill_gain_tail"] = distance["uphill", "tail"] / distance["uphill", "open"] - 1.0
-    measures |= {name: Measure(value, "-") for name, value in shares.items()}
-    last = part.heading.sel(time=part.time[-1] - gait.period, method="nearest")
-    turning = (part.heading.isel(time=-1) - last).sel(disturbance="limp_yaw")
+        ratios["uphill_gain_tail"] = distance["uphill", "tail"] / distance["uphill", "open"] - 1.0
+    measures |= {name: Measure(value, "-") for name, value in ratios.items()}
+    earlier_heading = response.heading.sel(time=response.time[-1] - gait.period, method="nearest")
+    turning = (response.heading.isel(time=-1) - earlier_heading).sel(disturbance="limp_yaw")
     for arm in SHOWN:
-        drift = float(moved["other_side", arm].y - moved["side_slope", arm].y) / 2
+        drift = float(changes["other_side", arm].y - changes["side_slope", arm].y) / 2
         measures[f"drift_side_slope_{arm}"] = Measure(drift, "m")
         measures[f"turning_limp_yaw_{arm}"] = Measure(float(turning.sel(arm=arm)), "rad")
-    return measures | _undisturbed_measures(record, gait) | _loop_measures(part, gait)
+    return measures | _undisturbed_measures(record, gait) | _loop_measures(response, gait)
 
 
-def _loop_measures(part: xr.Dataset, gait: Gait) -> Measures:
-    """Return how well the loops of spine and tail hold what they control, from the disturbance on."""
-    stuck = part.lacking.sel(disturbance="locked_spine")
-    first = part.time[0] + gait.period
-    missing = {arm: _rms(_ending(stuck.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
-    begun = _rms(stuck.sel(arm="spine", time=slice(None, first)))
+def _loop_measures(response: xr.Dataset, gait: Gait) -> Measures:
+    """Return how well the loops of spine and tail hold what they control.
+
+    Args:
+        response: record of the disturbances from the disturbance on.
+        gait: gait of the robot.
+    """
+    missing_bend = response.lacking.sel(disturbance="locked_spine")
+    first_cycle_end = response.time[0] + gait.period
+    final_error = {arm: _rms(_last_seconds(missing_bend.sel(arm=arm), gait.period)) for arm in ("open", "spine")}
+    first_cycle_error = _rms(missing_bend.sel(arm="spine", time=slice(None, first_cycle_end)))
     measures = Measures(
         {
-            "spine_lacking_open": Measure(missing["open"], "rad"),
-            "spine_lacking_spine": Measure(missing["spine"], "rad"),
-            "spine_lacking_growth": Measure(missing["spine"] / begun, "-"),
+            "spine_lacking_open": Measure(final_error["open"], "rad"),
+            "spine_lacking_spine": Measure(final_error["spine"], "rad"),
+            "spine_lacking_growth": Measure(final_error["spine"] / first_cycle_error, "-"),
         }
     )
-    if "tail_load" not in part:
+    if "tail_load" not in response:
         return measures
-    uphill = part.sel(disturbance="uphill")
-    load = {arm: abs(float(_ending(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")}
+    uphill = response.sel(disturbance="uphill")
+    load = {
+        arm: abs(float(_last_seconds(uphill.tail_load.sel(arm=arm), gait.period).mean())) for arm in ("open", "tail")
+    }
     pitch = uphill.tail_pitch.sel(arm="tail")
-    before = pitch.sel(time=slice(None, max(float(pitch.time[-1]) - gait.period, float(pitch.time[0]))))
-    drift = abs(float(_ending(pitch, gait.period).mean() - _ending(before, gait.period).mean()))
+    previous_pitch = pitch.sel(time=slice(None, max(float(pitch.time[-1]) - gait.period, float(pitch.time[0]))))
+    drift = abs(float(_last_seconds(pitch, gait.period).mean() - _last_seconds(previous_pitch, gait.period).mean()))
     return measures | {
         "tail_load_open": Measure(load["open"], "N m"),
         "tail_load_tail": Measure(load["tail"], "N m"),
@@ -455,9 +510,14 @@ def _loop_measures(part: xr.Dataset, gait: Gait) -> Measures:
 
 
 def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
-    """Return what the rules do to a robot whose phases are right, over the first two cycles."""
-    part = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
-    change = part.isel(time=-1) - part.isel(time=0)
+    """Return the effect of the rules on a robot whose phases are right, over the first two cycles.
+
+    Args:
+        record: record of the disturbances, with ``none`` among them.
+        gait: gait of the robot.
+    """
+    first_cycles = record.sel(time=slice(START - 1e-9, START + 2 * gait.period + 1e-9), disturbance="none")
+    change = first_cycles.isel(time=-1) - first_cycles.isel(time=0)
     distance = {arm: float(change.x.sel(arm=arm)) for arm in record.arm.values}
     clock = change.limb_phase.mean("leg")
     measures = Measures(
@@ -478,11 +538,13 @@ def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
     }
 
 
-def _ending(values: xr.DataArray, seconds: float) -> xr.DataArray:
+def _last_seconds(values: xr.DataArray, seconds: float) -> xr.DataArray:
+    """Return the values of the last seconds of a time series."""
     return values.sel(time=slice(float(values.time[-1]) - seconds - 1e-9, None))
 
 
 def _rms(values: xr.DataArray) -> float:
+    """Return the root mean square."""
     return float((values**2).mean() ** 0.5)
 
 

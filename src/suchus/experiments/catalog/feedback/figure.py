@@ -47,7 +47,7 @@ _RULES: Final[Mapping[str, str]] = MappingProxyType(
         "steered": "+ heading",
     }
 )
-_WORDS: Final[Mapping[str, str]] = MappingProxyType(
+_DISTURBANCE_LABELS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "none": "undisturbed",
         "kick": "limbs kicked out of phase",
@@ -63,18 +63,18 @@ _WORDS: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 
-def draw_fans(error: xr.DataArray, within: float) -> Figure:
+def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
     """Draw the phase error of every start over the cycles, one panel per law.
 
     Args:
         error: with the dimensions ``law``, ``start`` and ``time`` (in cycles) [cycle].
-        within: what counts as coordinated [cycle].
+        tolerance: what counts as coordinated [cycle].
     """
     with styled():
         figure, axes = panels(2, 3, width=10.5, height=5.6, sharex=True, sharey=True)
         for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
             errors = error.sel(law=law).transpose("time", "start")
-            ax.axhspan(0.0, within, color=COLOURS["grid"], linewidth=0)
+            ax.axhspan(0.0, tolerance, color=COLOURS["grid"], linewidth=0)
             ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5)
             ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0)
             ax.set_title(label)
@@ -93,12 +93,12 @@ def draw_fans(error: xr.DataArray, within: float) -> Figure:
 
 
 def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
-    """Draw which feet are meant to stand from one random start, without and with feedback.
+    """Draw which feet are commanded to stand from one random start, without and with feedback.
 
     Args:
-        phase: of the limbs, with the dimensions ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
-        gait: that they walk.
-        start: which one.
+        phase: phase of the limbs over ``law``, ``start``, ``start_time`` (in cycles) and ``leg`` [cycle].
+        gait: gait that the robot walks.
+        start: index of the start.
     """
     with styled(axes__grid=False):
         figure, axes = panels(3, 1, height=5.4, sharex=True)
@@ -116,6 +116,14 @@ def draw_onset(phase: xr.DataArray, gait: Gait, start: int = 0) -> Figure:
 
 
 def _bars(ax: Axes, time: np.ndarray, stands: np.ndarray, legs: Sequence[str]) -> None:
+    """Draw a bar for each interval in which a foot is commanded to stand, one row per leg.
+
+    Args:
+        ax: axes to draw on.
+        time: equidistant times [cycle].
+        stands: whether each foot is commanded to stand, shape (time, leg).
+        legs: names of the legs.
+    """
     width = float(time[1] - time[0])
     for row in range(len(legs)):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], stands[:, row].astype(int), [0]])))
@@ -133,34 +141,38 @@ def draw_gain(distance: xr.DataArray) -> Figure:
     Args:
         distance: with the dimensions ``disturbance`` and ``arm`` [m].
     """
-    share = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
-    rules = [rule for rule in _RULES if rule in share.arm.values]
-    share = share.sel(arm=rules, disturbance=list(_WORDS))
+    ratio = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
+    rules = [rule for rule in _RULES if rule in ratio.arm.values]
+    ratio = ratio.sel(arm=rules, disturbance=list(_DISTURBANCE_LABELS))
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=8.2, height=5.2)
         ax = axes[0, 0]
-        least, most = min(20, int(100 * share.min())), max(140, ceil(100 * share.max()))
-        scale = TwoSlopeNorm(100.0, vmin=least, vmax=most)
-        shown = ax.pcolormesh(100 * share.values, cmap=DIVERGING, norm=scale, edgecolors="white", linewidth=2)
-        for (row, column), value in np.ndenumerate(share.values):
-            dark = not 0.5 < value < 1.3
+        min_percent, max_percent = min(20, int(100 * ratio.min())), max(140, ceil(100 * ratio.max()))
+        scale = TwoSlopeNorm(100.0, vmin=min_percent, vmax=max_percent)
+        mesh = ax.pcolormesh(100 * ratio.values, cmap=DIVERGING, norm=scale, edgecolors="white", linewidth=2)
+        for (row, column), value in np.ndenumerate(ratio.values):
+            is_dark = not 0.5 < value < 1.3
             ax.text(
                 column + 0.5,
                 row + 0.5,
                 f"{100 * value:.0f}",
                 ha="center",
                 va="center",
-                color="white" if dark else "black",
+                color="white" if is_dark else "black",
             )
         ax.set_xticks(np.arange(len(rules)) + 0.5, [_RULES[rule] for rule in rules])
-        ax.set_yticks(np.arange(len(_WORDS)) + 0.5, list(_WORDS.values()))
+        ax.set_yticks(np.arange(len(_DISTURBANCE_LABELS)) + 0.5, list(_DISTURBANCE_LABELS.values()))
         ax.tick_params(length=0)
         ax.invert_yaxis()
         ax.set_xlabel("which rules are on")
         for side in ax.spines.values():
             side.set_visible(False)
         figure.colorbar(
-            shown, ax=ax, label="displacement forward [%]", pad=0.02, ticks=range(20 * (least // 20), most + 1, 20)
+            mesh,
+            ax=ax,
+            label="displacement forward [%]",
+            pad=0.02,
+            ticks=range(20 * (min_percent // 20), max_percent + 1, 20),
         )
     return captioned(
         figure,
@@ -170,19 +182,19 @@ def draw_gain(distance: xr.DataArray) -> Figure:
 
 
 def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
-    """Draw from above where the robot goes after a disturbance.
+    """Draw the path of the robot after each disturbance from above.
 
     Args:
-        record: with ``x`` and ``y`` along ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
-        disturbances: which ones, one panel each.
+        record: ``x`` and ``y`` over ``disturbance``, ``arm`` and ``time`` [m], from the disturbance on.
+        disturbances: names of the disturbances, one panel each.
     """
     size = float((record.x - record.x.isel(time=0)).max())
     with styled():
         figure, axes = panels(1, len(disturbances), width=10.5, height=4.8)
         for ax, name in zip(axes.flat, disturbances, strict=True):
             for arm, (label, colour, dashes) in _ARMS.items():
-                one = record.sel(disturbance=name, arm=arm)
-                x, y = one.x - one.x.isel(time=0), one.y - one.y.isel(time=0)
+                track = record.sel(disturbance=name, arm=arm)
+                x, y = track.x - track.x.isel(time=0), track.y - track.y.isel(time=0)
                 ax.plot(-y, x, color=colour, linestyle=dashes, label=label)
                 ax.plot(-y[-1], x[-1], "o", color=colour)
             ax.plot(0, 0, "s", color="black")
@@ -190,7 +202,7 @@ def draw_tracks(record: xr.Dataset, disturbances: Sequence[str]) -> Figure:
             if size > 0.5:  # [m]; a small robot gets no farther than a few hundredths
                 ax.xaxis.set_major_locator(MultipleLocator(0.5))
                 ax.yaxis.set_major_locator(MultipleLocator(0.5))
-            ax.set_title(_WORDS[name])
+            ax.set_title(_DISTURBANCE_LABELS[name])
             ax.set_xlabel("to the right [m]")
         axes[0, 0].set_ylabel("forward [m]")
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
@@ -207,29 +219,29 @@ _BOX = {"boxstyle": "round,pad=0.45", "facecolor": "white", "linewidth": 1.4}
 
 
 def draw_topology(parts: Sequence[ControlPart]) -> Figure:
-    """Draw which sensors each controller feels, which shared variables it writes, and whose it hears.
+    """Draw which sensors each controller reads, which shared variables it writes, and which ones it reads.
 
     Args:
-        parts: of ``control.topology``.
+        parts: controllers of ``control.topology``.
     """
-    sensors = sorted({name for part in parts for name in part.feels})
-    places = {
+    sensors = sorted({name for controller in parts for name in controller.feels})
+    positions = {
         **{f"feels {name}": (x, _SENSORS) for name, x in zip(sensors, _spread(len(sensors)), strict=True)},
-        **{part.name: (x, _CONTROLLERS) for part, x in zip(parts, _spread(len(parts)), strict=True)},
+        **{controller.name: (x, _CONTROLLERS) for controller, x in zip(parts, _spread(len(parts)), strict=True)},
         **{f"shared {name}": (x, _SHARED) for name, x in zip(OWNERS, _spread(len(OWNERS)), strict=True)},
     }
     with styled():
         figure = new(width=11.0, height=5.4)
         ax = figure.add_subplot()
-        boxes = {name: _box(ax, name, place) for name, place in places.items()}
-        for part in parts:
-            colour = _colour(part.name)
-            for name in sorted(part.feels):
-                _arrow(ax, boxes[f"feels {name}"], boxes[part.name], colour, "-")
-            for name in sorted(part.writes):
-                _arrow(ax, boxes[part.name], boxes[f"shared {name}"], colour, "-")
-            for name in sorted(part.hears - part.writes):
-                _arrow(ax, boxes[f"shared {name}"], boxes[part.name], colour, (0, (4, 2)))
+        boxes = {name: _box(ax, name, position) for name, position in positions.items()}
+        for controller in parts:
+            colour = _colour(controller.name)
+            for name in sorted(controller.feels):
+                _arrow(ax, boxes[f"feels {name}"], boxes[controller.name], colour, "-")
+            for name in sorted(controller.writes):
+                _arrow(ax, boxes[controller.name], boxes[f"shared {name}"], colour, "-")
+            for name in sorted(controller.hears - controller.writes):
+                _arrow(ax, boxes[f"shared {name}"], boxes[controller.name], colour, (0, (4, 2)))
         for y, text in ((_SENSORS, "sensors"), (_CONTROLLERS, "controllers"), (_SHARED, "shared")):
             ax.text(-0.08, y, text, ha="right", va="center", color=COLOURS["neutral"])
         ax.set(xlim=(-0.2, 1.05), ylim=(-0.4, 2.4))
@@ -238,32 +250,48 @@ def draw_topology(parts: Sequence[ControlPart]) -> Figure:
 
 
 def _caption(parts: Sequence[ControlPart]) -> str:
-    deaf = [part.name for part in parts if not part.hears and not part.writes]
-    apart = f" Apart from the shared variables: {', '.join(deaf)}." if deaf else ""
+    """Return the caption of the topology, with the controllers that use no shared variables."""
+    isolated = [controller.name for controller in parts if not controller.hears and not controller.writes]
+    isolated_text = f" Apart from the shared variables: {', '.join(isolated)}." if isolated else ""
     return (
         "What each controller reads and writes, in the form of the article's Fig. 10. Arrows from sensors: what it "
         "senses; solid arrows down: the shared variables that it writes; dashed arrows up: those of others that it "
-        "reads." + apart
+        "reads." + isolated_text
     )
 
 
 def _colour(controller: str) -> str:
+    """Return the colour of a controller."""
     return COLOURS[_ROLES.get(controller, "neutral")]
 
 
-def _box(ax: Any, name: str, place: tuple[float, float]) -> Any:
-    kind, _, what = name.partition(" ")
-    owner = OWNERS[what] if kind == "shared" else "" if kind == "feels" else name
+def _box(ax: Any, name: str, position: tuple[float, float]) -> Any:
+    """Draw the box of a sensor, a controller or a shared variable, in the colour of its controller.
+
+    Args:
+        ax: axes to draw on.
+        name: ``feels SENSOR``, ``shared VARIABLE`` or the name of a controller.
+        position: centre of the box [axis units].
+
+    Returns:
+        The text artist of the box.
+    """
+    kind, _, quantity = name.partition(" ")
+    owner = OWNERS[quantity] if kind == "shared" else "" if kind == "feels" else name
     style = _BOX | {"edgecolor": _colour(owner)}
-    weight = "normal" if what else "bold"
-    return ax.text(*place, (what or name).replace("_", "\n"), ha="center", va="center", bbox=style, fontweight=weight)
+    weight = "normal" if quantity else "bold"
+    return ax.text(
+        *position, (quantity or name).replace("_", "\n"), ha="center", va="center", bbox=style, fontweight=weight
+    )
 
 
 def _arrow(ax: Any, start: Any, end: Any, colour: str, dashes: Any) -> None:
+    """Draw an arrow between two boxes that ``_box`` returned."""
     ends = {"patchA": start.get_bbox_patch(), "patchB": end.get_bbox_patch(), "shrinkA": 3, "shrinkB": 3}
     style = {"arrowstyle": "-|>", "color": colour, "linestyle": dashes, "linewidth": 1.5, **ends}
     ax.annotate("", end.get_position(), start.get_position(), arrowprops=style)
 
 
 def _spread(count: int) -> list[float]:
+    """Return horizontal positions of a row of boxes, evenly spread over 0 to 1."""
     return [float(x) for x in (np.arange(count) + 0.5) / max(count, 1)]

@@ -5,9 +5,9 @@ from math import nan
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Varied, between
 
-_KEPT = "a rule must not spoil a walk that is right: 3 % and no more"
+_UNDISTURBED_REASON = "a rule must not spoil a walk that is right: 3 % and no more"
 _STARTS = "random starts, each of a robot of its own that is built of the design"
-_GROWS = "an error that grows from cycle to cycle by more than its scatter is not stable"
+_GROWTH_REASON = "an error that grows from cycle to cycle by more than its scatter is not stable"
 
 RULES = (
     Rule(
@@ -17,13 +17,13 @@ RULES = (
         holds=(
             Clause("converged_cross_load", ">=", 0.95, "limbs: of random starts, all but one in twenty"),
             Clause("converged_wrong_sign", "<", 0.05, "limbs: the same rule with the wrong sign must fail"),
-            Clause("distortion", "<=", 0.03, f"limbs: {_KEPT}"),
+            Clause("distortion", "<=", 0.03, f"limbs: {_UNDISTURBED_REASON}"),
             Clause("spine_lacking_spine", "<", "spine_lacking_open", "spine: one stuck, less of the bend is missing"),
-            Clause("spine_lacking_growth", "<=", 1.05, f"spine: {_GROWS}"),
-            Clause("kept_undisturbed_spine", ">=", 0.97, f"spine: {_KEPT}"),
+            Clause("spine_lacking_growth", "<=", 1.05, f"spine: {_GROWTH_REASON}"),
+            Clause("kept_undisturbed_spine", ">=", 0.97, f"spine: {_UNDISTURBED_REASON}"),
             Clause("tail_load_tail", "<", "tail_load_open", "tail: uphill its servo holds less"),
             Clause("tail_pitch_drift", "<=", 0.035, "tail: two degrees from one cycle to the next are settled"),
-            Clause("kept_undisturbed_tail", ">=", 0.97, f"tail: {_KEPT}"),
+            Clause("kept_undisturbed_tail", ">=", 0.97, f"tail: {_UNDISTURBED_REASON}"),
             Clause("locked_spine_loss_closed", "<", "locked_spine_loss_open", "all three together still help"),
         ),
         control=ControlGroup(group="open", why="What a rule does is what the same robot does not do without it."),
@@ -63,7 +63,7 @@ VARIED = Varied(
     claims=("feedback_rules", "shared_variables"), designs=("robot", "gait"), settings={"starts": 16}, samples=16
 )
 
-_WHY = {
+_RULES_EXAMPLE = {
     "converged_cross_load": 1.0,
     "converged_cross_load_low": 1.0,
     "converged_cross_load_high": 1.0,
@@ -95,38 +95,38 @@ _WHY = {
 
 EXAMPLES: Examples = {
     "feedback_rules": [
-        (_WHY, "reproduced"),
-        (_WHY | between("converged_cross_load", 0.951, 1.0), "reproduced"),
-        (_WHY | between("converged_cross_load", 0.949, 1.0), "undecided"),
-        (_WHY | between("converged_cross_load", 0.9, 0.949), "contradicted"),
-        (_WHY | between("converged_wrong_sign", 0.0, 0.0499), "reproduced"),
-        (_WHY | between("converged_wrong_sign", 0.0, 0.0501), "undecided"),
-        (_WHY | between("converged_wrong_sign", 0.0501, 0.1), "contradicted"),
-        (_WHY | {"distortion": 0.0299}, "reproduced"),
-        (_WHY | {"distortion": 0.0301}, "contradicted"),
-        (_WHY | {"spine_lacking_spine": 0.495}, "reproduced"),
-        (_WHY | {"spine_lacking_spine": 0.505}, "contradicted"),
-        (_WHY | {"spine_lacking_growth": 1.049}, "reproduced"),
-        (_WHY | {"spine_lacking_growth": 1.051}, "contradicted"),
-        (_WHY | {"kept_undisturbed_spine": 0.971}, "reproduced"),
-        (_WHY | {"kept_undisturbed_spine": 0.969}, "contradicted"),
-        (_WHY | {"tail_load_tail": 0.495}, "reproduced"),
-        (_WHY | {"tail_load_tail": 0.505}, "contradicted"),
-        (_WHY | {"tail_pitch_drift": 0.0349}, "reproduced"),
-        (_WHY | {"tail_pitch_drift": 0.0351}, "contradicted"),
-        (_WHY | {"kept_undisturbed_tail": 0.971}, "reproduced"),
-        (_WHY | {"kept_undisturbed_tail": 0.969}, "contradicted"),
-        (_WHY | {"locked_spine_loss_closed": 0.298}, "reproduced"),
-        (_WHY | {"locked_spine_loss_closed": 0.302}, "contradicted"),
-        (_WHY | {"converged_cross_load": nan}, "not testable"),
+        (_RULES_EXAMPLE, "reproduced"),
+        (_RULES_EXAMPLE | between("converged_cross_load", 0.951, 1.0), "reproduced"),
+        (_RULES_EXAMPLE | between("converged_cross_load", 0.949, 1.0), "undecided"),
+        (_RULES_EXAMPLE | between("converged_cross_load", 0.9, 0.949), "contradicted"),
+        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0, 0.0499), "reproduced"),
+        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0, 0.0501), "undecided"),
+        (_RULES_EXAMPLE | between("converged_wrong_sign", 0.0501, 0.1), "contradicted"),
+        (_RULES_EXAMPLE | {"distortion": 0.0299}, "reproduced"),
+        (_RULES_EXAMPLE | {"distortion": 0.0301}, "contradicted"),
+        (_RULES_EXAMPLE | {"spine_lacking_spine": 0.495}, "reproduced"),
+        (_RULES_EXAMPLE | {"spine_lacking_spine": 0.505}, "contradicted"),
+        (_RULES_EXAMPLE | {"spine_lacking_growth": 1.049}, "reproduced"),
+        (_RULES_EXAMPLE | {"spine_lacking_growth": 1.051}, "contradicted"),
+        (_RULES_EXAMPLE | {"kept_undisturbed_spine": 0.971}, "reproduced"),
+        (_RULES_EXAMPLE | {"kept_undisturbed_spine": 0.969}, "contradicted"),
+        (_RULES_EXAMPLE | {"tail_load_tail": 0.495}, "reproduced"),
+        (_RULES_EXAMPLE | {"tail_load_tail": 0.505}, "contradicted"),
+        (_RULES_EXAMPLE | {"tail_pitch_drift": 0.0349}, "reproduced"),
+        (_RULES_EXAMPLE | {"tail_pitch_drift": 0.0351}, "contradicted"),
+        (_RULES_EXAMPLE | {"kept_undisturbed_tail": 0.971}, "reproduced"),
+        (_RULES_EXAMPLE | {"kept_undisturbed_tail": 0.969}, "contradicted"),
+        (_RULES_EXAMPLE | {"locked_spine_loss_closed": 0.298}, "reproduced"),
+        (_RULES_EXAMPLE | {"locked_spine_loss_closed": 0.302}, "contradicted"),
+        (_RULES_EXAMPLE | {"converged_cross_load": nan}, "not testable"),
     ],
     "shared_variables": [
-        (_WHY, "reproduced"),
-        (_WHY | between("way_gain_shared", 0.001, 0.1), "reproduced"),
-        (_WHY | between("way_gain_shared", -0.001, 0.1), "undecided"),
-        (_WHY | between("way_gain_shared", -0.1, -0.001), "contradicted"),
-        (_WHY | {"way_isolated_least": 0.327}, "reproduced"),
-        (_WHY | {"way_isolated_least": 0.333}, "contradicted"),
-        (_WHY | between("way_gain_shared", nan, nan), "not testable"),
+        (_RULES_EXAMPLE, "reproduced"),
+        (_RULES_EXAMPLE | between("way_gain_shared", 0.001, 0.1), "reproduced"),
+        (_RULES_EXAMPLE | between("way_gain_shared", -0.001, 0.1), "undecided"),
+        (_RULES_EXAMPLE | between("way_gain_shared", -0.1, -0.001), "contradicted"),
+        (_RULES_EXAMPLE | {"way_isolated_least": 0.327}, "reproduced"),
+        (_RULES_EXAMPLE | {"way_isolated_least": 0.333}, "contradicted"),
+        (_RULES_EXAMPLE | between("way_gain_shared", nan, nan), "not testable"),
     ],
 }

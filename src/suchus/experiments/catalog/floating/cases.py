@@ -1,4 +1,4 @@
-"""Bodies whose floating is known exactly, and the forces of the water on them beside what is known."""
+"""Floating bodies with exact answers, and the simulated answers that are compared with them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,11 +18,11 @@ from suchus.sim.land.lake import Lake
 
 WATER = Water()
 SURFACE, DEEP = Lake(level=0.0), Lake(level=20.0)
-_ONE = (1.0, 1.0, 1.0)
+_UNIT_INERTIA = (1.0, 1.0, 1.0)
 BOX = FloatBody(
     shape="box", half=(0.3, 0.15, 0.075), mass=13.5, inertia=(0.2, 0.6, 0.7), centre=(0.0, 0.0, -0.03), parts=8
 )
-"""Half under, upright where it rests."""
+"""A box that is half submerged and upright in equilibrium."""
 SPHEROID = FloatBody(
     shape="ellipsoid",
     half=(0.3, 0.1, 0.08),
@@ -31,16 +31,16 @@ SPHEROID = FloatBody(
     added=(0.1, 0.7, 1.1),
     centre=(0.01, 0.02, -0.01),
 )
-"""As heavy as its water, its mass beside its middle."""
+"""A neutrally buoyant spheroid whose centre of mass is off its centre."""
 KEEL = 1.118721
 """Angular acceleration of the keeled hull of MuJoCo's issue 3452 at 45 degrees of heel [rad/s2]."""
 BALLAST = 3.0
-"""[kg]; taken on by the trimmed float of the same issue."""
+"""Ballast of the trimmed float of the same issue [kg]."""
 _GYRATION = 0.1
 """Square of the keeled hull's radius of gyration [m2]: an ellipsoid 1 m wide and high, of even mass.
 
-The issue gives the acceleration and not the hull; any under water whose centre of mass lies as far below its middle as
-``keeled`` says has it.
+The issue gives the acceleration but not the hull. Any submerged hull with the centre of mass of ``keeled`` has this
+acceleration.
 """
 
 
@@ -57,162 +57,184 @@ class KnownDraft:
 
 
 def drafts() -> list[KnownDraft]:
-    """Return a sphere, a lying cylinder and a box of several densities with their drafts in closed form."""
-    r, found = 0.1, []
-    sphere = FloatBody(shape="ellipsoid", half=(r, r, r), mass=1, inertia=_ONE)
-    cylinder = FloatBody(shape="cylinder", half=(0.3, r, r), mass=1, inertia=_ONE, parts=4)
-    for share in (0.2, 0.5, 0.95):
-        cap = brentq(lambda x, s=share: x * x * (3 - x) / 4 - s, 0.0, 2.0, xtol=1e-15)
-        segment = brentq(lambda x, s=share: (acos(1 - x) - (1 - x) * sqrt(x * (2 - x))) / pi - s, 0.0, 2.0, xtol=1e-15)
-        found.append(_draft(f"sphere {share:g}", sphere, share, r * cap))
-        found.append(_draft(f"cylinder {share:g}", cylinder, share, r * segment))
-        found.append(_draft(f"box {share:g}", replace(BOX, centre=(0, 0, 0)), share, 2 * BOX.half[2] * share))
-    return found
+    """Return a sphere, a lying cylinder and a box at several densities, with their drafts in closed form."""
+    r, known_drafts = 0.1, []
+    sphere = FloatBody(shape="ellipsoid", half=(r, r, r), mass=1, inertia=_UNIT_INERTIA)
+    cylinder = FloatBody(shape="cylinder", half=(0.3, r, r), mass=1, inertia=_UNIT_INERTIA, parts=4)
+    for density_ratio in (0.2, 0.5, 0.95):
+        cap = brentq(lambda x, s=density_ratio: x * x * (3 - x) / 4 - s, 0.0, 2.0, xtol=1e-15)
+        segment = brentq(
+            lambda x, s=density_ratio: (acos(1 - x) - (1 - x) * sqrt(x * (2 - x))) / pi - s, 0.0, 2.0, xtol=1e-15
+        )
+        known_drafts.append(_draft(f"sphere {density_ratio:g}", sphere, density_ratio, r * cap))
+        known_drafts.append(_draft(f"cylinder {density_ratio:g}", cylinder, density_ratio, r * segment))
+        known_drafts.append(
+            _draft(
+                f"box {density_ratio:g}", replace(BOX, centre=(0, 0, 0)), density_ratio, 2 * BOX.half[2] * density_ratio
+            )
+        )
+    return known_drafts
 
 
-def _draft(name: str, body: FloatBody, share: float, exact: float) -> KnownDraft:
-    return KnownDraft(name=name, body=replace(body, mass=share * WATER.density * body.volume), exact=exact)
+def _draft(name: str, body: FloatBody, density_ratio: float, exact: float) -> KnownDraft:
+    return KnownDraft(name=name, body=replace(body, mass=density_ratio * WATER.density * body.volume), exact=exact)
 
 
 def draft_of(body: FloatBody) -> float:
-    """Return the draft at which the water carries a body in a physics step [m]."""
-    pool = FloatTank(body, SURFACE)
+    """Return the draft at which the buoyancy of a physics step equals the weight of a body [m]."""
+    tank = FloatTank(body, SURFACE)
 
     def net(depth: float) -> float:
-        pool.place((0.0, 0.0, -depth))
-        return float(pool.data.userdata[FORCE + 2]) - body.mass * GRAVITY
+        tank.place((0.0, 0.0, -depth))
+        return float(tank.data.userdata[FORCE + 2]) - body.mass * GRAVITY
 
-    high = body.half[2] * (1 - 1e-12)
-    return float(brentq(net, -high, high, xtol=1e-12)) + body.half[2]
+    half_height = body.half[2] * (1 - 1e-12)
+    return float(brentq(net, -half_height, half_height, xtol=1e-12)) + body.half[2]
 
 
-def heave(added: float, amplitude: float, periods: int, timestep: float) -> tuple[xr.Dataset, float]:
-    """Return the heave of a box half under, let go above its place of rest, and its exact period [s].
+def heave(added_mass_ratio: float, amplitude: float, periods: int, timestep: float) -> tuple[xr.Dataset, float]:
+    """Return the heave of a half-submerged box that is released above equilibrium, and its exact period [s].
 
     Args:
-        added: mass of the water that moves with it, over that of the box [-].
-        amplitude: [m].
-        periods: that are watched [-].
-        timestep: of the physics [s].
+        added_mass_ratio: added mass of the water over the mass of the box [-].
+        amplitude: height of the release above equilibrium [m].
+        periods: duration of the motion [exact period].
+        timestep: time step of the physics [s].
     """
-    side = 0.3 * 0.15 * 4
-    # half under, the box weighs the water that it displaces, and so much of the added mass of the whole counts
-    body = replace(BOX, added=(0.0, 0.0, added), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume)
-    exact = 2 * pi * sqrt((1 + added) * body.mass / (WATER.density * GRAVITY * side))
-    pool = FloatTank(body, SURFACE, timestep=timestep)
-    pool.place((0.0, 0.0, amplitude))
-    return pool.watch(periods * exact, timestep), exact
+    waterline_area = 0.3 * 0.15 * 4
+    # half submerged, the box is as heavy as the displaced water, and the added mass counts in the same proportion
+    body = replace(
+        BOX, added=(0.0, 0.0, added_mass_ratio), centre=(0.0, 0.0, 0.0), mass=0.5 * WATER.density * BOX.volume
+    )
+    exact = 2 * pi * sqrt((1 + added_mass_ratio) * body.mass / (WATER.density * GRAVITY * waterline_area))
+    tank = FloatTank(body, SURFACE, timestep=timestep)
+    tank.place((0.0, 0.0, amplitude))
+    return tank.watch(periods * exact, timestep), exact
 
 
-def period_of(watched: xr.Dataset) -> float:
-    """Return the mean time between downward passages of the surface [s]."""
-    z, t = watched.middle.values[:, 2], watched.time.values
-    down = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
-    times = t[down] + (t[1] - t[0]) * z[down] / (z[down] - z[down + 1])
+def period_of(motion: xr.Dataset) -> float:
+    """Return the mean time between downward crossings of the surface [s]."""
+    z, t = motion.middle.values[:, 2], motion.time.values
+    crossings = np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))
+    times = t[crossings] + (t[1] - t[0]) * z[crossings] / (z[crossings] - z[crossings + 1])
     return float(np.diff(times).mean())
 
 
 def rocking(duration: float, integrator: Integrator, timestep: float) -> xr.Dataset:
-    """Return the motion of a box that is let go heeled and pitched, without drag and added mass."""
-    pool = FloatTank(BOX, SURFACE, timestep=timestep, integrator=integrator)
-    turn = rotation.multiply(
+    """Return the motion of a box that is released heeled and pitched, without drag and added mass.
+
+    Args:
+        duration: duration of the motion [s].
+        integrator: MuJoCo's integrator.
+        timestep: time step of the physics [s].
+    """
+    tank = FloatTank(BOX, SURFACE, timestep=timestep, integrator=integrator)
+    quaternion = rotation.multiply(
         rotation.about(np.array([0.0, 1.0, 0.0]), 0.1), rotation.about(np.array([1.0, 0.0, 0.0]), 0.4)
     )
-    pool.place((0.0, 0.0, 0.02), turn)
-    return pool.watch(duration, 0.1)
+    tank.place((0.0, 0.0, 0.02), quaternion)
+    return tank.watch(duration, 0.1)
 
 
-def gained_energy(watched: xr.Dataset) -> float:
-    """Return the greatest gain of energy over that which the body has above its place of rest [-].
+def gained_energy(motion: xr.Dataset) -> float:
+    """Return the greatest gain of energy over the initial energy above equilibrium [-].
 
-    It rests where its potential energy is least: BOX upright and half under.
+    Equilibrium is the state of least potential energy: BOX upright and half submerged.
     """
-    rest = FloatTank(BOX, SURFACE)
-    rest.place((0.0, 0.0, 0.0))
-    energy = watched.energy.values
-    return float((energy.max() - energy[0]) / (energy[0] - rest.energy()))
+    rest_tank = FloatTank(BOX, SURFACE)
+    rest_tank.place((0.0, 0.0, 0.0))
+    energy = motion.energy.values
+    return float((energy.max() - energy[0]) / (energy[0] - rest_tank.energy()))
 
 
 def drifting(integrator: Integrator, timestep: float, duration: float = 2.0) -> xr.Dataset:
-    """Return the motion of a spheroid in ideal water without gravity, turning and moving about all axes."""
-    pool = FloatTank(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
-    pool.model.opt.gravity[:] = 0.0
-    pool.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
-    return pool.watch(duration, 0.1)
+    """Return the motion of a spheroid in ideal water without gravity, with velocity and spin about all axes.
+
+    Args:
+        integrator: MuJoCo's integrator.
+        timestep: time step of the physics [s].
+        duration: duration of the motion [s].
+    """
+    tank = FloatTank(SPHEROID, DEEP, timestep=timestep, integrator=integrator)
+    tank.model.opt.gravity[:] = 0.0
+    tank.place((0.0, 0.0, 0.0), velocity=(0.5, 0.2, 0.1), spin=(0.8, 0.5, -1.0))
+    return tank.watch(duration, 0.1)
 
 
-def drift(watched: xr.Dataset) -> float:
-    """Return by how much momentum and its moment change at most, over their own size [-]."""
-    found = []
+def drift(motion: xr.Dataset) -> float:
+    """Return the greatest change of linear and angular momentum over their initial magnitude [-]."""
+    relative_changes = []
     for name in ("momentum", "angular_momentum"):
-        values = watched[name].values
-        found.append(np.linalg.norm(values - values[0], axis=1).max() / np.linalg.norm(values[0]))
-    return float(max(found))
+        values = motion[name].values
+        relative_changes.append(np.linalg.norm(values - values[0], axis=1).max() / np.linalg.norm(values[0]))
+    return float(max(relative_changes))
 
 
 def kinds() -> dict[str, FloatBody]:
-    """Return a body made of each kind of piece."""
+    """Return one body for each kind of piece that floating bodies are made of."""
     half = (0.25, 0.1, 0.06)
     return {
-        "disc": FloatBody(shape="cylinder", half=half, mass=1, inertia=_ONE, parts=100),
-        "ball": FloatBody(shape="ellipsoid", half=half, mass=1, inertia=_ONE),
-        "slab": FloatBody(shape="box", half=half, mass=1, inertia=_ONE, parts=48),
+        "disc": FloatBody(shape="cylinder", half=half, mass=1, inertia=_UNIT_INERTIA, parts=100),
+        "ball": FloatBody(shape="ellipsoid", half=half, mass=1, inertia=_UNIT_INERTIA),
+        "slab": FloatBody(shape="box", half=half, mass=1, inertia=_UNIT_INERTIA, parts=48),
     }
 
 
 def volume_errors(body: FloatBody, poses: int, points: int) -> np.ndarray:
-    """Return how far volumes under water are from those by counting points, over the whole volume, pose by pose [-].
+    """Return the error of the submerged volume against counted points, over the whole volume, for each pose [-].
 
     Args:
-        body: made of pieces.
-        poses: random orientations and depths [-].
-        points: evenly scattered points of a Sobol sequence, a power of two [-].
+        body: body that is made of pieces.
+        poses: number of random orientations and depths [-].
+        points: number of points of a Sobol sequence, a power of two [-].
     """
     rng = np.random.default_rng(0)
     cube = 2 * qmc.Sobol(3, seed=0).random(points) - 1
-    inside: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    is_inside: dict[str, Callable[[np.ndarray], np.ndarray]] = {
         "ellipsoid": lambda p: (p**2).sum(axis=1) <= 1,
         "cylinder": lambda p: (p[:, 1:] ** 2).sum(axis=1) <= 1,
         "box": lambda p: np.full(len(p), True),
     }
-    cloud = cube[inside[body.shape](cube)] * body.half
-    pool, found = FloatTank(body, SURFACE), []
+    cloud = cube[is_inside[body.shape](cube)] * body.half
+    tank, errors = FloatTank(body, SURFACE), []
     for turn, depth in zip(rng.normal(size=(poses, 4)), rng.uniform(-0.12, 0.12, poses), strict=True):
         quaternion = turn / np.linalg.norm(turn)
-        pool.place((0.0, 0.0, -depth), quaternion)
+        tank.place((0.0, 0.0, -depth), quaternion)
         height = rotation.rotate(quaternion, cloud)[:, 2] - depth
-        found.append(pool.statics()[0] / body.volume - float((height < 0).mean()))
-    return np.abs(found)
+        errors.append(tank.statics()[0] / body.volume - float((height < 0).mean()))
+    return np.abs(errors)
 
 
 def public_table() -> dict[str, float]:
-    """Return the accelerations and the force of the table in MuJoCo's issue 3452, as this physics has them.
+    """Return the accelerations and the force of the table in MuJoCo's issue 3452, as this physics computes them.
 
-    ``neutral`` [m/s2], ``ballast`` [N], ``keel`` [rad/s2].
+    The keys are ``neutral`` [m/s2], ``ballast`` [N] and ``keel`` [rad/s2].
     """
     neutral = FloatTank(SPHEROID_PLAIN, DEEP)
     neutral.place((0.0, 0.0, 0.0))
-    float_ = FloatBody(shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST, inertia=_ONE)
-    loaded = FloatTank(float_, DEEP)
-    loaded.place((0.0, 0.0, 0.0))
+    float_ = FloatBody(
+        shape="box", half=(0.15, 0.15, 0.15), mass=WATER.density * 0.027 + BALLAST, inertia=_UNIT_INERTIA
+    )
+    ballasted = FloatTank(float_, DEEP)
+    ballasted.place((0.0, 0.0, 0.0))
     hull = keeled()
     keel = FloatTank(hull, DEEP)
     keel.place((0.0, 0.0, 0.0), rotation.about(np.array([1.0, 0.0, 0.0]), radians(45)))
     return {
         "neutral": float(neutral.acceleration[0][2]),
-        "ballast": float(loaded.acceleration[0][2]) * float_.mass,
+        "ballast": float(ballasted.acceleration[0][2]) * float_.mass,
         "keel": -float(keel.acceleration[1][0]),
     }
 
 
 SPHEROID_PLAIN = replace(SPHEROID, centre=(0.0, 0.0, 0.0), added=(0.0, 0.0, 0.0))
-"""As heavy as its water, its mass in its middle."""
+"""A neutrally buoyant spheroid whose centre of mass is its centre."""
 
 
 def keeled() -> FloatBody:
-    """Return a hull under water whose keel pulls it upright with the issue's acceleration."""
-    body = FloatBody(shape="ellipsoid", half=(1.0, 0.5, 0.5), mass=1, inertia=_ONE)
+    """Return a submerged hull whose keel turns it upright with the issue's angular acceleration."""
+    body = FloatBody(shape="ellipsoid", half=(1.0, 0.5, 0.5), mass=1, inertia=_UNIT_INERTIA)
     mass = WATER.density * body.volume
-    below = KEEL * _GYRATION / (GRAVITY * sin(radians(45)))
+    center_depth = KEEL * _GYRATION / (GRAVITY * sin(radians(45)))
     inertia = (mass * _GYRATION, mass * 0.25, mass * 0.25)
-    return replace(body, mass=mass, inertia=inertia, centre=(0.0, 0.0, -below))
+    return replace(body, mass=mass, inertia=inertia, centre=(0.0, 0.0, -center_depth))

@@ -34,19 +34,19 @@ from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _UPRIGHT = 0.035
-"""Heel within which it counts as upright [rad]; 2 degrees."""
+"""Heel below which the robot counts as upright [rad]; 2 degrees."""
 _DASHES = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5)), (0, (3, 1)))
 _SHADES = (COLOURS["coordinated"], COLOURS["limbs_only"], COLOURS["tail_drag"], COLOURS["spine_only"], "#333333")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Floating(Experiment):
-    """Forces of the water against exact answers, and a robot that is let go heeled.
+    """Forces of the water against exact answers, and a robot that is released heeled.
 
-    Sphere, cylinder and box have drafts in closed form; a box that is let go heaves at a known period and keeps its
-    energy; a spheroid in ideal water keeps its momentum; volumes under water are those of counted points. The robot
-    lies still, limbs held out, and is let go at the surface from several angles of heel. Its righting lever, with trim
-    and draft free, is drawn over the heel as naval architects do.
+    The drafts of sphere, cylinder and box have closed forms. A released box heaves at a known period and conserves its
+    energy. A spheroid in ideal water conserves its momentum. Submerged volumes are compared with counted points. The
+    robot lies still with its limbs held out and is released at the surface from several angles of heel. Its righting
+    lever, with trim and draft free, is drawn over the heel.
     """
 
     title = "Does it float as Archimedes says, and does it right itself?"
@@ -63,19 +63,19 @@ class Floating(Experiment):
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""
     heels: tuple[float, ...] = (radians(60), radians(120), radians(150))
-    """Angles of heel from which the robot is let go [rad]; the last one is the measure."""
+    """Angles of heel from which the robot is released [rad]; the measures are those of the last one."""
     duration: float = 20.0
-    """Duration for which the robot is watched [s]; the mean of the last quarter counts as its rest."""
+    """Simulated duration after the release [s]; the mean of the last quarter counts as equilibrium."""
     energy_time: float = 60.0
-    """Duration over which the energy of the box is followed [s]."""
+    """Simulated duration of the rocking box [s]."""
     periods: int = 10
-    """Periods of heave that are watched [-]."""
+    """Number of simulated periods of heave [-]."""
     poses: int = 16
-    """Random poses in which volumes are counted, of each kind of piece [-]."""
+    """Number of random poses for the submerged volume, for each kind of piece [-]."""
     points: int = 2**18
-    """Points that are counted, a power of two [-]."""
+    """Number of counted points, a power of two [-]."""
     angles: int = 37
-    """Angles of heel from 0 to 180 degrees at which the righting lever is computed [-]."""
+    """Number of heels from 0 to 180 degrees at which the righting lever is computed [-]."""
     timestep: float = 0.002
     """Time step of the physics of boxes and spheroids [s]."""
 
@@ -96,82 +96,95 @@ class Floating(Experiment):
         return replace(self, heels=(radians(150),), duration=1.5, energy_time=1.0, poses=2, points=2**14, angles=5)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Float the bodies whose answers are known, then let the robot go."""
+        """Simulate the bodies with exact answers, then release the robot from each heel."""
         progress("exact answers", 0.0)
         parts = [self._drafts(), self._heave(), self._energy(), self._drift(), self._volumes(), self._table()]
         progress("righting levers", 0.4)
         parts.append(self._levers())
-        record = self._let_go(staged(progress, "let go", 0.5, 1.0))
+        record = self._release_record(staged(progress, "let go", 0.5, 1.0))
         return Simulated(record=xr.merge([*parts, record], compat="no_conflicts"), replays=self._replays(record))
 
     def _drafts(self) -> xr.Dataset:
-        found = cases.drafts()
+        """Return computed and exact draft of the bodies with closed forms [m]."""
+        known_drafts = cases.drafts()
         return xr.Dataset(
             {
-                "body_draft": ("float", [cases.draft_of(one.body) for one in found], {"units": "m"}),
-                "exact_draft": ("float", [one.exact for one in found], {"units": "m"}),
+                "body_draft": ("float", [cases.draft_of(draft.body) for draft in known_drafts], {"units": "m"}),
+                "exact_draft": ("float", [draft.exact for draft in known_drafts], {"units": "m"}),
             },
-            coords={"float": [one.name for one in found]},
+            coords={"float": [draft.name for draft in known_drafts]},
         )
 
     def _heave(self) -> xr.Dataset:
-        added = (0.0, 0.6)
-        watched = [cases.heave(one, 0.005, self.periods, self.timestep) for one in added]
+        """Return simulated and exact heave period of a box, without and with added mass [s]."""
+        added_mass_ratios = (0.0, 0.6)
+        heaves = [cases.heave(ratio, 0.005, self.periods, self.timestep) for ratio in added_mass_ratios]
         return xr.Dataset(
             {
-                "heave_period": ("added_mass", [cases.period_of(one) for one, _ in watched], {"units": "s"}),
-                "exact_heave_period": ("added_mass", [exact for _, exact in watched], {"units": "s"}),
+                "heave_period": ("added_mass", [cases.period_of(motion) for motion, _ in heaves], {"units": "s"}),
+                "exact_heave_period": ("added_mass", [exact for _, exact in heaves], {"units": "s"}),
             },
-            coords={"added_mass": list(added)},
+            coords={"added_mass": list(added_mass_ratios)},
         )
 
     def _energy(self) -> xr.Dataset:
+        """Return the energy of a rocking box over time [J] and its relative gain [-], for each integrator."""
         names = ("implicitfast", "RK4")
-        watched = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
-        energy = np.array([one.energy.values for one in watched])
+        motions = [cases.rocking(self.energy_time, name, self.timestep) for name in names]  # type: ignore[arg-type]
+        energy = np.array([motion.energy.values for motion in motions])
         return xr.Dataset(
             {
                 "energy": (("integrator", "box_time"), energy, {"units": "J"}),
-                "gained": ("integrator", [cases.gained_energy(one) for one in watched], {"units": "1"}),
+                "gained": ("integrator", [cases.gained_energy(motion) for motion in motions], {"units": "1"}),
             },
-            coords={"integrator": list(names), "box_time": ("box_time", watched[0].time.values, {"units": "s"})},
+            coords={"integrator": list(names), "box_time": ("box_time", motions[0].time.values, {"units": "s"})},
         )
 
     def _drift(self) -> xr.Dataset:
-        found = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
-        return xr.Dataset({"drift": ("integrator", found[::-1], {"units": "1"})})
+        """Return the relative change of momentum of a spheroid in ideal water, for each integrator [-]."""
+        drifts = [cases.drift(cases.drifting("RK4", self.timestep)), cases.drift(cases.drifting("implicitfast", 0.001))]
+        return xr.Dataset({"drift": ("integrator", drifts[::-1], {"units": "1"})})
 
     def _volumes(self) -> xr.Dataset:
-        found = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
+        """Return the relative error of the submerged volume for each kind of piece and pose [-]."""
+        errors = {kind: cases.volume_errors(body, self.poses, self.points) for kind, body in cases.kinds().items()}
         return xr.Dataset(
-            {"volume_off": (("piece", "pose"), np.array(list(found.values())), {"units": "1"})},
-            coords={"piece": list(found)},
+            {"volume_off": (("piece", "pose"), np.array(list(errors.values())), {"units": "1"})},
+            coords={"piece": list(errors)},
         )
 
     @staticmethod
     def _table() -> xr.Dataset:
-        found = cases.public_table()
+        """Return the values of ``cases.public_table`` as variables ``table_NAME``."""
+        table = cases.public_table()
         units = {"neutral": "m/s2", "ballast": "N", "keel": "rad/s2"}
-        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in found.items()})
+        return xr.Dataset({f"table_{name}": ((), value, {"units": units[name]}) for name, value in table.items()})
 
     def _levers(self) -> xr.Dataset:
-        both = [
-            hydrostatics(one, self._posture(one), heels=self.angles)
-            for one in (self.robot, with_values(self.robot, {"hull": None}))
+        """Return righting lever [m] and hydrostatic numbers of the robot with its hull and without."""
+        hydrostatic_results = [
+            hydrostatics(robot, self._posture(robot), heels=self.angles)
+            for robot in (self.robot, with_values(self.robot, {"hull": None}))
         ]
-        found = xr.Dataset(
-            {"lever": (("hull", "heel"), np.array([one.lever for one in both]), {"units": "m"})},
-            coords={"hull": ["floating", "bare"], "heel": ("heel", both[0].heel, {"units": "rad"})},
+        levers = xr.Dataset(
+            {"lever": (("hull", "heel"), np.array([statics.lever for statics in hydrostatic_results]), {"units": "m"})},
+            coords={"hull": ["floating", "bare"], "heel": ("heel", hydrostatic_results[0].heel, {"units": "rad"})},
         )
         for name, unit in _STATICS.items():
-            found[f"static_{name}"] = ("hull", np.array([float(getattr(one, name)) for one in both]), {"units": unit})
-        return found
+            levers[f"static_{name}"] = (
+                "hull",
+                np.array([float(getattr(statics, name)) for statics in hydrostatic_results]),
+                {"units": unit},
+            )
+        return levers
 
     @staticmethod
     def _posture(robot: Robot) -> np.ndarray:
+        """Return the servo angles of the robot lying still with its limbs held out [rad]."""
         return cycle_targets(robot, still(robot, limbs=LIMBS_UP), np.zeros(1))[0]
 
-    def _let_go(self, progress: Any) -> xr.Dataset:
+    def _release_record(self, progress: Any) -> xr.Dataset:
+        """Simulate the robot released at the surface from each angle of heel."""
         gait = still(self.robot, limbs=LIMBS_UP)
         runs = [
             Run(
@@ -186,6 +199,7 @@ class Floating(Experiment):
         return simulate(runs, duration=self.duration, progress=progress)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the run with the last heel."""
         return replayed(
             "righting_replay.html",
             record.isel(run=-1),
@@ -195,15 +209,15 @@ class Floating(Experiment):
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how far off the exact answers are, and how the robot floats."""
+        """Return the errors against the exact answers, and the floating position of the robot."""
         heave = np.abs(record.heave_period / record.exact_heave_period - 1)
-        rest = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
+        rest_interval = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
         roll = rotation.heel(record.orientation.values)
-        last = np.abs(roll[-1, -rest.sizes["time"] :])
-        upright = np.abs(roll[-1]) < _UPRIGHT
-        since = int(np.flatnonzero(~upright)[-1]) + 1 if not upright.all() else 0
-        righted = float(record.time[since]) if since < len(upright) else float("nan")
-        afloat, bare = record.sel(hull="floating"), record.sel(hull="bare")
+        final_roll = np.abs(roll[-1, -rest_interval.sizes["time"] :])
+        is_upright = np.abs(roll[-1]) < _UPRIGHT
+        first_upright = int(np.flatnonzero(~is_upright)[-1]) + 1 if not is_upright.all() else 0
+        righting_time = float(record.time[first_upright]) if first_upright < len(is_upright) else float("nan")
+        hull_record, bare_record = record.sel(hull="floating"), record.sel(hull="bare")
         return Measures(
             {
                 "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
@@ -216,15 +230,15 @@ class Floating(Experiment):
                 "acceleration_neutral": Measure(float(record.table_neutral), "m/s2"),
                 "force_of_ballast": Measure(float(record.table_ballast), "N"),
                 "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
-                "share_above": Measure(float(1.0 - rest.share_under.isel(run=0).mean()), "-"),
-                "roll_at_rest": Measure(float(last.mean()), "rad"),
-                "righting_time": Measure(righted, "s"),
+                "share_above": Measure(float(1.0 - rest_interval.share_under.isel(run=0).mean()), "-"),
+                "roll_at_rest": Measure(float(final_roll.mean()), "rad"),
+                "righting_time": Measure(righting_time, "s"),
             },
             {
-                f"{name}_{kind}": Measure(float(one[f"static_{name}"]), unit)
-                for kind, one in (("floating", afloat), ("bare", bare))
+                f"{name}_{kind}": Measure(float(statics[f"static_{name}"]), unit)
+                for kind, statics in (("floating", hull_record), ("bare", bare_record))
                 for name, unit in _STATICS.items()
-                if np.isfinite(float(one[f"static_{name}"]))
+                if np.isfinite(float(statics[f"static_{name}"]))
             },
         )
 
@@ -237,7 +251,7 @@ _STATICS: Mapping[str, str] = {
     "mass": "kg", "volume": "m3", "missing": "m3", "surplus": "kg", "draft": "m", "trim": "rad",
     "metacentric_height": "m", "vanishing": "rad",
 }  # fmt: skip
-"""Numbers of ``Hydrostatics`` that are kept, with their units."""
+"""Fields of ``Hydrostatics`` that become measures, with their units."""
 
 
 def draw_righting(record: xr.Dataset) -> Figure:
@@ -255,10 +269,10 @@ def draw_righting(record: xr.Dataset) -> Figure:
             "floating": ("-", "coordinated", "with its hull, "),
             "bare": ((0, (5, 2)), "limbs_only", "without it, "),
         }
-        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # it has none
+        if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # the robot has no hull
             hulls = {"floating": ("-", "coordinated", "")}
-        for hull, (dashes, colour, which) in hulls.items():
-            label = which + ("at the surface" if floats[hull] else "sunk")
+        for hull, (dashes, colour, hull_text) in hulls.items():
+            label = hull_text + ("at the surface" if floats[hull] else "sunk")
             ax.plot(heel, 1e3 * record.lever.sel(hull=hull), color=COLOURS[colour], linestyle=dashes, label=label)
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="heel [deg]", ylabel="righting lever GZ [mm]", xlim=(0, 180), xticks=range(0, 181, 30))
@@ -280,22 +294,24 @@ def draw_righting(record: xr.Dataset) -> Figure:
 
 
 def draw_checks(record: xr.Dataset) -> Figure:
-    """Draw drafts beside exact ones, and the energy of a box that rocks.
+    """Draw computed over exact drafts, and the energy of a rocking box over time.
 
     Args:
-        record: with ``body_draft`` and ``exact_draft`` (float) [m], ``energy`` (integrator, box_time) [J].
+        record: ``body_draft`` and ``exact_draft`` (float) [m], ``energy`` (integrator, box_time) [J].
     """
     with styled():
         figure, axes = panels(1, 2, width=12.0, height=4.2)
         ax = axes[0, 0]
         kinds = [str(name).split()[0] for name in record["float"].values]
         for kind, marker, colour in (("sphere", "o", 0), ("cylinder", "s", 1), ("box", "^", 2)):
-            mine = [i for i, one in enumerate(kinds) if one == kind]
-            exact, found = 1e3 * record.exact_draft[mine], 1e3 * record.body_draft[mine]
-            ax.plot(exact, found, marker, markersize=9, color=_SHADES[colour], label=kind)
-        most = 1.1e3 * float(record.exact_draft.max())
-        ax.plot([0, most], [0, most], color=COLOURS["neutral"], linewidth=0.9, zorder=0)
-        ax.set(xlabel="exact draft [mm]", ylabel="draft in the physics step [mm]", xlim=(0, most), ylim=(0, most))
+            indices = [i for i, body_kind in enumerate(kinds) if body_kind == kind]
+            exact, computed = 1e3 * record.exact_draft[indices], 1e3 * record.body_draft[indices]
+            ax.plot(exact, computed, marker, markersize=9, color=_SHADES[colour], label=kind)
+        max_draft = 1.1e3 * float(record.exact_draft.max())
+        ax.plot([0, max_draft], [0, max_draft], color=COLOURS["neutral"], linewidth=0.9, zorder=0)
+        ax.set(
+            xlabel="exact draft [mm]", ylabel="draft in the physics step [mm]", xlim=(0, max_draft), ylim=(0, max_draft)
+        )
         ax.legend(loc="upper left")
         ax = axes[0, 1]
         for i, name in enumerate(record.integrator.values):

@@ -36,22 +36,22 @@ _ANIMAL_PHASES = {
     name: phase - _ANIMAL_GAIT.limb_phases[0]
     for name, phase in zip(("LF", "RF", "LH", "RH"), _ANIMAL_GAIT.limb_phases, strict=True)
 }
-"""Phase by which each foot of a walking salamander is ahead of its left front one [cycle]."""
+"""Phase lead of each foot of a walking salamander over its left front foot [cycle]."""
 _CAPTION = "The crawl of the gait diagram: thick tracks are feet that stand."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GaitDiagram(Experiment):
-    """The article's Fig. 12 for our crawl: as commanded, and as foot pressure and joint angles show.
+    """The article's Fig. 12 for our crawl: as commanded, and from simulated foot pressures and joint angles.
 
-    A foot stands when its pressure exceeds a seventieth of the weight, half a newton for the caiman. Phases are those
-    of the first harmonic of stance. Bends are sums of joint angles, of the tail those that servos and cables bend, up
-    and down those of the pitch joints; their sense is the article's: right and down are positive. A body without a
-    tail, or without a trunk that bends, has no track of that part. The commanded cycle is written as a table of servo
-    angles, a gait file in which any angle can be changed, the vertical ones too.
+    A foot stands when its pressure exceeds a seventieth of the weight, which is half a newton for the caiman. Phases
+    are those of the first harmonic of stance. Bends are sums of joint angles: lateral ones of the yaw joints and
+    cables, vertical ones of the pitch joints. Their signs are the article's: right and down are positive. A body
+    without a tail, or without a trunk that bends, has no track of that part. The commanded cycle is also written as a
+    gait file, a table of servo angles in which every angle can be changed.
 
-    Beside a body of two pairs of limbs stands an animal. No crocodilian's foot phases are published as numbers; those
-    of a filmed salamander are (the gait ``animal_walk``).
+    A body with two pairs of limbs is compared with an animal. No foot phases of a crocodilian are published as
+    numbers, so the animal is a filmed salamander (the gait ``animal_walk``).
     """
 
     title = "When do the feet stand, and which way do spine and tail bend?"
@@ -76,7 +76,7 @@ class GaitDiagram(Experiment):
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
-            check.whole("cycles", 2, 1000)  # one cycle cannot show that it repeats itself
+            check.whole("cycles", 2, 1000)  # one cycle cannot show periodicity
 
     def quick(self) -> "GaitDiagram":
         """The same: it takes a second."""
@@ -87,13 +87,17 @@ class GaitDiagram(Experiment):
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
         record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
-        commanded = _commanded(self.robot, record.servo_target.transpose("time", "servo").values)
-        for part, bend in commanded.items():
-            about = {"units": "rad", "long_name": f"commanded bend of the {part}, right positive"}
-            record[f"commanded_{part}"] = ("time", bend, about)
-        sensed = _sensed(self.robot, record)
-        for part in commanded:
-            record[f"sensed_{part}"] = ("time", sensed[part], {"units": "rad", "long_name": f"bend of the {part}"})
+        commanded = _commanded_bends(self.robot, record.servo_target.transpose("time", "servo").values)
+        for body_part, bend in commanded.items():
+            attrs = {"units": "rad", "long_name": f"commanded bend of the {body_part}, right positive"}
+            record[f"commanded_{body_part}"] = ("time", bend, attrs)
+        sensed = _sensed_bends(self.robot, record)
+        for body_part in commanded:
+            record[f"sensed_{body_part}"] = (
+                "time",
+                sensed[body_part],
+                {"units": "rad", "long_name": f"bend of the {body_part}"},
+            )
         return Simulated(
             record=record,
             tables={"gait_table.toml": blueprint.render(as_table(self.robot, self.gait))},
@@ -102,14 +106,14 @@ class GaitDiagram(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return duty factors and phases by pressure, lags and amplitudes of the bends."""
-        walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample begins the next one
+        walk = between(record).isel(time=slice(0, -1))  # whole cycles: the last sample belongs to the next cycle
         legs = [str(leg) for leg in record.leg.values]
         duty, phase = duty_factor(record), sensed_phase(record)
         measures = Measures({f"duty_factor_{leg}": Measure(float(duty.sel(leg=leg)), "-") for leg in legs})
         measures |= {f"phase_{leg}": Measure(float(phase.sel(leg=leg)), "cycle") for leg in legs[1:]}
-        for name in _bending(record):
+        for name in _bent_parts(record):
             bend = walk[f"sensed_{name}"].values
-            lag, gain = _against(walk, bend, walk[f"commanded_{name}"].values)
+            lag, gain = _lag_and_gain(walk, bend, walk[f"commanded_{name}"].values)
             measures[f"{name}_lag"] = Measure(lag, "cycle")
             measures[f"{name}_amplitude"] = Measure(float(np.ptp(bend)) / 2, "rad")
             measures[f"{name}_gain"] = Measure(gain, "-")
@@ -118,15 +122,17 @@ class GaitDiagram(Experiment):
             )
         for name in _PARTS:
             if f"sensed_{name}_vertical" in walk:
-                upright = walk[f"sensed_{name}_vertical"].values
-                measures[f"{name}_vertical_mean"] = Measure(float(upright.mean()), "rad")
-                measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(upright)) / 2, "rad")
+                vertical_bend = walk[f"sensed_{name}_vertical"].values
+                measures[f"{name}_vertical_mean"] = Measure(float(vertical_bend.mean()), "rad")
+                measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(vertical_bend)) / 2, "rad")
         if "sensed_tail" in walk:
             bend = walk.sensed_tail.values
             measures["tail_swing_least"] = Measure(float(min(bend.max(), -bend.min())), "rad")
         if set(legs) == set(_ANIMAL_PHASES):
-            apart = [abs((float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] + 0.5) % 1.0 - 0.5) for leg in legs]
-            measures["animal_phase_apart"] = Measure(max(apart), "cycle")
+            phase_differences = [
+                abs((float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] + 0.5) % 1.0 - 0.5) for leg in legs
+            ]
+            measures["animal_phase_apart"] = Measure(max(phase_differences), "cycle")
         return measures | {
             "duty_factor_greatest": Measure(float(duty.max()), "-"),
             "duty_factor_commanded": Measure(float(record.duty_factor), "-"),
@@ -138,25 +144,25 @@ class GaitDiagram(Experiment):
         }
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how what the feet and joints do differs from what is commanded."""
+        """Return how the motion of feet and joints differs from the commanded motion."""
         return self.told(measures, legs=layout(self.robot).limb_names, animal_duty=_ANIMAL_GAIT.duty_factor)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw commanded and sensed."""
+        """Draw the simulated and the commanded gait diagram, and for a body of four limbs that of an animal."""
         walk = between(outcome.record)
         bends = {
             source: {
-                part: walk[f"{source}_{part}"].values if f"{source}_{part}" in walk else None
-                for part in (*_PARTS, *(f"{name}_vertical" for name in _PARTS))
+                body_part: walk[f"{source}_{body_part}"].values if f"{source}_{body_part}" in walk else None
+                for body_part in (*_PARTS, *(f"{name}_vertical" for name in _PARTS))
             }
             for source in ("sensed", "commanded")
         }
-        meant = (np.mod(walk.limb_phase, 1.0) >= 1.0 - walk.duty_factor).transpose("leg", "time").values
-        stands = loaded(walk).transpose("leg", "time").values
+        commanded_stance = (np.mod(walk.limb_phase, 1.0) >= 1.0 - walk.duty_factor).transpose("leg", "time").values
+        sensed_stance = loaded(walk).transpose("leg", "time").values
         time, legs = walk.time.values, tuple(str(leg) for leg in walk.leg.values)
         tracks = [
-            GaitTrack(time=time, legs=legs, stance=stands, **bends["sensed"], label="simulated"),
-            GaitTrack(time=time, legs=legs, stance=meant, **bends["commanded"], label="commanded"),
+            GaitTrack(time=time, legs=legs, stance=sensed_stance, **bends["sensed"], label="simulated"),
+            GaitTrack(time=time, legs=legs, stance=commanded_stance, **bends["commanded"], label="commanded"),
         ]
         marks = list(np.arange(START, time[-1] + 0.01, self.gait.period))
         figure = captioned(
@@ -165,58 +171,86 @@ class GaitDiagram(Experiment):
             "as commanded. Filled: a foot stands, or spine and tail bend to the right; open: they bend to the left. "
             "Below, the lateral angles, then the vertical ones.",
         )
-        beside = {} if set(legs) != set(_ANIMAL_PHASES) else {"beside_an_animal": _beside(walk, legs)}
-        return {"gait_diagram": figure, **beside}
+        animal_figures = (
+            {} if set(legs) != set(_ANIMAL_PHASES) else {"beside_an_animal": _draw_animal_comparison(walk, legs)}
+        )
+        return {"gait_diagram": figure, **animal_figures}
 
 
-def _sensed(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the angles of spine and tail in the article's signs, right and down positive [rad]."""
-    place = layout(robot)
-    tail = {place.servos[i] for i in place.tail_yaw} | {name for i in place.cables for name in place.cable(i).hinges}
-    hinges = {"spine": [place.servos[i] for i in place.trunk_yaw], "tail": sorted(tail, key=place.hinges.index)}
-    hinges |= {f"{part}_vertical": [place.servos[i] for i in pitch] for part, pitch in _pitching(robot).items()}
-    signs = {"spine": -1.0}  # ahead of the root a positive yaw bends to the left, behind it to the right
+def _sensed_bends(robot: Robot, record: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return the simulated bends of spine and tail in the article's signs, right and down positive [rad].
+
+    Args:
+        robot: robot of the record.
+        record: record of one run, with ``joint_angle`` (time, joint) [rad].
+
+    Returns:
+        Bends over time by ``spine``, ``tail``, and the same names with ``_vertical``.
+    """
+    body_layout = layout(robot)
+    tail = {body_layout.servos[i] for i in body_layout.tail_yaw} | {
+        name for i in body_layout.cables for name in body_layout.cable(i).hinges
+    }
+    hinges = {
+        "spine": [body_layout.servos[i] for i in body_layout.trunk_yaw],
+        "tail": sorted(tail, key=body_layout.hinges.index),
+    }
+    hinges |= {
+        f"{body_part}_vertical": [body_layout.servos[i] for i in pitch]
+        for body_part, pitch in _pitch_servos(robot).items()
+    }
+    signs = {"spine": -1.0}  # positive yaw bends the spine to the left and the tail to the right
     return {
-        part: signs.get(part, 1.0) * record.joint_angle.sel(joint=names).sum("joint").values
-        for part, names in hinges.items()
+        body_part: signs.get(body_part, 1.0) * record.joint_angle.sel(joint=names).sum("joint").values
+        for body_part, names in hinges.items()
     }
 
 
-def _beside(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
-    """Draw the last whole cycle of a walk beside that of the animal, both from where the first leg's phase is zero."""
-    own = walk.limb_phase.isel(leg=0).values
-    last = own[-1] - 1.0
-    cycle = walk.isel(time=np.flatnonzero(own >= last - 1e-9))
-    first = cycle.limb_phase.isel(leg=0).values
-    shift = np.argmin(np.mod(first, 1.0))
+def _draw_animal_comparison(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
+    """Draw the last whole cycle of a walk, and the mean cycle of the animal, both from phase zero of the first leg.
+
+    Args:
+        walk: record of one run.
+        legs: names of the legs.
+    """
+    phase = walk.limb_phase.isel(leg=0).values
+    cycle_start = phase[-1] - 1.0
+    cycle = walk.isel(time=np.flatnonzero(phase >= cycle_start - 1e-9))
+    cycle_phase = cycle.limb_phase.isel(leg=0).values
+    shift = np.argmin(np.mod(cycle_phase, 1.0))
     clock = np.linspace(0.0, 1.0, 101)
     robot = ROBOTS["salamander"]
     begin = START + (1.0 - _ANIMAL_GAIT.limb_phases[0]) * _ANIMAL_GAIT.period
-    bends = _commanded(robot, intended(robot, _ANIMAL_GAIT, begin + clock * _ANIMAL_GAIT.period).targets)
-    ahead = np.array([_ANIMAL_PHASES[leg] for leg in legs])[:, None]
+    bends = _commanded_bends(robot, intended(robot, _ANIMAL_GAIT, begin + clock * _ANIMAL_GAIT.period).targets)
+    phase_leads = np.array([_ANIMAL_PHASES[leg] for leg in legs])[:, None]
 
-    def turned(values: np.ndarray) -> np.ndarray:
+    def roll_to_start(values: np.ndarray) -> np.ndarray:
+        """Return values over one cycle, rolled along time such that they begin at phase zero."""
         return np.roll(values[..., :-1], -shift, axis=-1)
 
-    sides = {part: turned(cycle[f"sensed_{part}"].values) for part in _PARTS if f"sensed_{part}" in cycle}
-    ours = GaitTrack(
-        time=np.mod(turned(first), 1.0),
+    sides = {
+        body_part: roll_to_start(cycle[f"sensed_{body_part}"].values)
+        for body_part in _PARTS
+        if f"sensed_{body_part}" in cycle
+    }
+    robot_track = GaitTrack(
+        time=np.mod(roll_to_start(cycle_phase), 1.0),
         legs=legs,
-        stance=turned(loaded(cycle).transpose("leg", "time").values),
+        stance=roll_to_start(loaded(cycle).transpose("leg", "time").values),
         spine=sides.get("spine"),
         tail=sides.get("tail"),
         label="robot",
     )
-    animal = GaitTrack(
+    animal_track = GaitTrack(
         time=clock,
         legs=legs,
-        stance=np.mod(clock + ahead, 1.0) >= 1.0 - _ANIMAL_GAIT.duty_factor,
+        stance=np.mod(clock + phase_leads, 1.0) >= 1.0 - _ANIMAL_GAIT.duty_factor,
         spine=bends["spine"],
         tail=bends["tail"],
         label="salamander",
     )
     return captioned(
-        gait_diagram([ours, animal], unit="cycle"),
+        gait_diagram([robot_track, animal_track], unit="cycle"),
         "One cycle of the robot, black, by foot pressure and joint angles, beside the mean cycle of a walking "
         "salamander, Pleurodeles waltl, grey, by its filmed joint angles (Karakasiliotis et al. 2013), where a foot "
         "that goes forward swings. Both begin with the left front foot's swing. Filled: a foot stands, or spine and "
@@ -224,53 +258,73 @@ def _beside(walk: xr.Dataset, legs: tuple[str, ...]) -> Figure:
     )
 
 
-def _commanded(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the commanded angles of those parts that a servo bends [rad], of angles of shape (time, servo) [rad]."""
-    place = layout(robot)
+def _commanded_bends(robot: Robot, commanded: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the commanded bends of the parts that have servos, by the names of ``_sensed_bends`` [rad].
+
+    Args:
+        robot: robot that is commanded.
+        commanded: commanded servo angles, shape (time, servo) [rad].
+    """
+    body_layout = layout(robot)
     bends: dict[str, np.ndarray] = {}
-    if place.trunk_yaw:
-        bends["spine"] = -commanded[:, list(place.trunk_yaw)].sum(axis=1)
-    if place.tail_yaw or place.cables:
-        pulled = sum(bend_of_servo(place.cable(i), commanded[:, i]) for i in place.cables)
-        bends["tail"] = commanded[:, list(place.tail_yaw)].sum(axis=1) + pulled
-    vertical = {f"{part}_vertical": commanded[:, list(pitch)].sum(axis=1) for part, pitch in _pitching(robot).items()}
+    if body_layout.trunk_yaw:
+        bends["spine"] = -commanded[:, list(body_layout.trunk_yaw)].sum(axis=1)
+    if body_layout.tail_yaw or body_layout.cables:
+        cable_bend = sum(bend_of_servo(body_layout.cable(i), commanded[:, i]) for i in body_layout.cables)
+        bends["tail"] = commanded[:, list(body_layout.tail_yaw)].sum(axis=1) + cable_bend
+    vertical = {
+        f"{body_part}_vertical": commanded[:, list(pitch)].sum(axis=1)
+        for body_part, pitch in _pitch_servos(robot).items()
+    }
     return bends | vertical
 
 
-def _pitching(robot: Robot) -> dict[str, tuple[int, ...]]:
-    """Return the servos that bend spine and tail up and down, of those parts that have some."""
-    place = layout(robot)
-    return {part: servos for part, servos in (("spine", place.trunk_pitch), ("tail", place.tail_pitch)) if servos}
+def _pitch_servos(robot: Robot) -> dict[str, tuple[int, ...]]:
+    """Return the indices of the servos that bend spine and tail vertically, for those parts that have such servos."""
+    body_layout = layout(robot)
+    return {
+        body_part: servos
+        for body_part, servos in (("spine", body_layout.trunk_pitch), ("tail", body_layout.tail_pitch))
+        if servos
+    }
 
 
-def _bending(record: xr.Dataset) -> list[str]:
+def _bent_parts(record: xr.Dataset) -> list[str]:
     """Return the parts of the body that servos bend sideways."""
-    return [part for part in _PARTS if f"commanded_{part}" in record]
+    return [body_part for body_part in _PARTS if f"commanded_{body_part}" in record]
 
 
 def _harmonic(record: xr.Dataset, values: np.ndarray) -> complex:
-    turn = np.exp(-2j * np.pi * (record.time.values - START) / float(record.period))
-    return complex(2 * np.mean((values - values.mean()) * turn))
+    """Return the complex amplitude of the first harmonic of values over time."""
+    rotation = np.exp(-2j * np.pi * (record.time.values - START) / float(record.period))
+    return complex(2 * np.mean((values - values.mean()) * rotation))
 
 
-def _against(record: xr.Dataset, sensed: np.ndarray, commanded: np.ndarray) -> tuple[float, float]:
-    """Return lag [cycle] and gain [-] of what is sensed behind what is commanded, by first harmonics."""
-    there, here = _harmonic(record, commanded), _harmonic(record, sensed)
-    if abs(there) < 1e-6:
+def _lag_and_gain(record: xr.Dataset, sensed: np.ndarray, commanded: np.ndarray) -> tuple[float, float]:
+    """Return lag [cycle] and gain [-] of a sensed angle against the commanded one, from their first harmonics.
+
+    Args:
+        record: record of one run, for its times and its period.
+        sensed: sensed angle over time [rad].
+        commanded: commanded angle over time [rad].
+    """
+    commanded_harmonic, sensed_harmonic = _harmonic(record, commanded), _harmonic(record, sensed)
+    if abs(commanded_harmonic) < 1e-6:
         return 0.0, float("nan")
-    return float(-np.angle(here / there) / (2 * np.pi)), abs(here) / abs(there)
+    lag = -np.angle(sensed_harmonic / commanded_harmonic) / (2 * np.pi)
+    return float(lag), abs(sensed_harmonic) / abs(commanded_harmonic)
 
 
 def _period(record: xr.Dataset) -> float:
-    """Return the shift in time at which the feet's loads agree best with themselves [s].
+    """Return the time shift at which the loads of the feet agree best with themselves [s].
 
-    Looked for from half to one and a half of the commanded period.
+    Shifts from a half to one and a half of the commanded period are searched.
     """
     load = record.foot_force.sel(xyz="z").transpose("time", "leg").values
     step, period = float(record.time[1] - record.time[0]), float(record.period)
     shifts = np.arange(int(0.5 * period / step), min(int(1.5 * period / step), len(load) - 2))
-    apart = [float(np.mean((load[n:] - load[:-n]) ** 2)) for n in shifts]
-    return float(step * shifts[int(np.argmin(apart))])
+    mismatches = [float(np.mean((load[n:] - load[:-n]) ** 2)) for n in shifts]
+    return float(step * shifts[int(np.argmin(mismatches))])
 
 
 experiment = GaitDiagram()

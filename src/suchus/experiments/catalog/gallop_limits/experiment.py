@@ -36,17 +36,17 @@ from suchus.sim.metrics import between, displacement, flight_share
 from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
 
-_RUN_UP = 1.0  # [s]; before anything is measured
-_HASTE = 0.48  # [s]; cycle time of the walks, much below that which the robot's own servos reach
+_RUN_UP = 1.0  # [s]; before the measurement begins
+_FAST_PERIOD = 0.48  # [s]; period of the walks; the robot's own servos are far too slow for it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GallopLimits(Experiment):
-    """Bounding gaits with servos of growing speed and torque, beside the fastest trots and walks with the same servos.
+    """Bounding gaits with servos of growing speed and torque, and the fastest trots and walks with the same servos.
 
-    Every servo has a straight torque-speed line. The gaits are no gaits of the robot: a search by the cross-entropy
-    method found them, twelve numbers each, for servos of 3 N m at the legs and one no-load speed. On the map each is
-    the same command to all servos; of each kind the fastest counts. A robot flies while nothing touches the ground.
+    Every servo has a straight torque-speed line. Bounds and trots were found by a search with the cross-entropy method
+    over twelve parameters, for leg servos of 3 N m and one no-load speed. On the map all servos get the same commands;
+    the fastest gait of each kind counts. A robot flies while no part of it touches the ground.
     """
 
     title = "Could the robot gallop, and which servos would it take?"
@@ -57,15 +57,15 @@ class GallopLimits(Experiment):
     judged_from: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
-    """The robot that is to gallop."""
+    """The robot that should gallop."""
     bounds: tuple[Searched, ...] = BOUNDS
-    """Bounding gaits, each found for another servo: both front feet, then both hind feet."""
+    """Bounding gaits, each found for another servo: both front feet step together, then both hind feet."""
     trots: tuple[Searched, ...] = TROTS
-    """Trots, found by the same search with the same servos, so that a bound is not compared with a lesser effort."""
+    """Trots, found by the same search with the same servos, for an equal comparison."""
     walks: tuple[Gait, ...] = field(
-        default_factory=lambda: tuple(replace(GAITS[name], period=_HASTE) for name in ("semi_erect", "high_walk"))
+        default_factory=lambda: tuple(replace(GAITS[name], period=_FAST_PERIOD) for name in ("semi_erect", "high_walk"))
     )
-    """Walks of the shelf, at short cycle times, that a gallop must outrun too."""
+    """Walks of the catalog, at short periods, that a gallop must also outrun."""
     speeds: tuple[float, ...] = (5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 60.0)
     """No-load speeds of the servos [rad/s]; hobby servos reach 7 to 12, the last is out of any servo's reach."""
     torques: tuple[float, ...] = (1.5, 3.0, 4.9)
@@ -75,14 +75,14 @@ class GallopLimits(Experiment):
     others_over_legs: float = 2.5 / 3.0
     """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
     repeats: int = 3
-    """Robots that are built of each design: the middle of theirs counts, and no gait that only the design can [-]."""
+    """Number of robots built of each design; their median counts, so a gait must tolerate their errors [-]."""
     tolerances: Tolerances = field(default_factory=Tolerances)
-    """By how much they and their grounds differ from it."""
+    """Tolerances of the robots built of the design, and of their grounds."""
     seconds: float = 3.0
-    """Duration for which each run is measured, after a second more [s]."""
+    """Measured duration of each run, after one further second [s]."""
     timestep: float = 0.002
-    """Time step of the physics [s]; with 5 ms a bound was ahead of trot and walk with a tenth of the servos of the map,
-    with 2 ms with three tenths."""
+    """Time step of the physics [s]. A bound outran trot and walk with a tenth of the map's servos at 5 ms, and with
+    three tenths at 2 ms."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -101,12 +101,14 @@ class GallopLimits(Experiment):
         return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Bound, trot and walk with every servo on the map."""
-        searched = [("bound", one) for one in self.bounds] + [("trot", one) for one in self.trots]
+        """Simulate every gait with every servo on the map."""
+        searched = [("bound", candidate) for candidate in self.bounds] + [
+            ("trot", candidate) for candidate in self.trots
+        ]
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
-        gaits: list[Gait] = [*(one.gait for _, one in searched), *self.walks]
+        gaits: list[Gait] = [*(candidate.gait for _, candidate in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
-        robots = [self._with(torque, speed) for torque, speed in cells]
+        robots = [self._robot_with_servos(torque, speed) for torque, speed in cells]
         designed = [Run(robot=robot, gait=gait, label=gait.name) for robot in robots for gait in gaits]
         runs = self.tolerances.repeats(designed, self.repeats)
         duration = round(START + _RUN_UP + self.seconds, 2)
@@ -114,21 +116,21 @@ class GallopLimits(Experiment):
             runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
         )
         shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
-        part = between(record, START + _RUN_UP)
-        fast = abs(part.servo_velocity.isel(servo=self._legs)).quantile(0.99, "time").max("servo")
+        window = between(record, START + _RUN_UP)
+        joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
         values = {
             "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
             "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
-            "joint_speed": (fast, "rad/s", "99th percentile of the fastest leg joint"),
+            "joint_speed": (joint_speed, "rad/s", "99th percentile of the fastest leg joint"),
         }
         data = xr.Dataset(
             {
                 name: (
                     ("torque", "servo_speed", "gait"),
                     np.median(array.values.reshape(shape), axis=-1),
-                    {"units": unit, "long_name": what},
+                    {"units": unit, "long_name": long_name},
                 )
-                for name, (array, unit, what) in values.items()
+                for name, (array, unit, long_name) in values.items()
             }
             | {
                 "built_speed": (
@@ -143,27 +145,35 @@ class GallopLimits(Experiment):
                 "gait": [f"{gait.name} {gait.period:g} s" for gait in gaits],
                 "kind": ("gait", kinds),
             },
-            attrs={"own_torque": self._own.torque, "own_speed": self._own.speed},
+            attrs={"own_torque": self._leg_servo.torque, "own_speed": self._leg_servo.speed},
         )
         return Simulated(record=data, replays=self._replays(record, cells, data))
 
     @property
-    def _own(self) -> Servo:
+    def _leg_servo(self) -> Servo:
         """The servo of the legs as designed."""
         return self.robot.hind_leg.servo
 
     @property
-    def _legs(self) -> list[int]:
-        """Places of the legs' servos."""
-        place = layout(self.robot)
-        return [index for limb in place.limbs for index in range(*limb.servos.indices(len(place.servos)))]
+    def _leg_servo_indices(self) -> list[int]:
+        """Indices of the servos of the legs."""
+        body_layout = layout(self.robot)
+        return [index for limb in body_layout.limbs for index in range(*limb.servos.indices(len(body_layout.servos)))]
 
-    def _with(self, torque: float, speed: float) -> Robot:
-        """Return the robot with other servos, each with a torque-speed line."""
-        legs = {layout(self.robot).servos[index] for index in self._legs}
+    def _robot_with_servos(self, torque: float, speed: float) -> Robot:
+        """Return the robot with other servos, each with a straight torque-speed line.
+
+        Args:
+            torque: torque limit of the legs' servos [N m]; the others are in proportion.
+            speed: no-load speed of all servos [rad/s].
+        """
+        leg_servos = {layout(self.robot).servos[index] for index in self._leg_servo_indices}
 
         def over_legs(name: str) -> float:
-            return 1.0 if name in legs else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
+            """Return the torque limit of a servo over that of the legs' servos [-]."""
+            return (
+                1.0 if name in leg_servos else self.trunk_over_legs if "spine_pitch" in name else self.others_over_legs
+            )
 
         return with_named_servos(
             self.robot,
@@ -176,35 +186,44 @@ class GallopLimits(Experiment):
     def _replays(
         self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
     ) -> Mapping[str, Replay]:
-        """Return the fastest bound of all and, half transparent, the fastest with servos nearest to the robot's own."""
+        """Return the replay of the fastest bound of all, and of the fastest with servos most like the robot's own.
+
+        Args:
+            record: record of all runs.
+            cells: torque limit [N m] and no-load speed [rad/s] of each cell of the map.
+            map_of_gaits: ``speed`` (torque, servo_speed, gait) [m/s], with the ``kind`` of each gait.
+        """
         bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
-        best = int(np.argmax(bound.max(1)))
-        nearest = min(
+        best_cell = int(np.argmax(bound.max(1)))
+        nearest_cell = min(
             range(len(cells)),
             key=lambda i: (
-                abs(cells[i][0] - self._own.torque) / self._own.torque
-                + abs(cells[i][1] - self._own.speed) / self._own.speed
+                abs(cells[i][0] - self._leg_servo.torque) / self._leg_servo.torque
+                + abs(cells[i][1] - self._leg_servo.speed) / self._leg_servo.speed
             ),
         )
-        said = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best, nearest)]
-        runs = [(i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats for i in (best, nearest)]
+        servo_texts = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best_cell, nearest_cell)]
+        runs = [
+            (i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats
+            for i in (best_cell, nearest_cell)
+        ]
         return replayed(
             "gallop_replay.html",
             record.isel(run=runs[0]),
             self.robot,
             ghost=record.isel(run=runs[1]),
-            labels=tuple(said),
+            labels=tuple(servo_texts),
             title="Could it gallop?",
-            caption=f"Bounds with servos of {said[0]}, and, half transparent, of {said[1]}.",
+            caption=f"Bounds with servos of {servo_texts[0]}, and, half transparent, of {servo_texts[1]}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how fast a bound is with the robot's servos and with better ones, and from which on it pays."""
+        """Return the speed of a bound with the robot's servos and with better ones, and the speed a gallop needs."""
         bound, walks = fastest(record, "bound"), fastest(record, "trot", "walk")
-        own = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
-        own_bound, own_walk = (kind.sel(own, method="nearest") for kind in (bound, walks))
+        design_servo = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
+        own_bound, own_walk = (kind.sel(design_servo, method="nearest") for kind in (bound, walks))
         gallops = (bound.speed > walks.speed) & (bound.flight >= FLIES)
-        pays = gallops.sel(torque=own["torque"], method="nearest")
+        pays = gallops.sel(torque=design_servo["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
         return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
             {
@@ -217,15 +236,15 @@ class GallopLimits(Experiment):
                 "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
                 "torque_best": Measure(float(best.torque), "N m"),
                 "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
-                "servo_speed_own": Measure(own["servo_speed"], "rad/s"),
-                "torque_own": Measure(own["torque"], "N m"),
+                "servo_speed_own": Measure(design_servo["servo_speed"], "rad/s"),
+                "torque_own": Measure(design_servo["torque"], "N m"),
                 "servo_speed_needed": Measure(_first(pays.servo_speed.values, pays.values), "rad/s"),
                 "gallops_share": Measure(float(gallops.mean()), "-"),
             }
         )
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
-        """Draw the bound's speed and flight over the servos' speed, beside the fastest walk."""
+        """Draw speed and flight of the bound over the servos' speed, with the speed of the fastest walk."""
         bound, walks = fastest(outcome.record, "bound"), fastest(outcome.record, "trot", "walk")
         figure = captioned(
             draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
@@ -237,50 +256,59 @@ class GallopLimits(Experiment):
 
 
 FLIES = 0.1
-"""Share of the time in flight from which a bound counts as a gallop here [-]; less is a walk that stumbles."""
+"""Flight fraction from which a bound counts as a gallop [-]; with less it is a walk that stumbles."""
 
 
 def fastest(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
 
-    ``built_speed`` holds the speeds of the robots that are built of the design, whose median the speed is.
+    ``built_speed`` holds the speeds of the robots as built; their median is the speed.
 
-    A servo that could do more may be limited to what a weaker or slower one does, so a gait that was found for such a
-    one counts with all better ones too: else a bound would be compared with walks that nobody searched for its servo.
+    A better servo can be limited to the torque and speed of a weaker or slower one. A gait that is fast with the lesser
+    servo therefore counts with all better ones too. Otherwise a bound would be compared with walks that were not
+    searched for its servo.
 
     Args:
-        record: of the experiment.
+        record: record of the experiment.
         kinds: ``bound``, ``trot`` or ``walk``.
     """
-    chosen = record.isel(gait=np.isin(record.kind.values, kinds))
-    best = chosen.isel(gait=chosen.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
-    cells, (strong, fast) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
-    taken = [
+    candidates = record.isel(gait=np.isin(record.kind.values, kinds))
+    best = candidates.isel(gait=candidates.speed.argmax("gait")).transpose("torque", "servo_speed", ...)
+    cells, (torque_count, speed_count) = np.arange(best.speed.size).reshape(best.speed.shape), best.speed.shape
+    best_cells = [
         cells[: i + 1, : j + 1].ravel()[np.argmax(best.speed.values[: i + 1, : j + 1])]
-        for i in range(strong)
-        for j in range(fast)
+        for i in range(torque_count)
+        for j in range(speed_count)
     ]
     return best.assign(
         {
-            name: (best[name].dims, best[name].values.reshape(strong * fast, -1)[taken].reshape(best[name].shape))
+            name: (
+                best[name].dims,
+                best[name].values.reshape(torque_count * speed_count, -1)[best_cells].reshape(best[name].shape),
+            )
             for name in ("speed", "built_speed", "flight", "joint_speed")
         }
     )
 
 
 def _first(speeds: np.ndarray, pays: np.ndarray) -> float:
-    """Return the least speed from which on all faster ones pay too, infinite if not even the fastest does [rad/s]."""
-    from_here = np.flip(np.logical_and.accumulate(np.flip(pays)))
-    return float(speeds[from_here][0]) if from_here.any() else float("inf")
+    """Return the lowest speed from which on all faster servos pay off [rad/s]; infinite if not even the fastest does.
+
+    Args:
+        speeds: no-load speeds, increasing [rad/s].
+        pays: whether a gallop pays off at each speed.
+    """
+    all_faster_pay = np.flip(np.logical_and.accumulate(np.flip(pays)))
+    return float(speeds[all_faster_pay][0]) if all_faster_pay.any() else float("inf")
 
 
-def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figure:
+def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own_speed: float) -> Figure:
     """Draw speed [m/s] and share of flight of a bound over the servos' no-load speed [rad/s].
 
     Args:
         bound: the fastest bound, with ``speed`` and ``flight`` (torque, servo_speed).
         walk: the fastest trot or walk, the same.
-        own: no-load speed of the robot's own servos [rad/s].
+        own_speed: no-load speed of the robot's own servos [rad/s].
     """
     shades = matplotlib.colormaps["viridis"](np.linspace(0.8, 0.1, bound.sizes["torque"]))
     with styled():
@@ -296,7 +324,7 @@ def draw_gallop_limits(bound: xr.Dataset, walk: xr.Dataset, own: float) -> Figur
             ax.set_xscale("log")
             ax.set_xticks(bound.servo_speed.values, [f"{speed:g}" for speed in bound.servo_speed.values])
             ax.minorticks_off()
-            ax.axvline(own, color=COLOURS["neutral"], linewidth=1.0)
+            ax.axvline(own_speed, color=COLOURS["neutral"], linewidth=1.0)
             ax.set_xlabel("no-load speed of the servos [rad/s]")
         axes[0, 0].plot([], [], color="#333333", linestyle=(0, (4, 2)), label="fastest trot or walk")
         axes[0, 0].set_ylabel("speed forward [m/s]")

@@ -6,37 +6,44 @@ from suchus.article.paper import CLAIMS
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import BUILT, Clause, ControlGroup, Rule, Varied, between
 
-_LITTLE = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
-_MOST = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
-_ENDS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
-_ABOUT_HALF = (
+_SMALL_LOSS = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
+_LARGE_LOSS = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
+_TOTAL_LOSS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
+_HALF_LOSS = (
     Clause("", "<=", -0.4, "about half is 40 % at least"),
     Clause("", ">=", -0.7, "about half is 70 % at most"),
 )
-_INTACT = ControlGroup(
+_INTACT_GROUP = ControlGroup(
     group="coordinated", why="Section IV.C counts from the intact robot with spine and tail, of both groups."
 )
-_NOTHING = Clause("", ">=", -0.1, "almost nothing is less than a tenth")
-_SAID: dict[tuple[str, str], tuple[Clause, ...]] = {
-    ("front_yaw", "limbs_only"): (_MOST,),
-    ("front_yaw", "coordinated"): (_LITTLE,),
-    ("hind_yaw", "limbs_only"): (_MOST,),
-    ("hind_yaw", "coordinated"): (_LITTLE,),
-    ("front_pitch", "limbs_only"): (_ENDS,),
-    ("front_pitch", "coordinated"): (_ENDS,),
-    ("hind_pitch", "limbs_only"): _ABOUT_HALF,
-    ("hind_pitch", "coordinated"): (_NOTHING,),
+_NO_LOSS = Clause("", ">=", -0.1, "almost nothing is less than a tenth")
+_ARTICLE_CLAUSES: dict[tuple[str, str], tuple[Clause, ...]] = {
+    ("front_yaw", "limbs_only"): (_LARGE_LOSS,),
+    ("front_yaw", "coordinated"): (_SMALL_LOSS,),
+    ("hind_yaw", "limbs_only"): (_LARGE_LOSS,),
+    ("hind_yaw", "coordinated"): (_SMALL_LOSS,),
+    ("front_pitch", "limbs_only"): (_TOTAL_LOSS,),
+    ("front_pitch", "coordinated"): (_TOTAL_LOSS,),
+    ("hind_pitch", "limbs_only"): _HALF_LOSS,
+    ("hind_pitch", "coordinated"): (_NO_LOSS,),
 }
-"""For each joint and arm the changes of displacement of which the article's sentence is true."""
+"""For each joint and arm the bounds within which the article's sentence is true."""
 
 
-_FITTED = ("fault_front_yaw_limbs_only", "fault_hind_yaw_limbs_only")
-"""Claims whose number the fit of the two displacements makes: most of the change is what the intact robot lacks."""
-_BORNE = ("front_yaw", "hind_yaw", "hind_pitch")
-"""Joints of which the article says that less is lost with spine and tail; a front pitch joint ends both motions."""
+_FITTED_CLAIMS = ("fault_front_yaw_limbs_only", "fault_hind_yaw_limbs_only")
+"""Claims whose number follows from the fit of the two displacements: the intact robot makes most of the change."""
+_TOLERATED_JOINTS = ("front_yaw", "hind_yaw", "hind_pitch")
+"""Joints for which the article says that the loss is smaller with spine and tail; a front pitch joint stops both."""
 
 
-def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
+def _fault(joint: str, arm: str, clauses: tuple[Clause, ...]) -> Rule:
+    """Return the rule for the article's sentence on one joint and one group.
+
+    Args:
+        joint: joint that fails, as ``front_yaw``.
+        arm: ``coordinated`` or ``limbs_only``.
+        clauses: bounds of the change of displacement within which the sentence is true.
+    """
     cell = f"{joint}_limp_one"
     measure = f"loss_{cell}_{arm}"
     readings = "; ".join(
@@ -44,52 +51,57 @@ def _fault(joint: str, arm: str, said: tuple[Clause, ...]) -> Rule:
         for kind in ("limp", "locked")
         for legs in ("one", "both")
     )
-    why = f"Judged is limp, one: {{{measure}_low:+.0%}} to {{{measure}_high:+.0%}}. All readings: {readings}."
+    explanation = f"Judged is limp, one: {{{measure}_low:+.0%}} to {{{measure}_high:+.0%}}. All readings: {readings}."
     return Rule(
         claim=f"fault_{joint}_{arm}",
         experiment="joint_faults",
         measure=measure,
-        kind="fitted" if f"fault_{joint}_{arm}" in _FITTED else "measured",
-        holds=tuple(Clause(measure, one.relation, one.bound, one.why) for one in said),
-        control=_INTACT,
+        kind="fitted" if f"fault_{joint}_{arm}" in _FITTED_CLAIMS else "measured",
+        holds=tuple(Clause(measure, clause.relation, clause.bound, clause.why) for clause in clauses),
+        control=_INTACT_GROUP,
         spread=(measure,),
         of=BUILT,
-        why=(_bare(joint) if arm == "limbs_only" else "") + why,
+        why=(_limbs_only_explanation(joint) if arm == "limbs_only" else "") + explanation,
     )
 
 
-def _bare(joint: str) -> str:
-    """Return what stands beside a loss without the trunk: of its own, of the intact robot, of one with its tail up."""
+def _limbs_only_explanation(joint: str) -> str:
+    """Return the explanation of a loss with limbs only.
+
+    It compares the loss with the group's own intact displacement, with the intact robot, and with the tail lifted.
+    """
     text = (
         f"Of its own intact displacement the robot with limbs only loses {{own_loss_{joint}_limp_one_limbs_only:+.0%}};"
         " against the one with spine and tail, as the article counts, it is at {loss_intact_limbs_only:+.0%} when "
         f"intact. With its tail in the air it is at {{loss_intact_limbs_tail_lifted:+.0%}} intact and at "
         f"{{loss_{joint}_limp_one_limbs_tail_lifted:+.0%}} with the joint failed. "
     )
-    printed = CLAIMS[f"fault_{joint}_limbs_only"].value or 0.0
-    ours, bare = (CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in ("coordinated", "limbs_only"))
-    left = ours * (1.0 + printed)
-    if left <= bare:
+    printed_loss = CLAIMS[f"fault_{joint}_limbs_only"].value or 0.0
+    coordinated_distance, limbs_only_distance = (
+        CLAIMS[f"displacement_{arm}"].value or 0.0 for arm in ("coordinated", "limbs_only")
+    )
+    remaining_distance = coordinated_distance * (1.0 + printed_loss)
+    if remaining_distance <= limbs_only_distance:
         return text
     return (
-        f"{text}The article's {printed:+.0%} leave {left:.2f} m of {ours:g} m, more than the {bare:g} m of its own "
-        "intact robot. "
+        f"{text}The article's {printed_loss:+.0%} leave {remaining_distance:.2f} m of {coordinated_distance:g} m, more "
+        f"than the {limbs_only_distance:g} m of its own intact robot. "
     )
 
 
-def _borne() -> str:
-    """Return what each group loses of its own, joint by joint."""
+def _tolerance_explanation() -> str:
+    """Return the explanation of the losses of each group against its own intact robot, joint by joint."""
     rows = "; ".join(
         f"{joint.replace('_', ' ')} {{loss_{joint}_limp_one_coordinated:+.0%}} and "
         f"{{own_loss_{joint}_limp_one_limbs_only:+.0%}}, a gain of {{gain_{joint}_limp_one_low:+.0%}} to "
         f"{{gain_{joint}_limp_one_high:+.0%}}"
-        for joint in _BORNE
+        for joint in _TOLERATED_JOINTS
     )
     return f"Of its own intact displacement the robot loses with spine and tail, and with limbs only: {rows}."
 
 
 RULES = (
-    *(_fault(joint, arm, said) for (joint, arm), said in _SAID.items()),
+    *(_fault(joint, arm, clauses) for (joint, arm), clauses in _ARTICLE_CLAUSES.items()),
     Rule(
         claim="fault_support",
         experiment="joint_faults",
@@ -116,15 +128,15 @@ RULES = (
         measure="gain_front_yaw_limp_one",
         holds=tuple(
             Clause(f"gain_{joint}_limp_one", ">", 0.0, f"{joint.replace('_', ' ')}: less of its own is lost")
-            for joint in _BORNE
+            for joint in _TOLERATED_JOINTS
         ),
         control=ControlGroup(
             group="limbs_only",
             why="Section IV.C: without trunk cooperative motion. It does not say where the tail is; ours lies still.",
         ),
-        spread=tuple(f"gain_{joint}_limp_one" for joint in _BORNE),
+        spread=tuple(f"gain_{joint}_limp_one" for joint in _TOLERATED_JOINTS),
         of=BUILT,
-        why=_borne(),
+        why=_tolerance_explanation(),
     ),
 )
 
@@ -133,43 +145,64 @@ VARIED = Varied(claims=("fault_support",), designs=("robot", "gait"), settings={
 _READINGS = list(product(("limp", "locked"), ("one", "both")))
 
 
-def _loss(joint: str, arm: str, value: float, low: float | None = None, high: float | None = None) -> dict[str, float]:
-    """Return the measures of one loss: the judged one with its interval, and those that are only said."""
-    judged = f"loss_{joint}_limp_one_{arm}"
-    said = {f"loss_{joint}_{kind}_{legs}_{arm}": -0.5 for kind, legs in _READINGS}
-    said |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
-    return said | {
+def _loss(
+    joint: str, arm: str, value: float, lower_bound: float | None = None, upper_bound: float | None = None
+) -> dict[str, float]:
+    """Return example measures of one loss: the judged one with its interval, and those that the explanation names.
+
+    Args:
+        joint: joint that fails, as ``front_yaw``.
+        arm: ``coordinated`` or ``limbs_only``.
+        value: judged loss [-].
+        lower_bound: lower end of its interval [-]; the loss itself by default.
+        upper_bound: upper end of its interval [-]; the loss itself by default.
+    """
+    measure_name = f"loss_{joint}_limp_one_{arm}"
+    measures = {f"loss_{joint}_{kind}_{legs}_{arm}": -0.5 for kind, legs in _READINGS}
+    measures |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
+    return measures | {
         f"own_loss_{joint}_limp_one_limbs_only": -0.2,
         f"loss_{joint}_limp_one_limbs_tail_lifted": -0.8,
-        judged: value,
-        f"{judged}_low": value if low is None else low,
-        f"{judged}_high": value if high is None else high,
+        measure_name: value,
+        f"{measure_name}_low": value if lower_bound is None else lower_bound,
+        f"{measure_name}_high": value if upper_bound is None else upper_bound,
     }
 
 
-def _borne_by(**gains: float) -> dict[str, float]:
-    """Return the measures of what is gained, two points each way wide, a tenth where nothing is said."""
-    found: dict[str, float] = {}
-    for joint in _BORNE:
+def _gain_measures(**gains: float) -> dict[str, float]:
+    """Return example measures of the gain [-], with an interval of 0.02 to both sides; 0.1 by default."""
+    measures: dict[str, float] = {}
+    for joint in _TOLERATED_JOINTS:
         gain = gains.get(joint, 0.1)
-        found |= between(f"gain_{joint}_limp_one", gain - 0.02, gain + 0.02)
-        found |= {f"loss_{joint}_limp_one_coordinated": -0.2, f"own_loss_{joint}_limp_one_limbs_only": -0.2 - gain}
-    return found
+        measures |= between(f"gain_{joint}_limp_one", gain - 0.02, gain + 0.02)
+        measures |= {f"loss_{joint}_limp_one_coordinated": -0.2, f"own_loss_{joint}_limp_one_limbs_only": -0.2 - gain}
+    return measures
 
 
-def _carried(share: float = 0.9, rise: float = 0.001, free: float = 0.6) -> dict[str, float]:
-    """Return the measures of what carries the body, with narrow intervals."""
-    judged = {"support_share_limp": share, "com_rise_limp": rise, "foot_free_limp": free}
-    said = {"support_share_intact": 0.8, "tail_load_limp": 5.0, "foot_free_intact": 0.6, "foot_lift_limp": 0.02}
-    ends = [between(name, value - 5e-4, value + 5e-4) for name, value in judged.items()]
-    return said | {"foot_lift_intact": 0.02} | ends[0] | ends[1] | ends[2]
+def _support_measures(load_fraction: float = 0.9, rise: float = 0.001, free: float = 0.6) -> dict[str, float]:
+    """Return example measures of the support, with narrow intervals.
+
+    Args:
+        load_fraction: fraction of the load on tail, right front and left hind foot [-].
+        rise: rise of the centre of mass against the intact robot [m].
+        free: fraction of the swing in which the foot is unloaded [-].
+    """
+    judged_measures = {"support_share_limp": load_fraction, "com_rise_limp": rise, "foot_free_limp": free}
+    reported_measures = {
+        "support_share_intact": 0.8,
+        "tail_load_limp": 5.0,
+        "foot_free_intact": 0.6,
+        "foot_lift_limp": 0.02,
+    }
+    ends = [between(name, value - 5e-4, value + 5e-4) for name, value in judged_measures.items()]
+    return reported_measures | {"foot_lift_intact": 0.02} | ends[0] | ends[1] | ends[2]
 
 
 EXAMPLES: Examples = {
     "fault_front_yaw_limbs_only": [
         (_loss("front_yaw", "limbs_only", -0.80), "fitted"),
-        (_loss("front_yaw", "limbs_only", -0.7, low=-0.9, high=-0.6), "same sense"),
-        (_loss("front_yaw", "limbs_only", -0.6, low=-0.7, high=-0.49), "undecided"),
+        (_loss("front_yaw", "limbs_only", -0.7, lower_bound=-0.9, upper_bound=-0.6), "same sense"),
+        (_loss("front_yaw", "limbs_only", -0.6, lower_bound=-0.7, upper_bound=-0.49), "undecided"),
         (_loss("front_yaw", "limbs_only", -0.796), "fitted"),
         (_loss("front_yaw", "limbs_only", -0.794), "same sense"),
         (_loss("front_yaw", "limbs_only", -0.804), "fitted"),
@@ -179,8 +212,8 @@ EXAMPLES: Examples = {
     ],
     "fault_front_yaw_coordinated": [
         (_loss("front_yaw", "coordinated", -0.22), "reproduced"),
-        (_loss("front_yaw", "coordinated", -0.1, low=-0.3, high=-0.05), "same sense"),
-        (_loss("front_yaw", "coordinated", -0.3, low=-0.35, high=-0.2), "undecided"),
+        (_loss("front_yaw", "coordinated", -0.1, lower_bound=-0.3, upper_bound=-0.05), "same sense"),
+        (_loss("front_yaw", "coordinated", -0.3, lower_bound=-0.35, upper_bound=-0.2), "undecided"),
         (_loss("front_yaw", "coordinated", -0.216), "reproduced"),
         (_loss("front_yaw", "coordinated", -0.214), "same sense"),
         (_loss("front_yaw", "coordinated", -0.224), "reproduced"),
@@ -190,8 +223,8 @@ EXAMPLES: Examples = {
     ],
     "fault_hind_yaw_limbs_only": [
         (_loss("hind_yaw", "limbs_only", -0.75), "fitted"),
-        (_loss("hind_yaw", "limbs_only", -0.7, low=-0.9, high=-0.6), "same sense"),
-        (_loss("hind_yaw", "limbs_only", -0.6, low=-0.7, high=-0.49), "undecided"),
+        (_loss("hind_yaw", "limbs_only", -0.7, lower_bound=-0.9, upper_bound=-0.6), "same sense"),
+        (_loss("hind_yaw", "limbs_only", -0.6, lower_bound=-0.7, upper_bound=-0.49), "undecided"),
         (_loss("hind_yaw", "limbs_only", -0.746), "fitted"),
         (_loss("hind_yaw", "limbs_only", -0.744), "same sense"),
         (_loss("hind_yaw", "limbs_only", -0.754), "fitted"),
@@ -201,8 +234,8 @@ EXAMPLES: Examples = {
     ],
     "fault_hind_yaw_coordinated": [
         (_loss("hind_yaw", "coordinated", -0.17), "reproduced"),
-        (_loss("hind_yaw", "coordinated", -0.1, low=-0.3, high=-0.05), "same sense"),
-        (_loss("hind_yaw", "coordinated", -0.3, low=-0.35, high=-0.2), "undecided"),
+        (_loss("hind_yaw", "coordinated", -0.1, lower_bound=-0.3, upper_bound=-0.05), "same sense"),
+        (_loss("hind_yaw", "coordinated", -0.3, lower_bound=-0.35, upper_bound=-0.2), "undecided"),
         (_loss("hind_yaw", "coordinated", -0.166), "reproduced"),
         (_loss("hind_yaw", "coordinated", -0.164), "same sense"),
         (_loss("hind_yaw", "coordinated", -0.174), "reproduced"),
@@ -213,8 +246,8 @@ EXAMPLES: Examples = {
     **{
         f"fault_front_pitch_{arm}": [
             (_loss("front_pitch", arm, -1.0), "reproduced"),
-            (_loss("front_pitch", arm, -0.95, low=-1.1, high=-0.92), "same sense"),
-            (_loss("front_pitch", arm, -0.95, low=-1.1, high=-0.89), "undecided"),
+            (_loss("front_pitch", arm, -0.95, lower_bound=-1.1, upper_bound=-0.92), "same sense"),
+            (_loss("front_pitch", arm, -0.95, lower_bound=-1.1, upper_bound=-0.89), "undecided"),
             (_loss("front_pitch", arm, -0.996), "reproduced"),
             (_loss("front_pitch", arm, -0.994), "same sense"),
             (_loss("front_pitch", arm, -1.004), "reproduced"),
@@ -226,8 +259,8 @@ EXAMPLES: Examples = {
     },
     "fault_hind_pitch_limbs_only": [
         (_loss("hind_pitch", "limbs_only", -0.55), "reproduced"),
-        (_loss("hind_pitch", "limbs_only", -0.5, low=-0.6, high=-0.45), "same sense"),
-        (_loss("hind_pitch", "limbs_only", -0.5, low=-0.6, high=-0.39), "undecided"),
+        (_loss("hind_pitch", "limbs_only", -0.5, lower_bound=-0.6, upper_bound=-0.45), "same sense"),
+        (_loss("hind_pitch", "limbs_only", -0.5, lower_bound=-0.6, upper_bound=-0.39), "undecided"),
         (_loss("hind_pitch", "limbs_only", -0.546), "reproduced"),
         (_loss("hind_pitch", "limbs_only", -0.544), "same sense"),
         (_loss("hind_pitch", "limbs_only", -0.554), "reproduced"),
@@ -240,8 +273,8 @@ EXAMPLES: Examples = {
     ],
     "fault_hind_pitch_coordinated": [
         (_loss("hind_pitch", "coordinated", 0.0), "reproduced"),
-        (_loss("hind_pitch", "coordinated", -0.05, low=-0.06, high=0.06), "same sense"),
-        (_loss("hind_pitch", "coordinated", -0.05, low=-0.11, high=0.0), "undecided"),
+        (_loss("hind_pitch", "coordinated", -0.05, lower_bound=-0.06, upper_bound=0.06), "same sense"),
+        (_loss("hind_pitch", "coordinated", -0.05, lower_bound=-0.11, upper_bound=0.0), "undecided"),
         (_loss("hind_pitch", "coordinated", -0.004), "reproduced"),
         (_loss("hind_pitch", "coordinated", -0.006), "same sense"),
         (_loss("hind_pitch", "coordinated", 0.004), "reproduced"),
@@ -250,22 +283,22 @@ EXAMPLES: Examples = {
         (_loss("hind_pitch", "coordinated", -0.101), "contradicted"),
     ],
     "fault_support": [
-        (_carried(), "reproduced"),
-        (_carried(share=0.505), "reproduced"),
-        (_carried(share=0.5), "undecided"),
-        (_carried(share=0.495), "contradicted"),
-        (_carried(rise=0.0001), "undecided"),
-        (_carried(rise=-0.001), "contradicted"),
-        (_carried(free=0.505), "reproduced"),
-        (_carried(free=0.5), "undecided"),
-        (_carried(free=0.495), "contradicted"),
+        (_support_measures(), "reproduced"),
+        (_support_measures(load_fraction=0.505), "reproduced"),
+        (_support_measures(load_fraction=0.5), "undecided"),
+        (_support_measures(load_fraction=0.495), "contradicted"),
+        (_support_measures(rise=0.0001), "undecided"),
+        (_support_measures(rise=-0.001), "contradicted"),
+        (_support_measures(free=0.505), "reproduced"),
+        (_support_measures(free=0.5), "undecided"),
+        (_support_measures(free=0.495), "contradicted"),
     ],
     "fault_tolerance": [
-        (_borne_by(), "reproduced"),
-        *((_borne_by(**{joint: 0.021}), "reproduced") for joint in _BORNE),
-        *((_borne_by(**{joint: 0.0}), "undecided") for joint in _BORNE),
-        *((_borne_by(**{joint: -0.021}), "contradicted") for joint in _BORNE),
-        (_borne_by(front_yaw=0.0, hind_pitch=-0.021), "contradicted"),
-        (_borne_by(front_yaw=float("nan")), "not testable"),
+        (_gain_measures(), "reproduced"),
+        *((_gain_measures(**{joint: 0.021}), "reproduced") for joint in _TOLERATED_JOINTS),
+        *((_gain_measures(**{joint: 0.0}), "undecided") for joint in _TOLERATED_JOINTS),
+        *((_gain_measures(**{joint: -0.021}), "contradicted") for joint in _TOLERATED_JOINTS),
+        (_gain_measures(front_yaw=0.0, hind_pitch=-0.021), "contradicted"),
+        (_gain_measures(front_yaw=float("nan")), "not testable"),
     ],
 }

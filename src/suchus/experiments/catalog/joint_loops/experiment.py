@@ -25,15 +25,15 @@ from suchus.sim.metrics import between, displacement, whole
 from suchus.visual.figures import captioned
 
 TESTS = ("step", "load", "let_go")
-"""A step without load, a load without a step, and a step while the joint is clamped, which is then released."""
-_GRIPPED = 100  # [control period]; long enough for the integral to reach its limit
+"""A step without load, a load without a step, and a step of a clamped joint that is then released."""
+_CLAMP_PERIODS = 100  # [control period]; long enough for the integral to reach its limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointLoops(Experiment):
     """The PID loop of one joint on a stand, then all of them in the crawl, with several integral gains.
 
-    It needs a robot one of whose servos turns the named joint directly, and a gait that the robot can crawl.
+    The robot needs a servo that turns the named joint directly, and a gait with which it can crawl.
     """
 
     title = "What does an integral term in the joint controllers improve, and what does it cost?"
@@ -61,7 +61,7 @@ class JointLoops(Experiment):
     step: float = radians(10.0)
     """Height of the step [rad]."""
     seconds: float = 4.0
-    """Duration for which the joint is watched after each change [s]."""
+    """Simulated duration after each change [s]."""
     cycles: int = int(CYCLES)
     """Number of cycles of the crawl that are measured [-]."""
 
@@ -84,15 +84,15 @@ class JointLoops(Experiment):
         return {"gait": own_gait(robot), "joint": servos[min(1, len(servos) - 1)]}
 
     def simulate(self, progress: Progress = silent) -> Simulated:
-        """Crawl with every gain, then load the joint on the stand with what the crawl asks of it."""
+        """Simulate the crawl with every gain, then the joint on the stand under the load of the crawl."""
         robots = [with_servos(self.robot, partial(replace, ki=ki)) for ki in self.integrals]
-        crawls = whole(xr.concat([self._crawled(i, robot, progress) for i, robot in enumerate(robots)], "run"))
+        crawls = whole(xr.concat([self._crawl_record(i, robot, progress) for i, robot in enumerate(robots)], "run"))
         walk = between(crawls)
         load = float(np.sqrt((walk.servo_torque.isel(run=0).sel(servo=self.joint) ** 2).mean()))
         data = _tracking(walk, self.robot, displacement(crawls).sel(xyz="x").values)
         progress("stand", 0.7)
         step = physics_step(self.robot)
-        data["angle"] = (("test", "ki", "time"), np.array(self._tested(robots, load)), {"units": "rad"})
+        data["angle"] = (("test", "ki", "time"), np.array(self._stand_angles(robots, load)), {"units": "rad"})
         data = data.assign_coords(
             ki=("ki", list(self.integrals), {"units": "N m/(rad s)", "long_name": "integral gain"}),
             test=list(TESTS),
@@ -105,66 +105,77 @@ class JointLoops(Experiment):
     @property
     def gripped(self) -> float:
         """Duration for which the joint is clamped, a second for the article's robot [s]."""
-        return _GRIPPED * control_period(self.robot)
+        return _CLAMP_PERIODS * control_period(self.robot)
 
-    def _crawled(self, number: int, robot: Robot, progress: Progress) -> xr.Dataset:
-        """Return the crawl with one of the gains; servos with and without an integral share no batch."""
-        run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[number]:g}")
-        share = 0.7 / len(self.integrals)
-        stage = staged(progress, "crawl", number * share, (number + 1) * share)
+    def _crawl_record(self, index: int, robot: Robot, progress: Progress) -> xr.Dataset:
+        """Simulate the crawl with one of the gains; servos with and without an integral term cannot share a batch.
+
+        Args:
+            index: index of the gain.
+            robot: robot whose servos have this gain.
+            progress: callback that gets the finished fraction.
+        """
+        run = Run(robot=robot, gait=self.gait, label=f"ki {self.integrals[index]:g}")
+        stage_length = 0.7 / len(self.integrals)
+        stage = staged(progress, "crawl", index * stage_length, (index + 1) * stage_length)
         return simulate([run], duration=START + self.cycles * self.gait.period, progress=stage)
 
-    def _tested(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
-        """Return the joint's angle in each test with each gain [rad]."""
+    def _stand_angles(self, robots: list[Robot], load: float) -> list[list[np.ndarray]]:
+        """Return the joint's angle over time in each of ``TESTS`` with each gain [rad].
+
+        Args:
+            robots: robots with one integral gain each.
+            load: load of the second test [N m].
+        """
         step = physics_step(self.robot)
-        free, held = round(self.seconds / step), round(self.gripped / step)
-        none, stepped = np.zeros(free), np.full(free, self.step)
-        never = np.zeros(free, dtype=bool)
+        free_steps, clamp_steps = round(self.seconds / step), round(self.gripped / step)
+        zeros, step_target = np.zeros(free_steps), np.full(free_steps, self.step)
+        no_clamp = np.zeros(free_steps, dtype=bool)
         angles: list[list[np.ndarray]] = [[], [], []]
         for robot in robots:
-            step_test = on_stand(robot, self.joint, target=stepped, load=none, gripped=never, timestep=step)
-            load_test = on_stand(robot, self.joint, target=none, load=none + load, gripped=never, timestep=step)
+            step_test = on_stand(robot, self.joint, target=step_target, load=zeros, gripped=no_clamp, timestep=step)
+            load_test = on_stand(robot, self.joint, target=zeros, load=zeros + load, gripped=no_clamp, timestep=step)
             release_test = on_stand(
                 robot,
                 self.joint,
-                target=np.full(held + free, self.step),
-                load=np.zeros(held + free),
-                gripped=np.arange(held + free) < held,
+                target=np.full(clamp_steps + free_steps, self.step),
+                load=np.zeros(clamp_steps + free_steps),
+                gripped=np.arange(clamp_steps + free_steps) < clamp_steps,
                 timestep=step,
             )
-            for of_test, angle in zip(
-                angles, (step_test.angle, load_test.angle, release_test.angle[held:]), strict=True
+            for test_angles, angle in zip(
+                angles, (step_test.angle, load_test.angle, release_test.angle[clamp_steps:]), strict=True
             ):
-                of_test.append(angle)
+                test_angles.append(angle)
         return angles
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return rise time, overshoot, droop and wind-up of each gain, and the errors of the crawl."""
-        step, last = record.attrs["step"], len(record.ki) - 1
+        step, last_gain = record.attrs["step"], len(record.ki) - 1
         measures = Measures()
         for i, ki in enumerate(record.ki.values):
-            with_gain, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
+            gain_record, name = record.isel(ki=i), f"ki_{ki:g}".replace(".", "_")
             measures |= {
                 f"rise_time_{name}": Measure(
-                    rise_time(record.time.values, with_gain.angle.sel(test="step").values, step), "s"
+                    rise_time(record.time.values, gain_record.angle.sel(test="step").values, step), "s"
                 ),
-                f"overshoot_{name}": Measure(overshoot(with_gain.angle.sel(test="step").values, step), "-"),
-                f"overshoot_let_go_{name}": Measure(overshoot(with_gain.angle.sel(test="let_go").values, step), "-"),
-                f"droop_{name}": Measure(abs(float(with_gain.angle.sel(test="load")[-1])), "rad"),
-                f"tracking_error_{name}": Measure(float(np.sqrt(with_gain.error_ms.mean())), "rad"),
-                f"forward_{name}": Measure(float(with_gain.forward), "m"),
+                f"overshoot_{name}": Measure(overshoot(gain_record.angle.sel(test="step").values, step), "-"),
+                f"overshoot_let_go_{name}": Measure(overshoot(gain_record.angle.sel(test="let_go").values, step), "-"),
+                f"droop_{name}": Measure(abs(float(gain_record.angle.sel(test="load")[-1])), "rad"),
+                f"tracking_error_{name}": Measure(float(np.sqrt(gain_record.error_ms.mean())), "rad"),
+                f"forward_{name}": Measure(float(gain_record.forward), "m"),
             }
-        tail = record.angle.isel(ki=last).sel(time=slice(record.time[-1] - 0.5, None))
+        final_interval = record.angle.isel(ki=last_gain).sel(time=slice(record.time[-1] - 0.5, None))
         droops = np.abs(record.angle.sel(test="load").isel(time=-1))
         total = float(record.error_ms.isel(ki=0).sum())
         by_load = 1.0 - float(record.less_droop_ms.sum()) / total
         return measures | {
             "load": Measure(record.attrs["load"], "N m"),
             "droop_by_kp": Measure(record.attrs["load"] / record.attrs["kp"], "rad"),
-            "droop_taken": Measure(1.0 - float(droops[last] / droops[0]), "-"),
-            "load_error_pid": Measure(float(droops[last]), "rad"),
-            "step_error_pid": Measure(abs(float(tail.sel(test="step")[-1]) - step), "rad"),
-            "ripple_pid": Measure(float((tail.max("time") - tail.min("time")).max()), "rad"),
+            "droop_taken": Measure(1.0 - float(droops[last_gain] / droops[0]), "-"),
+            "load_error_pid": Measure(float(droops[last_gain]), "rad"),
+            "step_error_pid": Measure(abs(float(final_interval.sel(test="step")[-1]) - step), "rad"),
+            "ripple_pid": Measure(float((final_interval.max("time") - final_interval.min("time")).max()), "rad"),
             "tracking_by_droop": Measure(by_load, "-"),
             "tracking_by_damping": Measure(1.0 - float(record.less_both_ms.sum()) / total - by_load, "-"),
         }
@@ -188,33 +199,39 @@ class JointLoops(Experiment):
 
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:
-    """Return how long an angle takes from a tenth to nine tenths of a step, NaN if it never gets there [s]."""
-    passed = [np.flatnonzero(angle >= share * step) for share in (0.1, 0.9)]
-    return float(time[passed[1][0]] - time[passed[0][0]]) if passed[1].size else float("nan")
+    """Return the time that an angle takes from a tenth to nine tenths of a step [s]; NaN if it does not get there.
+
+    Args:
+        time: times of the samples [s].
+        angle: angle over time [rad].
+        step: height of the step [rad].
+    """
+    crossings = [np.flatnonzero(angle >= fraction * step) for fraction in (0.1, 0.9)]
+    return float(time[crossings[1][0]] - time[crossings[0][0]]) if crossings[1].size else float("nan")
 
 
 def overshoot(angle: np.ndarray, step: float) -> float:
-    """Return by which share of a step an angle goes beyond it, zero if it does not [-]."""
+    """Return the fraction of a step by which an angle exceeds it [-]; zero if it does not."""
     return max(float(angle.max()) / step - 1.0, 0.0)
 
 
 def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset:
-    """Return what the crawls left of their commands, and what droop and damping account for.
+    """Return the tracking errors of the crawls, and the errors that remain without droop and without damping.
 
-    Without an integral term a servo's torque is kp times what its angle lacks of its own, slew-limited target, less kd
-    times its speed: the torque over kp is what it sags by, kd over kp times the speed what it lags by.
+    Without an integral term a servo's torque is kp times its angle error, measured from its slew-limited target, minus
+    kd times its speed. The torque over kp is therefore the droop, and kd over kp times the speed is the lag.
 
     Args:
-        walk: of one run for each gain, the first without an integral term.
-        robot: whose gains the runs share.
+        walk: record with one run for each gain, the first without an integral term.
+        robot: robot whose gains kp and kd the runs share.
         forward: displacement of each run [m].
     """
     names = layout(robot).servos
     kp, kd = (xr.DataArray([getattr(robot.servo(n), gain) for n in names], dims="servo") for gain in ("kp", "kd"))
     walk = walk.sel(servo=list(names))
     error = walk.servo_target - walk.servo_angle
-    first = walk.isel(run=0)
-    droop = first.servo_torque / kp
+    first_run = walk.isel(run=0)
+    droop = first_run.servo_torque / kp
     less_droop = error.isel(run=0) - droop
     squared = {"units": "rad2"}
     data = xr.Dataset(
@@ -223,7 +240,7 @@ def _tracking(walk: xr.Dataset, robot: Robot, forward: np.ndarray) -> xr.Dataset
             "less_droop_ms": ("servo", (less_droop**2).mean("time").values, squared),
             "less_both_ms": (
                 "servo",
-                ((less_droop - kd / kp * first.servo_velocity) ** 2).mean("time").values,
+                ((less_droop - kd / kp * first_run.servo_velocity) ** 2).mean("time").values,
                 squared,
             ),
             "crawl_error": (

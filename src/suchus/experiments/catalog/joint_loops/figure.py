@@ -1,4 +1,4 @@
-"""Servos on a stand and in the crawl: steps, loads, wind-up, and what is left of the commands."""
+"""Servos on a stand and in the crawl: steps, loads, wind-up, and tracking errors."""
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ _KINDS = {
     "tail_pitch": "tail pitch",
     "tail_cable": "tail cable",
 }
-"""How servos of a kind are called, and how they are written."""
+"""Kinds of servos, and their labels in the figure."""
 
 
 def on_stand(record: xr.Dataset) -> Figure:
@@ -39,14 +39,14 @@ def on_stand(record: xr.Dataset) -> Figure:
                 style = {"color": _SHADES[i % len(_SHADES)], "linestyle": _DASHES[i % len(_DASHES)]}
                 angle = np.degrees(record.angle.sel(test=test).isel(ki=i))
                 ax.plot(record.time, angle, label=f"$k_i$ = {ki:g} N m/(rad s)", **style)
-            aim = 0.0 if test == "load" else np.degrees(record.attrs["step"])
-            ax.axhline(aim, color=COLOURS["neutral"], linewidth=0.9, linestyle=":")
+            target = 0.0 if test == "load" else np.degrees(record.attrs["step"])
+            ax.axhline(target, color=COLOURS["neutral"], linewidth=0.9, linestyle=":")
             ax.set(title=_TITLES[test], xlabel="time [s]")
-        pace = float(record.attrs["gripped"])  # a second for the article's robot
-        axes[0, 0].set_xlim(0.0, 0.25 * pace)
+        clamp_duration = float(record.attrs["gripped"])  # a second for the article's robot
+        axes[0, 0].set_xlim(0.0, 0.25 * clamp_duration)
         axes[0, 0].set_ylabel("angle [deg]")
         axes[0, 1].set_title(f"a load of {record.attrs['load']:.{2 if record.attrs['load'] > 0.05 else 7}f} N m")
-        axes[0, 2].set_xlim(0.0, 1.0 * pace)
+        axes[0, 2].set_xlim(0.0, 1.0 * clamp_duration)
         axes[0, 0].legend(loc="lower right")
     return figure
 
@@ -75,12 +75,12 @@ def tracking(record: xr.Dataset) -> Figure:
         ax.margins(y=0.25)
         ax.legend(loc="upper right", ncols=2)
         ax, width = axes[1, 0], 0.8 / record.sizes["ki"]
-        kinds = {kind: servos for kind in _KINDS if (servos := _of(record, kind))}
+        kinds = {kind: servos for kind in _KINDS if (servos := _servos_of_kind(record, kind))}
         for i, ki in enumerate(record.ki.values):
             squared = [float(record.error_ms.isel(ki=i).sel(servo=servos).mean()) for servos in kinds.values()]
-            places = np.arange(len(kinds)) + (i - 0.5 * (record.sizes["ki"] - 1)) * width
+            positions = np.arange(len(kinds)) + (i - 0.5 * (record.sizes["ki"] - 1)) * width
             label = f"$k_i$ = {ki:g} N m/(rad s)"
-            ax.bar(places, np.degrees(np.sqrt(squared)), 0.92 * width, color=_SHADES[i % len(_SHADES)], label=label)
+            ax.bar(positions, np.degrees(np.sqrt(squared)), 0.92 * width, color=_SHADES[i % len(_SHADES)], label=label)
         ax.set_xticks(range(len(kinds)), [_KINDS[kind].replace(" ", "\n") for kind in kinds])
         ax.grid(visible=False, axis="x")
         ax.set(title="all servos", ylabel="error, root mean square [deg]")
@@ -88,8 +88,8 @@ def tracking(record: xr.Dataset) -> Figure:
     return figure
 
 
-def _of(record: xr.Dataset, kind: str) -> list[str]:
-    """Return the servos of a kind: of the legs those that end so, of spine and tail those that begin so."""
+def _servos_of_kind(record: xr.Dataset, kind: str) -> list[str]:
+    """Return the servos of a kind: leg servos whose names end with it, or axis servos whose names begin with it."""
     legs = "_" not in kind
     names = [str(name) for name in record.servo.values]
     return [n for n in names if (n.endswith(f"_{kind}") and n[0] in "LR" if legs else n.startswith(kind))]

@@ -5,7 +5,7 @@ from math import radians
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, Rule, Varied
 
-_DEAD = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
+_DEAD_BAND_REASON = "the dead band of a digital hobby servo: 3 us of 2 000 us for 270 degrees"
 
 RULES = (
     Rule(
@@ -13,9 +13,11 @@ RULES = (
         experiment="joint_loops",
         measure="load_error_pid",
         holds=(
-            Clause("load_error_pid", "<=", radians(0.4), f"a joint that walks bears a load; {_DEAD}"),
-            Clause("step_error_pid", "<=", radians(0.4), _DEAD),
-            Clause("ripple_pid", "<=", radians(0.4), f"a loop that still swings by more is not stable; {_DEAD}"),
+            Clause("load_error_pid", "<=", radians(0.4), f"a joint that walks bears a load; {_DEAD_BAND_REASON}"),
+            Clause("step_error_pid", "<=", radians(0.4), _DEAD_BAND_REASON),
+            Clause(
+                "ripple_pid", "<=", radians(0.4), f"a loop that still swings by more is not stable; {_DEAD_BAND_REASON}"
+            ),
             Clause("droop_taken", ">=", 0.1, "an integral that takes less than a tenth of the droop away is none"),
         ),
         why="With the greatest integral gain tried {load_error_pid:deg.2f} degrees remain under {load:.2f} N m, the "

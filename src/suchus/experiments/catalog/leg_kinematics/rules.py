@@ -3,7 +3,7 @@
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, Rule
 
-_BUILT = "A count of the robot that was built so; nothing is simulated."
+_COUNT_REASON = "A count of the robot that was built so; nothing is simulated."
 
 RULES = (
     Rule(
@@ -31,16 +31,16 @@ RULES = (
         experiment="leg_kinematics",
         measure="leg_servos",
         kind="construction",
-        why=f"{_BUILT} theta4 of Table I has no servo.",
-        unswept=_BUILT,
+        why=f"{_COUNT_REASON} theta4 of Table I has no servo.",
+        unswept=_COUNT_REASON,
     ),
     Rule(
         claim="actuator_count",
         experiment="leg_kinematics",
         measure="actuators",
         kind="construction",
-        why=f"{_BUILT} It follows the counts of III.D; those of II.B and III.A add up to 14, 18 or 23.",
-        unswept=_BUILT,
+        why=f"{_COUNT_REASON} It follows the counts of III.D; those of II.B and III.A add up to 14, 18 or 23.",
+        unswept=_COUNT_REASON,
     ),
 )
 
