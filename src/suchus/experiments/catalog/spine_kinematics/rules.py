@@ -5,7 +5,7 @@ from suchus.article.verdict.rule import Clause, Rule
 
 EXACT = 1e-9
 """Greatest error that counts as rounding, as a share of the length [-]."""
-_BUILT = "A count of the robot that was built so; nothing is simulated."
+_CONSTRUCTION_NOTE = "A count of the robot that was built so; nothing is simulated."
 
 
 def _count(claim: str) -> Rule:
@@ -14,8 +14,8 @@ def _count(claim: str) -> Rule:
         experiment="spine_kinematics",
         measure=claim,
         kind="construction",
-        why=f"{_BUILT} Yaw and pitch joints take turns, beginning with yaw.",
-        unswept=_BUILT,
+        why=f"{_CONSTRUCTION_NOTE} Yaw and pitch joints take turns, beginning with yaw.",
+        unswept=_CONSTRUCTION_NOTE,
     )
 
 
