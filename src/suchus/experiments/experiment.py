@@ -52,8 +52,8 @@ class Measures(dict[str, Measure]):
 
     def __init__(self, *parts: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> None:
         super().__init__()
-        for part in parts:
-            self |= part
+        for group in parts:
+            self |= group
 
     def __setitem__(self, name: str, measure: Measure) -> None:
         """Add a number.
@@ -62,29 +62,29 @@ class Measures(dict[str, Measure]):
             AmbiguousName: there is one of that name.
         """
         if name in self:
-            there, new = (f"{one.value:g} {one.unit}" for one in (self[name], measure))
-            raise AmbiguousName("measure", name, there, new)
+            existing_text, new_text = (f"{number.value:g} {number.unit}" for number in (self[name], measure))
+            raise AmbiguousName("measure", name, existing_text, new_text)
         super().__setitem__(name, measure)
 
-    def __ior__(self, other: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
-        for name, measure in other.items() if isinstance(other, Mapping) else other:
+    def __ior__(self, numbers: Mapping[str, Measure] | Iterable[tuple[str, Measure]]) -> Self:  # type: ignore[override]
+        for name, measure in numbers.items() if isinstance(numbers, Mapping) else numbers:
             self[name] = measure
         return self
 
-    def __or__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
-        return Measures(self, other)
+    def __or__(self, numbers: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(self, numbers)
 
-    def __ror__(self, other: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
-        return Measures(other, self)
+    def __ror__(self, numbers: Mapping[str, Measure]) -> "Measures":  # type: ignore[override]
+        return Measures(numbers, self)
 
-    def update(self, *parts: Any, **named: Measure) -> None:
+    def update(self, *parts: Any, **measures: Measure) -> None:
         """Add numbers, as ``|=``."""
-        self |= Measures(*parts, named)
+        self |= Measures(*parts, measures)
 
 
 _RESAMPLES = 2000
 """Number of times an ensemble is drawn anew for an interval [-]."""
-_COVERED = 0.95
+_CONFIDENCE = 0.95
 """Share of the resamples whose middle lies in the interval [-]."""
 
 
@@ -102,22 +102,24 @@ def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] 
         middle: median or mean, along an axis.
     """
     values = np.asarray(repeats, float).ravel()
-    found = float(middle(values, axis=-1))
+    center = float(middle(values, axis=-1))
     if np.isfinite(values).all():
-        low, high = np.quantile(middle(values[_drawn(values.size)], axis=-1), [(1 - _COVERED) / 2, (1 + _COVERED) / 2])
+        lower_bound, upper_bound = np.quantile(
+            middle(values[_resample_indices(values.size)], axis=-1), [(1 - _CONFIDENCE) / 2, (1 + _CONFIDENCE) / 2]
+        )
     else:
-        low = high = found
+        lower_bound = upper_bound = center
     return Measures(
         {
-            name: Measure(found, unit),
-            f"{name}_low": Measure(float(min(low, found)), unit),
-            f"{name}_high": Measure(float(max(high, found)), unit),
+            name: Measure(center, unit),
+            f"{name}_low": Measure(float(min(lower_bound, center)), unit),
+            f"{name}_high": Measure(float(max(upper_bound, center)), unit),
         }
     )
 
 
 @cache
-def _drawn(count: int) -> np.ndarray:
+def _resample_indices(count: int) -> np.ndarray:
     """Return which repeats each resample holds."""
     return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
 
@@ -129,8 +131,8 @@ def ranged(name: str, value: Any, repeats: Any, unit: str) -> Measures:
 
 def ends(name: str, values: Any, unit: str) -> Measures:
     """Return the least and the greatest of some values as ``NAME_low`` and ``NAME_high``."""
-    low, high = (Measure(float(end(values)), unit) for end in (np.min, np.max))
-    return Measures({f"{name}_low": low, f"{name}_high": high})
+    minimum, maximum = (Measure(float(end(values)), unit) for end in (np.min, np.max))
+    return Measures({f"{name}_low": minimum, f"{name}_high": maximum})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -249,7 +251,7 @@ class Experiment(ABC):
             return Outcome(
                 experiment=self.name(),
                 measures=measures,
-                verdicts=() if unjudged else self._judged(numbers, simulated.record),
+                verdicts=() if unjudged else self._judge_claims(numbers, simulated.record),
                 record=simulated.record,
                 settings=self.settings(),
                 tables=simulated.tables,
@@ -262,22 +264,24 @@ class Experiment(ABC):
             )
 
     def _check_names(self) -> None:
-        for one in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, one.name)
-            held = value if isinstance(value, tuple) else ()
-            names = [part if isinstance(part, str) else part.name for part in held if isinstance(part, (str, Gait))]
-            twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-            if twice:
+        for parameter in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, parameter.name)
+            entries = value if isinstance(value, tuple) else ()
+            names = [
+                entry if isinstance(entry, str) else entry.name for entry in entries if isinstance(entry, (str, Gait))
+            ]
+            duplicates = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+            if duplicates:
                 raise InvalidDesign(
-                    f"{self.name()}.{one.name} has {' and '.join(map(repr, twice))} more than once; leave one out, or "
-                    f"give it another name."
+                    f"{self.name()}.{parameter.name} has {' and '.join(map(repr, duplicates))} more than once; leave "
+                    f"one out, or give it another name."
                 )
 
     @abstractmethod
     def simulate(self, progress: Progress = silent) -> Simulated:
         """Do what is to be measured, and return the record of it."""
 
-    def _judged(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
+    def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
         unable = self.unable(record)
         return tuple(judge(rule, numbers, unable=unable) for rule in self.rules())
 
@@ -352,22 +356,28 @@ class Experiment(ABC):
             UnsuitedRobot: the robot lacks what the experiment needs, or no gait on the shelf suits it.
         """
         check_needs(robot, self.needs, self.name())
-        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        names = [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
         if "robot" not in names:
             return self
         values = {name: getattr(self, name) for name in names}
-        here: Robot = values["robot"]
+        current_robot: Robot = values["robot"]
         gaits = [gait for value in values.values() for gait in _gaits(value)]
-        alike = control_period(robot) == control_period(here) and (not gaits or own_gait(robot) == own_gait(here))
-        if alike and all(suits(robot, gait) for gait in gaits):
+        is_similar = control_period(robot) == control_period(current_robot) and (
+            not gaits or own_gait(robot) == own_gait(current_robot)
+        )
+        if is_similar and all(suits(robot, gait) for gait in gaits):
             return replace(self, robot=robot)  # type: ignore[type-var]
         plain = [name for name, value in values.items() if name != "robot" and not _gaits(value)]
-        sized = scaled_fields(self, plain, length_factor=robot.length / here.length, mass_factor=robot.mass / here.mass)
-        finer = coarse_step(robot) / coarse_step(here)  # time steps divide the control period
+        sized = scaled_fields(
+            self, plain, length_factor=robot.length / current_robot.length, mass_factor=robot.mass / current_robot.mass
+        )
+        step_ratio = coarse_step(robot) / coarse_step(current_robot)  # time steps divide the control period
         for name in names:
             if "timestep" in name:
                 value = values[name]
-                sized[name] = tuple(finer * one for one in value) if isinstance(value, tuple) else finer * value
+                sized[name] = (
+                    tuple(step_ratio * step for step in value) if isinstance(value, tuple) else step_ratio * value
+                )
         return replace(self, robot=robot, **(sized | self.gaits_on(robot)))  # type: ignore[type-var]
 
     def gaits_on(self, robot: Robot) -> dict[str, Any]:
@@ -378,32 +388,37 @@ class Experiment(ABC):
         Raises:
             UnsuitedRobot: no gait on the shelf suits it.
         """
-        here: Robot = self.robot  # type: ignore[attr-defined]
-        own, names = own_gait(robot), [one.name for one in fields(self)]  # type: ignore[arg-type]
-        held = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
-        if own.name == own_gait(here).name:
-            sized = {name: tuple(in_size(gait, robot, here) for gait in _gaits(value)) for name, value in held.items()}
+        current_robot: Robot = self.robot  # type: ignore[attr-defined]
+        default_gait, names = own_gait(robot), [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
+        gait_settings = {name: getattr(self, name) for name in names if _gaits(getattr(self, name))}
+        if default_gait.name == own_gait(current_robot).name:
+            sized = {
+                name: tuple(in_size(gait, robot, current_robot) for gait in _gaits(value))
+                for name, value in gait_settings.items()
+            }
             if all(suits(robot, gait) for gaits in sized.values() for gait in gaits):
-                return {name: gaits if isinstance(held[name], tuple) else gaits[0] for name, gaits in sized.items()}
-        found = {"gait": own, "gaits": (own,)}
-        return {name: value for name, value in found.items() if name in names}
+                return {
+                    name: gaits if isinstance(gait_settings[name], tuple) else gaits[0] for name, gaits in sized.items()
+                }
+        gait_fields = {"gait": default_gait, "gaits": (default_gait,)}
+        return {name: value for name, value in gait_fields.items() if name in names}
 
     def unjudged(self) -> str:
         """Return why a run with these settings gets no verdicts, in a sentence; empty if it does."""
         if not self.rules():
             return ""
-        shelf = type(self)()
+        default = type(self)()
         for name in self.judged_with:
-            if hasattr(self, name) and getattr(self, name) != getattr(shelf, name):
-                here, there = (_called(getattr(one, name)) for one in (self, shelf))
-                here = f"another {here}" if here == there else here
-                return f"Not judged: {name} is {here}, and its claims are judged with {there}."
-        for name, least in self.judged_from.items():
+            if hasattr(self, name) and getattr(self, name) != getattr(default, name):
+                current_text, required_text = (_short_name(getattr(question, name)) for question in (self, default))
+                current_text = f"another {current_text}" if current_text == required_text else current_text
+                return f"Not judged: {name} is {current_text}, and its claims are judged with {required_text}."
+        for name, minimum in self.judged_from.items():
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value
-            if count < least:
-                what = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
-                return f"Not judged: {what}, and {least:g} at least are needed to meet what is judged."
+            if count < minimum:
+                size_text = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
+                return f"Not judged: {size_text}, and {minimum:g} at least are needed to meet what is judged."
         return ""
 
     def settings(self) -> dict[str, Any]:
@@ -418,14 +433,14 @@ class Experiment(ABC):
 
 def _gaits(value: Any) -> tuple[Gait, ...]:
     """Return the gaits that a field holds."""
-    many = value if isinstance(value, tuple) else (value,)
-    return tuple(one for one in many if isinstance(one, Gait))
+    entries = value if isinstance(value, tuple) else (value,)
+    return tuple(entry for entry in entries if isinstance(entry, Gait))
 
 
-def _called(value: Any) -> str:
+def _short_name(value: Any) -> str:
     """Return a short name of a field's value: of a robot or gait its own, marked where it only shares it."""
     if isinstance(value, tuple):
-        return ", ".join(_called(one) for one in value)[:80]
+        return ", ".join(_short_name(entry) for entry in value)[:80]
     return str(getattr(value, "name", value))[:80]
 
 
@@ -479,8 +494,8 @@ def spanned(measures: Mapping[str, float], name: str, form: str) -> str:
     """Return a measure as written, or between which numbers it lies where its interval holds both signs."""
     if not either_sign(measures, name):
         return write(measures[name], form)
-    low, high = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
-    return f"between {low} and {high}"
+    lower_bound, upper_bound = (write(measures[f"{name}{end}"], form) for end in ("_low", "_high"))
+    return f"between {lower_bound} and {upper_bound}"
 
 
 def separator(loop: Any) -> str:

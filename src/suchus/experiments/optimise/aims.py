@@ -16,7 +16,7 @@ from suchus.sim.land import Run
 
 Measured = Callable[[Sequence[Run], xr.Dataset], np.ndarray]
 """From runs and their record to one number for each run."""
-_LOOKS = 0.04  # [s]; between looks at the parts' clearance: a hundredth of the article's cycle
+_CLEARANCE_INTERVAL = 0.04  # [s]; between looks at the parts' clearance: a hundredth of the article's cycle
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +80,10 @@ def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     step = float(record.time[1] - record.time[0])
-    every = max(1, round(_LOOKS / step))
-    part = metrics.between(record, START)
-    least = [float(clearance(run.robot, part.isel(run=i), every=every)) for i, run in enumerate(runs)]
-    return np.array(least)
+    sample_interval = max(1, round(_CLEARANCE_INTERVAL / step))
+    excerpt = metrics.between(record, START)
+    clearances = [float(clearance(run.robot, excerpt.isel(run=i), every=sample_interval)) for i, run in enumerate(runs)]
+    return np.array(clearances)
 
 
 def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
@@ -92,12 +92,12 @@ def _foot_lift(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     return np.asarray(metrics.foot_clearance(record).min("leg").values, dtype=float)
 
 
-def _stands_most(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+def _max_duty(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     del runs
     return np.asarray(metrics.duty_factor(record).max("leg").values, dtype=float)
 
 
-def _stands_least(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+def _min_duty(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     del runs
     return np.asarray(metrics.duty_factor(record).min("leg").values, dtype=float)
 
@@ -108,9 +108,9 @@ def _standing(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
     for i, run in enumerate(runs):
         if isinstance(run.control, Standing):
             height = metrics.reach(run.robot, record.isel(run=i))
-            up, down = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
-            while_up = height.sel(time=slice(up, down))
-            seconds[i] = float(while_up.min()) if while_up.sizes["time"] else 0.0
+            start, end = run.control.upright_from(run.robot), run.control.upright_until(run.robot)
+            standing_height = height.sel(time=slice(start, end))
+            seconds[i] = float(standing_height.min()) if standing_height.sizes["time"] else 0.0
     return seconds
 
 
@@ -137,8 +137,8 @@ LIMITS: Mapping[str, Kind] = MappingProxyType(
         "cost_of_transport": Kind(_cost, "-", "less", "work of the servos over weight times displacement"),
         "displacement": Kind(_forward, "m", "more", "displacement along the first heading", 0.1),
         "foot_lift": Kind(_foot_lift, "m", "more", "lift of the foot that is lifted least", 0.01),
-        "duty_greatest": Kind(_stands_most, "-", "less", "share of the time in which the foot stands that stands most"),
-        "duty_least": Kind(_stands_least, "-", "more", "share of the time in which the foot stands that stands least"),
+        "duty_greatest": Kind(_max_duty, "-", "less", "share of the time in which the foot stands that stands most"),
+        "duty_least": Kind(_min_duty, "-", "more", "share of the time in which the foot stands that stands least"),
     }
 )
 """Quantities that a search can limit, by name."""

@@ -1,6 +1,7 @@
 """How far the parts of a body stay clear of each other: the physics knows contacts with the ground only."""
 
 from functools import lru_cache
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -31,8 +32,10 @@ def clearance(robot: Robot, record: xr.Dataset, *, every: int = 1) -> xr.DataArr
         every: look at one sample of so many.
     """
     angles = record.joint_angle.isel(time=slice(None, None, every)).transpose(..., "time", "joint")
-    least = between_parts(robot, angles.values.astype(float)).min(axis=-1)
-    return xr.DataArray(least, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"})
+    min_distance = between_parts(robot, angles.values.astype(float)).min(axis=-1)
+    return xr.DataArray(
+        min_distance, dims=angles.dims[:-2], attrs={"units": "m", "long_name": "clearance between parts"}
+    )
 
 
 def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
@@ -44,81 +47,87 @@ def between_parts(robot: Robot, angles: np.ndarray) -> np.ndarray:
     """
     check_needs(robot, ("limbs",), "the distance between limbs and body")
     parts = _parts(robot, angles)
-    return np.asarray(np.minimum.reduce([_apart(parts[a], parts[b]) for a, b in _pairs(robot)]))
+    return np.asarray(np.minimum.reduce([_capsule_distance(parts[a], parts[b]) for a, b in _pairs(robot)]))
 
 
 def _parts(robot: Robot, angles: np.ndarray) -> dict[str, _Capsule]:
     """Return the shapes of the axis and the links of the limbs."""
-    place, found = layout(robot), frames(robot, angles)
-    parts = [capsule for segment in robot.axis for capsule in _segment(robot, segment, found)]
-    parts += [capsule for limb in place.limbs for capsule in _limb(limb, found)]
-    return {part.name: part for part in parts}
+    robot_layout, body_frames = layout(robot), frames(robot, angles)
+    parts = [capsule for segment in robot.axis for capsule in _segment(robot, segment, body_frames)]
+    parts += [capsule for limb in robot_layout.limbs for capsule in _limb(limb, body_frames)]
+    return {shape.name: shape for shape in parts}
 
 
 @lru_cache(maxsize=64)
 def _pairs(robot: Robot) -> tuple[tuple[str, str], ...]:
     """Return the names of the parts that are held against each other."""
-    place, straight = layout(robot), _parts(robot, np.zeros(len(layout(robot).hinges)))
-    limbs = [[f"{limb.name} {link.name}" for link in limb.girdle.limb.links] for limb in place.limbs]
+    robot_layout, straight = layout(robot), _parts(robot, np.zeros(len(layout(robot).hinges)))
+    limbs = [[f"{limb.name} {link.name}" for link in limb.girdle.limb.links] for limb in robot_layout.limbs]
     trunk, tail = (
         [shape.name for segment in segments for shape in segment.shapes]
         for segments in (robot.axis[: robot.root_place + 1], robot.axis[robot.root_place + 2 :])
     )
-    pairs = [(a, b) for i, one in enumerate(limbs) for two in limbs[i + 1 :] for a in one for b in two]
-    for limb, (first, *others) in zip(place.limbs, limbs, strict=True):
+    pairs = [pair for first_limb, second_limb in combinations(limbs, 2) for pair in product(first_limb, second_limb)]
+    for limb, (first_link, *outer_links) in zip(robot_layout.limbs, limbs, strict=True):
         axis = trunk + tail if limb.girdle is robot.girdles[-1] else trunk
-        near = {part for part in axis if _apart(straight[first], straight[part]) <= 0.0}
-        pairs += [(first, part) for part in axis if part not in {_carrier(robot, limb.girdle), *near}]
-        pairs += [(link, part) for link in others for part in axis]
+        overlapping = {
+            shape_name for shape_name in axis if _capsule_distance(straight[first_link], straight[shape_name]) <= 0.0
+        }
+        pairs += [
+            (first_link, shape_name)
+            for shape_name in axis
+            if shape_name not in {_carrier(robot, limb.girdle), *overlapping}
+        ]
+        pairs += [(link, shape_name) for link in outer_links for shape_name in axis]
     return tuple(pairs)
 
 
-def _segment(robot: Robot, segment: Segment, found: BodyFrames) -> list[_Capsule]:
+def _segment(robot: Robot, segment: Segment, body_frames: BodyFrames) -> list[_Capsule]:
     """Return the shapes of a segment: rods as they are, shells along the body.
 
     A shell that carries limbs is as thick as it is high, since limbs leave it at its sides, and reaches from the joint
     behind it to the girdle, or through its segment if it is the only shape. Any other shell is as thick as it is wide.
     """
     bodies = layout(robot).bodies
-    body = [one.name for one in bodies].index(segment.name)
-    place, ahead = found.places[..., body, :], found.turns[..., body, :, :]
-    carried = {_carrier(robot, girdle): girdle for girdle in robot.girdles if girdle.segment == segment.name}
+    body = [tree_body.name for tree_body in bodies].index(segment.name)
+    position, rotation = body_frames.places[..., body, :], body_frames.turns[..., body, :, :]
+    girdle_of_shell = {_carrier(robot, girdle): girdle for girdle in robot.girdles if girdle.segment == segment.name}
     capsules = []
     for shape in segment.shapes:
         if isinstance(shape, Shell):
-            if shape.name in carried:
+            if shape.name in girdle_of_shell:
                 radius = shape.half[2]
-                span = -segment.rear, segment.front if len(segment.shapes) == 1 else carried[shape.name].at
+                span = -segment.rear, segment.front if len(segment.shapes) == 1 else girdle_of_shell[shape.name].at
             else:
                 radius = min(shape.half[0], shape.half[1])
                 span = shape.at[0] - (shape.half[0] - radius), shape.at[0] + (shape.half[0] - radius)
             ends = [np.array([x, *shape.at[1:]]) for x in span]
         else:
             radius, ends = shape.radius, [np.array(shape.start), np.array(shape.end)]
-        start, end = (place + ahead @ (point + np.array([bodies[body].shift, 0.0, 0.0])) for point in ends)
+        start, end = (position + rotation @ (point + np.array([bodies[body].shift, 0.0, 0.0])) for point in ends)
         capsules.append(_Capsule(shape.name, start, end, radius))
     return capsules
 
 
 def _carrier(robot: Robot, girdle: Girdle) -> str:
     """Return the name of the shape that carries the limbs of a girdle: the nearest along the body."""
-    segment = next(one for one in robot.axis if one.name == girdle.segment)
+    segment = next(candidate for candidate in robot.axis if candidate.name == girdle.segment)
     return min(segment.shapes, key=lambda shape: abs(shape.centre[0] - girdle.at)).name
 
 
-def _limb(limb: LimbPlace, found: BodyFrames) -> list[_Capsule]:
+def _limb(limb: LimbPlace, body_frames: BodyFrames) -> list[_Capsule]:
     """Return the links of a limb, the last at least as thick as its foot."""
     links, capsules = limb.girdle.limb.links, []
     for number, link in enumerate(links):
         body = limb.tip - len(links) + 1 + number
-        start = found.places[..., body, :]
-        end = start + found.turns[..., body, :, :] @ np.array([link.end[0], limb.side * link.end[1], link.end[2]])
+        start = body_frames.places[..., body, :]
+        end = start + body_frames.turns[..., body, :, :] @ np.array([link.end[0], limb.side * link.end[1], link.end[2]])
         radius = max(link.radius, limb.girdle.limb.foot.radius) if link is links[-1] else link.radius
         capsules.append(_Capsule(f"{limb.name} {link.name}", start, end, radius))
     return capsules
 
 
-def _apart(a: _Capsule, b: _Capsule) -> np.ndarray:
+def _capsule_distance(a: _Capsule, b: _Capsule) -> np.ndarray:
     """Return the distance of two capsules' surfaces [m]."""
     return segments_apart(a.start, a.end, b.start, b.end) - (a.radius + b.radius)
 
@@ -134,8 +143,10 @@ def segments_apart(p: np.ndarray, p_end: np.ndarray, q: np.ndarray, q_end: np.nd
     dd, ee, de = (np.einsum("...i,...i", x, y) for x, y in ((d, d), (e, e), (d, e)))
     dr, er = np.einsum("...i,...i", d, r), np.einsum("...i,...i", e, r)
     tiny = 1e-12
-    across = dd * ee - de * de
-    s = np.where(across > tiny * np.maximum(dd * ee, tiny), (de * er - dr * ee) / np.maximum(across, tiny), 0.0)
+    determinant = dd * ee - de * de
+    s = np.where(
+        determinant > tiny * np.maximum(dd * ee, tiny), (de * er - dr * ee) / np.maximum(determinant, tiny), 0.0
+    )
     s = np.clip(s, 0.0, 1.0)
     t = np.clip((de * s + er) / np.maximum(ee, tiny), 0.0, 1.0)
     s = np.clip((de * t - dr) / np.maximum(dd, tiny), 0.0, 1.0)

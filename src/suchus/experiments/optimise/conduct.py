@@ -33,7 +33,10 @@ LIBRARIES = ("cma", "comocma", "moarchiving")
 ROOMS = (*MADE_BY, *(f"experiments/optimise/{module}.py" for module in ("aims", "clearance", "evaluate", "spec")))
 """Whose code decides what a candidate reaches."""
 _DECIDING = partial(deciding, ROOMS, LIBRARIES)
-_CHECKED, _AROUND = 900_000, 950_000  # first numbers of the last parts; the budget's generations are added
+_CHECK_NUMBER, _NEIGHBOURHOOD_NUMBER = (
+    900_000,
+    950_000,
+)  # first numbers of the last parts; the budget's generations are added
 
 
 def optimise(
@@ -82,9 +85,11 @@ def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> 
             )
         write_runs(result.spec, result.runs, folder)
         generations = int(result.history.generation.max())
-        check = _kept(store, _CHECKED + generations, lambda: checked(spec, result.runs))
-        near = _kept(store, _AROUND + generations, lambda: around(spec, result.shares[0], partial(tried, place)))
-        return result.with_checks(check, near)
+        check = _stored_part(store, _CHECK_NUMBER + generations, lambda: checked(spec, result.runs))
+        neighbourhood = _stored_part(
+            store, _NEIGHBOURHOOD_NUMBER + generations, lambda: around(spec, result.shares[0], partial(tried, place))
+        )
+        return result.with_checks(check, neighbourhood)
 
 
 @contextmanager
@@ -128,10 +133,10 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
     parts, driver = units(spec, start), search(spec)
     name, aim = spec.arms[0].name, spec.aims[0].name
     tally = Tally(spec.evaluations, "tried", lambda stage, share: progress(f"{name}: {stage}", share))
-    tables, best = [_numbered(start, 0)], np.inf
+    tables, best = [_with_generation(start, 0)], np.inf
     while tally.done < spec.evaluations:
         shares, number = driver.ask(), len(tables)
-        known = store.has(number)
+        is_stored = store.has(number)
 
         def tell(stage: str, share: float, number: int = number, count: int = len(shares)) -> None:
             del stage
@@ -139,27 +144,31 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
 
         table = _generation(store, number, shares, lambda x, tell=tell: tried(place, spec, x, tell))  # type: ignore[misc]
         driver.tell(losses(spec, table, parts) if spec.pareto else score(spec, table, parts))
-        tables.append(_numbered(table, number))
+        tables.append(_with_generation(table, number))
         values = np.where(allowed(spec, table), score(spec, table, parts), np.inf)
         if values.min() < best:
             i, best = int(values.argmin()), float(values.min())
             tally.note = f"best {float(table[f'aim_{aim}'][i]):.3g} {AIMS[aim].unit}"
-            if not spec.pareto and not known:
+            if not spec.pareto and not is_stored:
                 run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, shares[i], strict=True)})
                 write_runs(spec, [titled(spec, run, name)], folder)
-        tally.finished(number, len(shares), fresh=not known)
-    whole = xr.concat(tables, "candidate")
-    return SearchResult(spec=spec, start=start, history=whole.assign(score=("candidate", score(spec, whole, parts))))
+        tally.finished(number, len(shares), fresh=not is_stored)
+    history = xr.concat(tables, "candidate")
+    return SearchResult(
+        spec=spec, start=start, history=history.assign(score=("candidate", score(spec, history, parts)))
+    )
 
 
-def _numbered(table: xr.Dataset, number: int) -> xr.Dataset:
+def _with_generation(table: xr.Dataset, number: int) -> xr.Dataset:
     return table.assign(generation=("candidate", np.full(table.sizes["candidate"], number)))
 
 
-def _generation(store: Store, number: int, asked: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]) -> xr.Dataset:
+def _generation(
+    store: Store, number: int, candidates: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]
+) -> xr.Dataset:
     """Return one generation, from the store if it is there."""
-    table = _kept(store, number, lambda: make(asked))
-    if not np.array_equal(table.share.values, asked):
+    table = _stored_part(store, number, lambda: make(candidates))
+    if not np.array_equal(table.share.values, candidates):
         raise IncompatibleRecord(
             f"{store.part(number)} holds other candidates than the search asks for; this machine or its libraries "
             "round differently: choose another place."
@@ -167,7 +176,7 @@ def _generation(store: Store, number: int, asked: np.ndarray, make: Callable[[np
     return table
 
 
-def _kept(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
+def _stored_part(store: Store, number: int, make: Callable[[], xr.Dataset]) -> xr.Dataset:
     """Return a part, made and stored if it is not there yet."""
     if not store.has(number):
         store.put(number, make())
@@ -189,7 +198,7 @@ def run_files(spec: Optimisation, label: str) -> list[str]:
 
 Evaluate = Callable[..., xr.Dataset]
 """Tries candidates; see ``evaluate.evaluate``."""
-_NEAR = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
+_RANGE_STEPS = (-0.1, -0.05, 0.0, 0.05, 0.1)  # of each range
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,47 +236,49 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
         ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it
         diverged.
     """
-    who = [*runs, replace(spec.run, label="start")]
-    batch = [_under(run, condition) for run in who for condition in CONDITIONS]
+    checked_runs = [*runs, replace(spec.run, label="start")]
+    batch = [_under(run, condition) for run in checked_runs for condition in CONDITIONS]
     record = simulate(batch, duration=spec.duration, timestep=physics_step(spec.run.robot), every=2)
-    shape = len(who), len(CONDITIONS)
+    shape = len(checked_runs), len(CONDITIONS)
     sound = record.cause.values == ""
     return xr.Dataset(
         {
             name: (("run", "condition"), np.where(sound, values, np.nan).reshape(shape))
             for name, values in measure(spec, batch, record).items()
         },
-        coords={"run": [run.label for run in who], "condition": [c.tells for c in CONDITIONS]},
+        coords={"run": [run.label for run in checked_runs], "condition": [c.tells for c in CONDITIONS]},
     )
 
 
 def _under(run: Run, condition: Condition) -> Run:
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
-    other = replace(run, gait=gait if condition.later else run.gait)
-    other = with_values(other, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale})
-    return other if condition.built is None else Tolerances().built(other, condition.built)
+    changed_run = replace(run, gait=gait if condition.later else run.gait)
+    changed_run = with_values(
+        changed_run, {"ground.friction_scale": run.ground.friction_scale * condition.friction_scale}
+    )
+    return changed_run if condition.built is None else Tolerances().built(changed_run, condition.built)
 
 
-def around(spec: Optimisation, best: np.ndarray, tried: Evaluate = evaluate) -> xr.Dataset:
+def around(spec: Optimisation, best: np.ndarray, evaluate_candidates: Evaluate = evaluate) -> xr.Dataset:
     """Move each field alone to both sides of the best, by a twentieth and a tenth of its range.
 
     Args:
         spec: the search.
         best: the shares of the ranges at which the best lies.
-        tried: what tries candidates.
+        evaluate_candidates: what tries candidates.
 
     Returns:
         ``share``, ``aim_...``, ``limit_...``, ``status`` over ``moved`` (which field) and ``step``.
     """
     fields = [v.field for v in spec.vary]
-    points = np.array([best] * (len(fields) * len(_NEAR))).reshape(len(fields), len(_NEAR), -1)
+    points = np.array([best] * (len(fields) * len(_RANGE_STEPS))).reshape(len(fields), len(_RANGE_STEPS), -1)
     for i in range(len(fields)):
-        points[i, :, i] = np.clip(best[i] + np.array(_NEAR), 0.0, 1.0)
-    table = tried(spec, points.reshape(-1, len(fields)))
-    shape = len(fields), len(_NEAR)
+        points[i, :, i] = np.clip(best[i] + np.array(_RANGE_STEPS), 0.0, 1.0)
+    table = evaluate_candidates(spec, points.reshape(-1, len(fields)))
+    shape = len(fields), len(_RANGE_STEPS)
     return xr.Dataset(
         {name: (("moved", "step"), table[name].values.reshape(shape)) for name in ("status", *columns(spec))}
         | {"at": (("moved", "step"), np.array([points[i, :, i] for i in range(len(fields))]))},
-        coords={"moved": fields, "step": list(_NEAR)},
+        coords={"moved": fields, "step": list(_RANGE_STEPS)},
     )

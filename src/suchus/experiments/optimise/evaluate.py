@@ -17,7 +17,7 @@ from suchus.robot.motion import check_limits, excess
 from suchus.sim.land import Run, simulate
 
 WALKED, REFUSED, APART = "walked", "refused", "diverged"
-_EVERY = 2  # control periods; 50 looks a second
+_SAMPLE_INTERVAL = 2  # control periods; 50 looks a second
 
 
 def evaluate(
@@ -36,30 +36,30 @@ def evaluate(
         ``status``; ``beyond``, see ``suchus.robot.motion.excess``, infinite for a candidate that cannot be at all.
     """
     count = len(shares)
-    status, beyond = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
+    status, limit_excess = np.full(count, REFUSED, dtype="U16"), np.zeros(count)
     runs: dict[int, Run] = {}
     for i, point in enumerate(shares):
         try:
             run = spec.candidate({v.field: float(s) for v, s in zip(spec.vary, point, strict=True)})
-            beyond[i] = excess(run.robot, run.gait)
-            if beyond[i] == 0.0:
+            limit_excess[i] = excess(run.robot, run.gait)
+            if limit_excess[i] == 0.0:
                 check_limits(run.robot, run.gait)
                 # refuses what it cannot steer
                 run.control.start(Runs.alike(run.control, run.robot, run.gait), control_period(run.robot))
                 runs[i] = run
         except SuchusError:
-            beyond[i] = np.inf
+            limit_excess[i] = np.inf
     table = {name: np.full(count, np.nan) for name in columns(spec)}
-    walked = _walked(spec, runs, progress, timestep or spec.timestep)
-    beyond[[i for i in runs if i not in walked]] = np.inf
-    for i, numbers in walked.items():
+    results = _walk_candidates(spec, runs, progress, timestep or spec.timestep)
+    limit_excess[[i for i in runs if i not in results]] = np.inf
+    for i, numbers in results.items():
         status[i] = APART if numbers is None else WALKED
         for name, value in (numbers or {}).items():
             table[name][i] = value
     return xr.Dataset(
         {
             "share": (("candidate", "field"), np.asarray(shares, dtype=float)),
-            "beyond": ("candidate", beyond),
+            "beyond": ("candidate", limit_excess),
             "status": ("candidate", status),
             **{name: ("candidate", values) for name, values in table.items()},
         },
@@ -74,7 +74,7 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
     }
 
 
-def _walked(
+def _walk_candidates(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
 ) -> dict[int, dict[str, float] | None]:
     """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts.
@@ -85,16 +85,18 @@ def _walked(
     if not runs:
         return {}
     scales = spec.friction_scales
-    laid = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
+    ground_runs = [with_values(run, {"ground.friction_scale": scale}) for run in runs.values() for scale in scales]
     try:
-        record = simulate(laid, duration=spec.duration, timestep=timestep, every=_EVERY, progress=progress)
+        record = simulate(
+            ground_runs, duration=spec.duration, timestep=timestep, every=_SAMPLE_INTERVAL, progress=progress
+        )
     except SuchusError:
         if len(runs) == 1:
             return {}
         items = list(runs.items())
         halves = dict(items[: len(items) // 2]), dict(items[len(items) // 2 :])
-        return {i: row for half in halves for i, row in _walked(spec, half, progress, timestep).items()}
-    measured = measure(spec, laid, record)
+        return {i: row for half in halves for i, row in _walk_candidates(spec, half, progress, timestep).items()}
+    measured = measure(spec, ground_runs, record)
     broken = (record.cause.values != "").reshape(len(runs), -1).any(axis=1)
     measures_of: dict[int, dict[str, float] | None] = {}
     for row, i in enumerate(runs):
@@ -107,23 +109,27 @@ def _walked(
 
 def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict[str, np.ndarray]:
     """Return every aim and limit of some runs by column."""
-    known: dict[Any, np.ndarray] = {}
+    values: dict[Any, np.ndarray] = {}
     for kind in columns(spec).values():
-        if kind.measure not in known:
-            known[kind.measure] = kind.measure(runs, record)
-    return {name: known[kind.measure] for name, kind in columns(spec).items()}
+        if kind.measure not in values:
+            values[kind.measure] = kind.measure(runs, record)
+    return {name: values[kind.measure] for name, kind in columns(spec).items()}
 
 
 def _joined(name: str, values: np.ndarray) -> float:
     """Return what a candidate has over all grounds: the mean of an aim, the worst of a limit."""
     if name.startswith("aim_"):
         return float(values.mean())
-    worst = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
-    return float(worst())
+    reduce = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
+    return float(reduce())
 
 
 _PENALTY = 5.0  # per limit exceeded by its own size, in parts of what the start has
-_REFUSED, _APART, _NEVER = 1e3, 2e3, 4e3  # ranks below all that walk, the nearer to walking the better
+_REFUSED_LOSS, _DIVERGED_LOSS, _IMPOSSIBLE_LOSS = (
+    1e3,
+    2e3,
+    4e3,
+)  # ranks below all that walk, the nearer to walking the better
 ACTIVE = 0.03
 """A limit that is kept by less than this part of it counts as active [-]."""
 
@@ -143,8 +149,8 @@ def over(limit: Limit, values: np.ndarray) -> np.ndarray:
 
 def allowed(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
     """Tell which candidates walked and kept every limit."""
-    walked = table.status.values == WALKED
-    return np.asarray(walked & (excesses(spec, table) <= 0.0).all(axis=1))
+    has_walked = table.status.values == WALKED
+    return np.asarray(has_walked & (excesses(spec, table) <= 0.0).all(axis=1))
 
 
 def units(spec: Optimisation, start: xr.Dataset) -> np.ndarray:
@@ -162,10 +168,14 @@ def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarr
     values = np.column_stack([table[f"aim_{aim.name}"].values for aim in spec.aims])
     penalty = _PENALTY * np.maximum(excesses(spec, table), 0.0).sum(axis=1)
     weighted = signs * values / parts + penalty[:, None]
-    status, beyond = table.status.values, table.beyond.values
-    worst = np.where(status == APART, _APART, np.where(np.isfinite(beyond), _REFUSED + np.minimum(beyond, 1e3), _NEVER))
+    status, limit_excess = table.status.values, table.beyond.values
+    failed_loss = np.where(
+        status == APART,
+        _DIVERGED_LOSS,
+        np.where(np.isfinite(limit_excess), _REFUSED_LOSS + np.minimum(limit_excess, 1e3), _IMPOSSIBLE_LOSS),
+    )
     bad = (status != WALKED) | ~np.isfinite(weighted).all(axis=1)
-    return np.where(bad[:, None], worst[:, None], weighted)
+    return np.where(bad[:, None], failed_loss[:, None], weighted)
 
 
 def score(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:

@@ -79,8 +79,10 @@ def _walk(
     sound = np.flatnonzero(record.cause.values == "")
     for i, sample in enumerate(runs):
         if i not in sound:
-            one = record.isel(run=i)
-            errors[sample] = f"Diverged: the simulation diverged at {float(one.ended):.2f} s: {one.cause.item()}"
+            failed_run = record.isel(run=i)
+            errors[sample] = (
+                f"Diverged: the simulation diverged at {float(failed_run.ended):.2f} s: {failed_run.cause.item()}"
+            )
     if len(sound):
         _measure(study, record.isel(run=sound), [list(runs)[i] for i in sound], rows, errors)
 
