@@ -264,6 +264,7 @@ class Experiment(ABC):
             )
 
     def _check_names(self) -> None:
+        """Refuse a parameter that holds two entries of the same name, since their measures would have one name too."""
         for parameter in fields(self):  # type: ignore[arg-type]
             value = getattr(self, parameter.name)
             entries = value if isinstance(value, tuple) else ()

@@ -79,6 +79,7 @@ def _torque(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
 
 
 def _clearance(runs: Sequence[Run], record: xr.Dataset) -> np.ndarray:
+    """Return the least distance between parts of the body over each run [m]."""
     step = float(record.time[1] - record.time[0])
     sample_interval = max(1, round(_CLEARANCE_INTERVAL / step))
     excerpt = metrics.between(record, START)

@@ -251,6 +251,7 @@ def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
 
 
 def _under(run: Run, condition: Condition) -> Run:
+    """Return a run under one condition of a check: other friction, later phase, or a robot built with errors."""
     phases = tuple((phase + condition.later + 1.0) % 1.0 for phase in run.gait.limb_phases)
     gait = replace(run.gait, limb_phases=phases)
     changed_run = replace(run, gait=gait if condition.later else run.gait)

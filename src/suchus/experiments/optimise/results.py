@@ -62,6 +62,7 @@ def _start(spec: Optimisation) -> Run:
 
 
 def _write_replay(shown_runs: Sequence[Run], record: xr.Dataset, i: int, path: Path) -> None:
+    """Write the replay of run ``i``; the start is half transparent in it where the robot is the same."""
     run, same_robot = shown_runs[i], shown_runs[i].robot == shown_runs[0].robot
     page = replay(
         record.isel(run=i),
@@ -89,6 +90,7 @@ def outcome(spec: Optimisation, searches: Sequence[SearchResult]) -> dict[str, A
 
 
 def _numbers_of(search: SearchResult) -> dict[str, Any]:
+    """Return counts, start, best candidates and front of one search as JSON holds them."""
     return {
         "tried": search.history.sizes["candidate"] - 1,
         "walked": int((search.history.status == "walked").sum()),
@@ -102,6 +104,7 @@ def _numbers_of(search: SearchResult) -> dict[str, Any]:
 
 
 def _best(search: SearchResult, index: int) -> dict[str, Any]:
+    """Return aims, fields, limits and checks of one chosen candidate as JSON holds them."""
     assert search.checks is not None
     candidate, ranges = search.chosen[index], {v.field: (v.low, v.high) for v in search.spec.vary}
     return {
@@ -169,6 +172,7 @@ def _round(value: float) -> str:
 def _pictures(
     spec: Optimisation, searches: Sequence[SearchResult], shown_runs: Sequence[Run], record: xr.Dataset
 ) -> dict[str, Figure]:
+    """Return the figures of a search by name: gaits, convergence, fronts, neighbourhoods of the best."""
     values = [(AIMS[aim.name], AIMS[aim.name].measure(shown_runs, record)) for aim in spec.aims]
     aim_texts = [
         ", ".join(f"{value[i]:#.3g} {kind.unit}".removesuffix(" -") for kind, value in values)
@@ -185,6 +189,7 @@ def _pictures(
 
 
 def _lead(searches: Sequence[SearchResult]) -> str:
+    """Return the first sentence of the page: by condition the first aim at the start and at the best."""
     phrases = []
     for search in searches:
         front = search.front if search.spec.pareto else []
@@ -204,6 +209,7 @@ def _lead(searches: Sequence[SearchResult]) -> str:
 def _sections(
     spec: Optimisation, searches: Sequence[SearchResult], numbers: Mapping[str, Any], pictures: Mapping[str, Figure]
 ) -> list[Section]:
+    """Return the sections of the page: result, convergence, numbers, checks."""
     links = [
         (f"{name}_replay.html", f"Replay of {label(name)} beside the start")
         for search in searches
@@ -248,6 +254,7 @@ def _best_said(numbers: Mapping[str, Any]) -> list[str]:
 
 
 def _fields(search: SearchResult, index: int) -> ResultTable:
+    """Return the table of the fields of one chosen candidate: start, best, range."""
     rows = []
     ends = {v.field: (v.low, v.high) for v in search.spec.vary}
     for name, (start, best) in search.values(index).items():
@@ -266,6 +273,7 @@ def _fields(search: SearchResult, index: int) -> ResultTable:
 
 
 def _limits(search: SearchResult, index: int) -> ResultTable:
+    """Return the table of the limits of one chosen candidate: allowed value, reached value, whether active."""
     rows = [
         (
             label(name),
@@ -286,6 +294,7 @@ def _limits(search: SearchResult, index: int) -> ResultTable:
 
 
 def _checks(search: SearchResult) -> ResultTable:
+    """Return the table of aims and limits of start and best under every condition of the checks."""
     assert search.checks is not None
     checks, names = search.checks, [str(run) for run in search.checks.run.values]
     columns = [(f"aim_{aim.name}", AIMS[aim.name]) for aim in search.spec.aims]

@@ -47,6 +47,11 @@ class Single:
     """CMA-ES; when it has converged it starts again from where it began, with twice as many candidates."""
 
     def __init__(self, spec: Optimisation) -> None:
+        """Start CMA-ES at the start of the search.
+
+        Raises:
+            NoOptimiser: the library is not installed.
+        """
         self._cma = library("cma")
         self._spec = spec
         self._randoms = np.random.default_rng(spec.seed)
@@ -54,6 +59,7 @@ class Single:
         self._es = self._new_strategy()
 
     def _new_strategy(self) -> Any:
+        """Return CMA-ES at the start of the search, with the present population."""
         return self._cma.CMAEvolutionStrategy(
             np.clip(self._spec.start, _EDGE, 1 - _EDGE),
             self._spec.sigma,
@@ -84,6 +90,11 @@ class Front:
     """What no front reaches: nothing of an aim where more is better, twice the start's where less is [-]."""
 
     def __init__(self, spec: Optimisation) -> None:
+        """Start one CMA-ES for each point of the front, spread around the start of the search.
+
+        Raises:
+            NoOptimiser: the library is not installed.
+        """
         como = library("comocma")
         randoms = np.random.default_rng(spec.seed)
         start = np.clip(spec.start, _EDGE, 1 - _EDGE)

@@ -99,6 +99,7 @@ class Optimisation(Search):
     """Run from which the search starts."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and fields and conditions that the run cannot take."""
         with Checks("optimisation", self) as check:
             check.whole("evaluations", 1, 10_000_000)
             check.whole("population", 4, 10_000)

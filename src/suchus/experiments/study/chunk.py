@@ -108,6 +108,15 @@ def _table(
     rows: Mapping[int, Mapping[str, float]],
     errors: Mapping[int, str],
 ) -> xr.Dataset:
+    """Return the results of a batch as a table along ``sample``.
+
+    Args:
+        study: the study.
+        points: of ``Plan``, one for each sample.
+        samples: numbers of the samples.
+        rows: measured numbers by sample and column; a missing one becomes NaN.
+        errors: why a sample has no numbers, by sample.
+    """
     columns: dict[str, Any] = {}
     for vary in study.vary:
         column = _column([point.values[vary.field] for point in points], vary.ends)

@@ -65,6 +65,7 @@ class Claims:
     """Seed of the Sobol sequence's scrambling [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks("claims", self) as check:
             check.whole("samples", 1, 1_000_000)
             check.whole("together", 1, 1_000)
@@ -171,6 +172,7 @@ def conduct_claims(
         held(rule, empty_measures)
 
     def run(samples: int, timestep: float, place: str) -> xr.Dataset:
+        """Return the record of the study with so many samples and this time step [s], stored in ``place``."""
         study = replace(claims_study.study(samples, timestep), name=f"claims_{place}")
 
         def tell(stage: str, share: float) -> None:
@@ -206,6 +208,7 @@ def answer_finished(claims_study: Claims, folder: str | Path) -> xr.Dataset:
     folder = Path(folder)
 
     def read_store(place: str) -> tuple[Study, xr.Dataset]:
+        """Return a study and the results of its finished samples, as many as the largest power of two."""
         makers = made_by(folder / place, key="fields")
         samples, timestep = int(makers["samples"]), float(makers["timestep"])
         study = claims_study.study(samples, timestep)

@@ -105,6 +105,7 @@ def _claim_label(claim: str) -> str:
 
 
 def _lead(record: xr.Dataset, sweep_records: Mapping[str, xr.Dataset]) -> str:
+    """Return the first sentences of the page: number of designs, what became of them, number of parameters."""
     parts = ", ".join(f"{number} {name}" for name, number in sorted(became(record).items(), key=lambda item: -item[1]))
     sweep_text = listed(
         [
@@ -121,6 +122,7 @@ def _lead(record: xr.Dataset, sweep_records: Mapping[str, xr.Dataset]) -> str:
 
 
 def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Section]:
+    """Return the sections of the page: fraction true by claim, agreement of the time steps, each claim."""
     agreement_rows = [
         (f"{1000 * a['timestep']:g} ms", f"{100 * a['same']:.1f} %", f"{1000 * a['forward']:.1f} mm",
          f"{1000 * a['wide']:.0f} mm", f"{100 * a['shares']:.1f} points", _claim_label(a["claim"]),
@@ -170,6 +172,7 @@ def _sections(record: xr.Dataset, rows: Sequence[dict[str, Any]]) -> list[Sectio
 
 
 def _row(row: dict[str, Any]) -> tuple[str, ...]:
+    """Return one row of the table of claims as text."""
     lower_bound, upper_bound = row["interval"]
     deciders = [
         f"{spoken(d['parameter'])} {d['decides']:.2f} ({d['low']:.2f} to {d['high']:.2f}), "

@@ -150,6 +150,7 @@ def _resolve_value(field: str, value: Any, place: Path, robot: Robot) -> Any:
 
 
 def _faults(value: Any) -> tuple[Fault, ...]:
+    """Return the faults that a list of tables describes."""
     if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
         raise InvalidDesign(
             "faults take lists of tables, as [[], [{kind = 'limp', joint = 'LF_yaw'}]]; one of them is "

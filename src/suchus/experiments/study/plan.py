@@ -40,6 +40,7 @@ class Plan(Sequence[Point]):
     """
 
     def __init__(self, study: Study) -> None:
+        """Sample the unit cube and count the runs."""
         self.study = study
         factorial = study.design == "factorial"
         self._factorial_fields = [v for v in study.vary if factorial or v.each]
@@ -59,6 +60,7 @@ class Plan(Sequence[Point]):
         return self._length
 
     def __getitem__(self, index: Any) -> Any:
+        """Return one point, or the list of points of a slice."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         if not 0 <= index < len(self):
@@ -155,6 +157,7 @@ def value_of(vary: Vary, share: float, *, whole: bool = False) -> Any:
 
 
 def _whole_value(vary: Vary, share: float) -> int:
+    """Return the integer below which a fraction of the values of a field lies."""
     if vary.mean is not None or vary.scale == "log":
         return round(value_of(vary, share))
     assert vary.low is not None

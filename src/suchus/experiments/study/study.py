@@ -49,6 +49,7 @@ class Vary:
             self._check(check)
 
     def _check(self, check: Checks) -> None:
+        """Refuse a field that has no values, or whose values, range and distribution contradict each other."""
         ends = self.low is not None and self.high is not None
         normal = self.mean is not None or self.spread is not None
         definitions = [self.values is not None, ends or (normal and self.mean is not None)]
@@ -115,6 +116,7 @@ class Study:
     """Why these fields and ranges, for whoever reads the results."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, unknown measures, and fields that the run does not have."""
         with Checks("study", self) as check:
             check.whole("seed", 0, 2**32 - 1)
             check.whole("seeds", 1, 100_000)

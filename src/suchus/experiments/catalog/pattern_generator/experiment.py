@@ -100,6 +100,7 @@ class PatternGeneratorExperiment(Experiment):
     """Seed of the first start; the others follow [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse drives outside the range of the oscillators, and other settings outside their ranges."""
         min_drive, max_limb_drive, max_drive = *_OSCILLATORS.limb_drives, _OSCILLATORS.axis_drives[1]
         with Checks(self.name(), self) as check:
             check.rising("drives", min_drive, max_drive, "")
@@ -264,6 +265,7 @@ class PatternGeneratorExperiment(Experiment):
         return (START, min_drive), (START + end / 2, max_drive), (START + end, min_drive)
 
     def _ramp(self) -> xr.Dataset:
+        """Return drive, phases, amplitudes and bends of the oscillators over the ramp, without a body."""
         control = PatternGenerator(drive=self._ramped)
         oscillation = oscillate([control], self.robot, self.gait, duration=self.ramp * self.gait.period)
         drive = np.interp(oscillation.time, *np.array(self._ramped).T)
@@ -329,6 +331,7 @@ class PatternGeneratorExperiment(Experiment):
         return walks, simulate([ramped], duration=end, every=2, progress=stage)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the walk under the drive ramp, by file name."""
         return replayed(
             "drive_ramp_replay.html",
             ramped.isel(run=0),

@@ -61,6 +61,7 @@ def _draw_waves(ax: Axes, record: xr.Dataset) -> None:
 
 
 def _draw_rates(ax: Axes, record: xr.Dataset, limb: str) -> None:
+    """Draw the frequency of the axis and of one limb over the ramp, as the slope of their phases [Hz]."""
     for name, label, colour, dashes in (
         (str(record.oscillator.values[0]), "axis", COLOURS["spine"], "-"),
         (limb, "limbs", COLOURS["RF"], (0, (4, 1.5))),

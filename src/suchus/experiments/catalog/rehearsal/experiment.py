@@ -153,6 +153,7 @@ class Rehearsal(Experiment):
     """Seed of what is lost [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse unknown protocols and controls, and imperfections of the wire outside their ranges."""
         with Checks(self.name(), self) as check:
             check.number("cycles", 0.1, 100.0, "")
             check.number("rule_cycles", 0.1, 100.0, "")
@@ -304,6 +305,7 @@ class Rehearsal(Experiment):
             return {"rehearsal": self._draw(outcome.record)}
 
     def _draw(self, record: xr.Dataset) -> Figure:
+        """Draw the relative change of displacement by wire and rule, and the angle errors over ideal wires."""
         figure, axes = panels(2, 1, height=7.0)
         wires, rules = record.wire.values[1:], record.rule.values
         colours = [COLOURS["neutral"], COLOURS["coordinated"], COLOURS["tail_drag"], COLOURS["limbs_only"]]

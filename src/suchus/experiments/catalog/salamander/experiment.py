@@ -72,6 +72,7 @@ class Salamander(Experiment):
     """Vertical force from which a foot stands [body weight]; hind feet trail with a tenth of the weight in swing."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
@@ -117,6 +118,7 @@ class Salamander(Experiment):
         return Simulated(record=record, tables=tables, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the animal's walk, with the walk of the straight axis half transparent, by file name."""
         return replayed(
             "animal_walk_replay.html",
             record.isel(run=0),

@@ -83,6 +83,16 @@ def draw_feet(
 
 
 def _draw_foot(ax: Axes, force: xr.DataArray, stance_threshold: float, *, label: bool) -> None:
+    """Draw the three components of the force on one foot over its stance, from touch-down to lift-off.
+
+    Nothing is drawn of a foot that never stands or never lifts off.
+
+    Args:
+        ax: axes to draw on.
+        force: mean cycle of the foot, ``phase part`` [body weight].
+        stance_threshold: vertical force from which the foot stands [body weight].
+        label: whether the lines get entries in the legend.
+    """
     vertical = force.sel(part="vertical").values
     turn = int(np.argmax(vertical))
     stands = np.roll(vertical > stance_threshold, -turn)
@@ -98,6 +108,13 @@ def _draw_foot(ax: Axes, force: xr.DataArray, stance_threshold: float, *, label:
 
 
 def _mark_animal(ax: Axes, animal: Mapping[str, Any], pair: str) -> None:
+    """Mark the published force components of one pair of feet at their published time in stance.
+
+    Args:
+        ax: axes to draw on, time in stance [%] against force [body weight].
+        animal: published numbers, by the names of the measures.
+        pair: ``fore`` or ``hind``.
+    """
     stance_time = 100.0 * animal[f"foot_force_time_{pair}"].value
     spread = animal[f"foot_force_net_{pair}"].spread
     for component, _, role in _PARTS:

@@ -72,6 +72,7 @@ class SalamanderSwim(Experiment):
     """Animals that swim at their own length, mass and volume, see ``own_size.ANIMALS``."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and animals that are not in ``own_size.ANIMALS``."""
         with Checks(self.name(), self) as check:
             check.rising("frequencies", 0.1, 20.0, "Hz")
             check.whole("settle", 0, 1000)
@@ -177,6 +178,7 @@ class SalamanderSwim(Experiment):
         return float(np.copysign(distance, (path_ends[1] - path_ends[0]) @ facing[:, :2].mean(axis=0)))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the swim at the highest frequency, by file name."""
         return replayed(
             "animal_swim_replay.html",
             record.isel(run=0),

@@ -178,6 +178,16 @@ _KEPT = {
 
 
 def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) -> dict[str, float]:
+    """Return size, stability and swim of one animal by quantity, each in its unit of ``_KEPT``.
+
+    The swim is measured over the last ``cycles``. The speed is negative where the animal moves tail first.
+
+    Args:
+        animal: the animal at its own size.
+        settle: cycles before anything is measured [-].
+        cycles: measured cycles [-].
+        progress: called with the fraction that is done.
+    """
     robot = animal.body(animal)
     gait = animal.swim(animal, robot)
     straight = cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0)  # limbs as they are held

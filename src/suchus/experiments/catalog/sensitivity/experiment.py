@@ -59,6 +59,7 @@ class Sensitivity(Experiment):
     """Seed of the sequence's scrambling [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and a number of samples that is no power of two."""
         with Checks(self.name(), self) as check:
             check.whole("samples", 2, 2**20)
             check.whole("cycles", 1, 1000)

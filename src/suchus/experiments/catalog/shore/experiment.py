@@ -134,6 +134,7 @@ class Shore(Experiment):
     """Time step of the physics [s]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.rising("slopes", 0.01, pi / 4, "rad")
             check.rising("friction_scales", 0.01, 10.0, "")
@@ -288,6 +289,7 @@ class Shore(Experiment):
         return int(np.flatnonzero(is_candidate)[0])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the case that is drawn, by file name."""
         end = ending(record)
         return replayed(
             "shore_replay.html",

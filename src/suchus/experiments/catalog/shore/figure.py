@@ -161,6 +161,7 @@ def _shore(ax: Axes, slope_angle: float, view: tuple[float, float]) -> None:
 
 
 def _smooth(values: np.ndarray, window_samples: int) -> np.ndarray:
+    """Return the moving average over so many samples; values beyond the ends repeat the first and the last one."""
     return np.convolve(
         np.pad(values, (window_samples // 2, window_samples - 1 - window_samples // 2), mode="edge"),
         np.ones(window_samples) / window_samples,

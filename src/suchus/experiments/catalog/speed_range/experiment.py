@@ -85,6 +85,7 @@ class SpeedRange(Experiment):
     """Time step of the physics [s], at most 0.01; speeds at 2 ms are the same within 2 %."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and an empty list of gaits."""
         with Checks(self.name(), self) as check:
             check.rising("slower", 0.1, 10.0, "")
             check.whole("cycles", 1, 1000)
@@ -153,6 +154,7 @@ class SpeedRange(Experiment):
         return np.array(quantities), records[0]
 
     def _measure_walk(self, record: xr.Dataset, run: Run) -> list[float]:
+        """Return the quantities of ``_UNITS``, in their order, over the measured cycles of one walk."""
         start, end = START + run.gait.period, START + (self.cycles + 1) * run.gait.period
         excerpt = between(record, start, end)
         speed = float(displacement(record, start, end).sel(xyz="x")) / (end - start)
@@ -172,6 +174,11 @@ class SpeedRange(Experiment):
         ]
 
     def _table(self, values: np.ndarray) -> xr.Dataset:
+        """Return measured quantities as a record.
+
+        Args:
+            values: the quantities of ``_UNITS``, shape (gait, servo_model, slower, quantity).
+        """
         dims = ("gait", "servo_model", "slower")
         data = xr.Dataset(
             {name: (dims, values[..., i], {"units": unit}) for i, (name, unit) in enumerate(_UNITS.items())},

@@ -9,6 +9,7 @@ _CONSTRUCTION_NOTE = "A count of the robot that was built so; nothing is simulat
 
 
 def _count(claim: str) -> Rule:
+    """Return the rule of a claim that is a count of joints: the robot was built with this number."""
     return Rule(
         claim=claim,
         experiment="spine_kinematics",

@@ -140,6 +140,7 @@ class Swim3d(Experiment):
     here."""
 
     def __post_init__(self) -> None:
+        """Refuse an unknown reading, a Reynolds number that no grid resolves, and settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("beside", 0.0, 3.0, "body lengths")
@@ -175,6 +176,12 @@ class Swim3d(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        """Run every swim, here or on a cluster, and return record, film, replay and checkpoint files.
+
+        Args:
+            progress: called with the stage and the fraction that is done.
+            client: Dask client of the scheduler; None computes the swims in processes of this machine.
+        """
         check_kept(self.keep)
         swim_gait, printed_gait = (self._motion(sign) for sign in (-1, 1))
         joint_midlines = midlines(self.robot, swim_gait, self.compared_cells + 1) if self.taken else []
@@ -399,6 +406,13 @@ def with_midlines(reference: xr.Dataset, joint_midlines: Sequence[TakenMidline])
 
 
 def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[str, Measure]]:
+    """Yield speed, power, mass and similarity numbers of the free body on the finest grid, and its thrust while held.
+
+    Args:
+        record: of ``Swim3d.recorded``.
+        robot: the robot that swims.
+        frequency: of the wave [Hz].
+    """
     speeds, power = record.speed.values[-1], float(record.power[-1, -1])
     speed, weight = float(speeds[-1]), float(record.weight)
     yield "reynolds", Measure(float(record.reynolds), "-")
@@ -425,6 +439,7 @@ def _body(record: xr.Dataset, robot: Robot, frequency: float) -> Iterator[tuple[
 
 
 def _grids(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield speed and power by grid, and by which fraction the finest grid differs from the next coarser one."""
     for i, cells in enumerate(record.cells.values):
         yield f"speed_{cells}_cells", Measure(float(record.speed[i, -1]), "m/s")
         yield f"power_{cells}_cells", Measure(float(record.power[i, -1]), "W")
@@ -436,6 +451,7 @@ def _grids(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
 
 
 def _slice_and_models(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield the speed of the slice, and speed, power and thrust by slender-body model."""
     plane, speed = float(record.slice_speed[-1]), float(record.speed[-1, -1])
     yield "speed_slice", Measure(plane, "m/s")
     yield "slice_over_body", Measure(plane / speed, "-")
@@ -448,6 +464,7 @@ def _slice_and_models(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
 
 
 def _comparison_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield speed, power and cost of transport of each motion and tail on the compared grid."""
     for name in record.compared.values:
         motion_record, key = record.sel(compared=name), _key(str(name))
         speed, power = motion_record.compared_speed.values, float(motion_record.compared_power[-1])
@@ -472,6 +489,7 @@ def _key(name: str) -> str:
 
 
 def _loads(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield the greatest torque of each servo over its torque limit [-]."""
     for servo in record.servo.values:
         servo_record = record.sel(servo=servo)
         yield (

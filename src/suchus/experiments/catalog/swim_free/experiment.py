@@ -155,6 +155,7 @@ class SwimFree(Experiment):
     from there to the same bytes; empty keeps nothing."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, unknown swims and coefficients, and contradictory settings of a flow."""
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.05, 10.0, "Hz")
             check.number("stiffness", 1e-9, 1e6, "N m/rad")
@@ -360,6 +361,7 @@ class SwimFree(Experiment):
         )
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the whole wave at the surface, with one other swim half transparent, by file name."""
         labels = [str(label) for label in record.label.values]
         ghost = next(label for label in ("whole_stiff", "tail_only", "reversed") if label in labels)
         ghost_label = {"whole_stiff": "stiffer joints", "tail_only": "tail only", "reversed": "reversed wave"}[ghost]

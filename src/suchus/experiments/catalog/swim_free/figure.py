@@ -86,6 +86,7 @@ def draw_tail(record: xr.Dataset) -> Figure:
 
 
 def _draw_shares(ax: Axes, record: xr.Dataset, labels: Sequence[str]) -> None:
+    """Draw the amplitude of each joint of the cable in up to four swims, and the equal amplitude that is commanded."""
     names, excerpt = record.attrs["cable"], record.sel(time=slice(record.attrs["measured_from"] - 1e-9, None))
     number = np.arange(len(names)) + 1
     for label, colour, dashes, line_label in (

@@ -67,6 +67,7 @@ def _water_text(record: xr.Dataset) -> str:
 
 
 def _speeds(record: xr.Dataset) -> Figure:
+    """Draw the mean speed of each cycle by swim, and the joint angles over the last cycle of the first swim."""
     time, period = record.flow_time.values, float(record.flow_period)
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)
@@ -103,6 +104,7 @@ def _speeds(record: xr.Dataset) -> Figure:
 
 
 def _links(record: xr.Dataset) -> Figure:
+    """Draw the force on each link and the moment about each joint over the last cycle of the first swim, as maps."""
     period, time = float(record.flow_period), record.flow_time.values
     is_last_cycle = time > time[-1] - period - 1e-9
     force = record.flow_link_force.isel(flow_run=0).sel(xyz="y").values[is_last_cycle]
@@ -136,6 +138,7 @@ def _links(record: xr.Dataset) -> Figure:
 
 
 def _residual(record: xr.Dataset) -> Figure:
+    """Draw the rms force by link and the rms moment by joint, in the flow and by the section model, with R2."""
     with styled():
         figure, axes = panels(1, 2, width=10.5, height=4.4)
         for ax, kind, unit in ((axes[0, 0], "link", "N"), (axes[0, 1], "joint", "N m")):
@@ -167,6 +170,12 @@ def _residual(record: xr.Dataset) -> Figure:
 
 
 def _fins(record: xr.Dataset, fin_swims: xr.Dataset) -> Figure:
+    """Draw speed and cost of transport over the stiffness of the passive end, with the best stiffness marked.
+
+    Args:
+        record: of the experiment ``swim_free`` with a flow.
+        fin_swims: of ``in_flow.fins``.
+    """
     stiffness, speed, cost = fin_swims.stiffness.values, fin_swims.speed.values, fin_swims.cost.values
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=3.8)
@@ -199,6 +208,7 @@ def _fins(record: xr.Dataset, fin_swims: xr.Dataset) -> Figure:
 
 
 def _balance(record: xr.Dataset) -> Figure:
+    """Draw the coupling residual before and after the correction, and the errors of energy and power, over the cycles."""
     time, period = record.flow_time.values, float(record.flow_period)
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)

@@ -281,6 +281,7 @@ class _Film:
     """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
 
     def __init__(self, swim: Swim, cycles: int) -> None:
+        """Prepare to sample the last of ``cycles`` cycles of a swim at ``FRAMES`` instants."""
         self._swim = swim
         self._end, frequency = cycles * swim.run.gait.period, 1.0 / swim.run.gait.period
         self._frequency = frequency

@@ -99,6 +99,7 @@ class SwimSweep(Experiment):
     here."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and maps or lists of points that are too short."""
         with Checks("swim_sweep", self) as check:
             for name, lower_bound, upper_bound, unit in (
                 ("frequencies", 0.01, 20.0, "Hz"), ("amplitudes", 0.01, 4.0, ""), ("waves", 0.1, 1.4, ""),
@@ -128,6 +129,7 @@ class SwimSweep(Experiment):
             return self._simulated(progress, client)
 
     def _simulated(self, progress: Progress, client: Any) -> Simulated:
+        """Compute maps and points; ``client`` is the Dask client that computes the points, None computes them here."""
         check_kept(self.keep)
         gaits = {waves: self._fit(waves) for waves in {1.0, *self.waves}}
         by_frequency = self._map("frequency", self.frequencies, lambda a, f: replace(gaits[1.0].bent(a), period=1 / f))

@@ -69,6 +69,15 @@ def _max_value(record: xr.Dataset, name: str) -> float:
 
 
 def _map(ax: Axes, record: xr.Dataset, name: str, axis: str, scale: Normalize) -> ScalarMappable:
+    """Draw one quantity as a map over amplitude and another parameter; motions that cannot be followed are hatched.
+
+    Args:
+        ax: axes to draw on.
+        record: of one slender-body model.
+        name: of the quantity, one of ``_ROWS``.
+        axis: the other parameter, one of ``_AXES``.
+        scale: colour scale of the quantity.
+    """
     x, y = record[axis].values, record.amplitude.values
     values = record[f"{name}_by_{axis}"].transpose("amplitude", axis).values
     possible = record[f"possible_by_{axis}"].transpose("amplitude", axis).values.astype(bool)
@@ -105,6 +114,7 @@ _CHECKED: Mapping[str, Any] = {"marker": "o", "linestyle": "none", "markersize":
 
 
 def _legend() -> list[Line2D | Patch]:
+    """Return the entries of the legend: checked points, Salamandra's range, hatching."""
     return [
         Line2D([], [], **{**_CHECKED, "markersize": 9}, label="checked by CFD"),
         Line2D([], [], **_DOTTED, label="range of Salamandra"),

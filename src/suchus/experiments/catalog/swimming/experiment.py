@@ -123,6 +123,7 @@ class PlaneSwims(Experiment):
     keeps nothing."""
 
     def __post_init__(self) -> None:
+        """Refuse unknown readings of (20), and settings outside their ranges."""
         with Checks("swimming", self) as check:
             check.number("frequency", 0.01, 20.0, "Hz")
             check.number("reynolds", 10.0, 2e4, "")
@@ -229,6 +230,7 @@ class PlaneSwims(Experiment):
         return fit(self.robot, wave, name=f"(20), reading {self.reading}")
 
     def _held_swim(self, name: str, wave_fit: Fit, progress: Progress) -> xr.Dataset:
+        """Return a swim in the slice with the snout fixed; it resumes from its checkpoint in ``keep``."""
         checkpoint = kept_in(self.keep, f"held {name}")
         setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds)
         return resolved_swim(
@@ -323,6 +325,7 @@ def select_swim(record: xr.Dataset, name: str) -> xr.Dataset:
 
 
 def _thrusts(record: xr.Dataset, held_swim: xr.Dataset, reading: str) -> Iterator[tuple[str, Measure]]:
+    """Yield the mean thrust of the tethered body, its scatter over the cycles, and that of other readings [N/m]."""
     cycle_thrusts = held_swim.cycle_thrust[1:]
     yield f"thrust_mean_{reading}", Measure(float(cycle_thrusts.mean()), "N/m")
     yield "thrust_scatter", Measure(float(np.ptp(cycle_thrusts.values)), "N/m")
@@ -332,6 +335,7 @@ def _thrusts(record: xr.Dataset, held_swim: xr.Dataset, reading: str) -> Iterato
 
 
 def _tethered(held_swim: xr.Dataset) -> Iterator[tuple[str, Measure]]:
+    """Yield pressure differences, forces and power of the tethered body at the quarters of the cycle."""
     cycle_quarters = Quarters.each(held_swim)
     yield "convex_higher_share", Measure(convex_higher(held_swim), "-")
     yield "power_held", Measure(float(held_swim.cycle_power[1:].mean()), "W/m")
@@ -350,6 +354,15 @@ def _tethered(held_swim: xr.Dataset) -> Iterator[tuple[str, Measure]]:
 def _free_swim(
     record: xr.Dataset, free_swim: xr.Dataset, robot: Robot, frequency: float, reynolds: float
 ) -> Iterator[tuple[str, Measure]]:
+    """Yield speed, efficiency and similarity numbers of the free body, and the speeds of the slender-body models.
+
+    Args:
+        record: of the experiment.
+        free_swim: the free swim, of ``select_swim``.
+        robot: the robot that swims.
+        frequency: of the wave [Hz].
+        reynolds: frequency times length squared over viscosity [-].
+    """
     swim_result = Swum.of(free_swim, frequency)
     yield "speed_free", Measure(swim_result.speed, "m/s")
     yield "speed_free_lengths", Measure(swim_result.speed / robot.length, "1/s")
@@ -392,6 +405,7 @@ def _condition_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
 
 
 def _loads(held_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
+    """Yield the peak torque of each joint [N m/m], and of each servo over its torque limit [-]."""
     for joint in held_swim.joint.values:
         yield f"joint_torque_peak_{joint}", Measure(float(abs(held_swim.joint_torque.sel(joint=joint)).max()), "N m/m")
     for servo in held_swim.servo.values:

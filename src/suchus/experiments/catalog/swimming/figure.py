@@ -262,6 +262,16 @@ def film_pressure(record: xr.Dataset) -> bytes:
 
 
 def _film(record: xr.Dataset, quantity: str, unit: str, colours: str, fraction: float, caption: str) -> bytes:
+    """Return the last cycle of the free swim as a film of one field.
+
+    Args:
+        record: of the experiment ``swimming``.
+        quantity: ``vorticity`` or ``pressure``.
+        unit: of the quantity.
+        colours: name of the colour map.
+        fraction: quantile of the absolute values at which the colour scale ends [-].
+        caption: of the film.
+    """
     values, phase = record[f"free_{quantity}"].values, record.free_frame.values
     with styled(axes__grid=False, figure__dpi=_FILM_DPI):
         figure, axes = panels(1, 1, width=9.6, height=4.3)

@@ -208,6 +208,13 @@ force."""
 
 
 def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any:
+    """Return one variable of all rungs as a tuple for xarray: dimensions, values, attributes.
+
+    Args:
+        key: of ``_SHAPES``.
+        results: of each rung, by variable; a missing variable becomes NaN.
+        cycles: cycles of each swim [-].
+    """
     dims, unit = _SHAPES[key]
     sizes = {"ladder_motion": len(MOTIONS), "ladder_cycle": cycles, "ladder_tick": TICKS * cycles + 1,
              "ladder_place": COURSE, "ladder_quarter": 4}  # fmt: skip
@@ -434,6 +441,14 @@ def measures(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]
 
 
 def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]]:
+    """Yield by rung the speeds, and each number with its bounds and its spread.
+
+    In three dimensions the bounds include those of the stored study of grids.
+
+    Args:
+        record: of ``climbed``.
+        length: of the robot [m].
+    """
     grids = json.loads(record.attrs["grids"])
     for name in record.rung.values:
         rung = record.sel(rung=name)
@@ -456,10 +471,18 @@ def _of_rungs(record: xr.Dataset, length: float) -> Iterator[tuple[str, Measure]
 
 
 def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
+    """Yield every number of one rung by name.
+
+    Args:
+        rung: record of one rung.
+        length: of the robot [m].
+    """
     cycles = rung.sizes["ladder_cycle"]
     whole_speed, tail, trunk = (rung.ladder_speed.sel(ladder_motion=motion).values for motion in MOTIONS)
 
     def gain(partial_speed: np.ndarray) -> Settled:
+        """Return the fraction of the speed that is missing without a part of the motion."""
+
         def share(a: int, b: int) -> list[float]:
             whole_mean = float(whole_speed[a:b].mean())
             return [(whole_mean - float(partial_speed[a:b].mean())) / abs(whole_mean) if whole_mean else nan]
@@ -492,6 +515,7 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
 
     @cache
     def wave(a: int, b: int) -> tuple[float, ...]:
+        """Return wave fraction [-], waves per body [-], and amplitudes at the middle and the tip [body length]."""
         excerpt = course[a * TICKS : b * TICKS + 1]
         side = (
             1.0 if excerpt[0, -1] >= excerpt[:-1, -1].mean() else -1.0

@@ -233,6 +233,7 @@ def _bend_of_cord(plates: TailMeasures, cord_change: np.ndarray) -> np.ndarray:
 
 
 def _shapes(plates: TailMeasures, furthest: float) -> xr.Dataset:
+    """Return positions of joints and end of the tail at the bends of ``SHAPES``, exact and as printed [m]."""
     bend = np.array([b for b in SHAPES if b <= furthest + 1e-9])
     length_attrs = {"units": "m"}
     return xr.Dataset(

@@ -114,6 +114,7 @@ class Terrain(Experiment):
     """Time step of the physics [s], at most 0.01."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and empty lists of surfaces and correlation lengths."""
         with Checks(self.name(), self) as check:
             for heights in ("bumps", "steps", "stones"):
                 if getattr(self, heights):
@@ -213,6 +214,7 @@ class Terrain(Experiment):
         return self.told(measures, kinds=[kind for kind, share in shares.items() if isfinite(share)])
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
+        """Return the replay of the semi-erect walk over bumps, with the low crawl half transparent, by file name."""
         height = f"{1000 * self._shown_height:.3g}"
         return replayed(
             "terrain_replay.html",

@@ -73,6 +73,7 @@ class Turning(Experiment):
     """Time step of the physics [s], at most 0.01."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges, and an empty list of gaits."""
         with Checks(self.name(), self) as check:
             check.rising("bends", 0.0, 2.0, "rad")
             check.rising("asymmetries", 0.0, 1.0, "")

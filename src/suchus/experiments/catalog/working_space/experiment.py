@@ -53,6 +53,7 @@ class WorkingSpace(Experiment):
     """Seed of the drawing [-]."""
 
     def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
         with Checks(self.name(), self) as check:
             check.whole("crawling", 1, 2**24)
             check.whole("standing", 1, 2**24)
@@ -179,6 +180,15 @@ def _cells(ax: Any, points: np.ndarray, cell: float, colour: str) -> None:
 
 
 def _posture(ax: Any, record: xr.Dataset, state: str, axes: tuple[int, int], colour: str) -> None:
+    """Draw trunk, left legs and snout of the highest posture of a state.
+
+    Args:
+        ax: axes to draw on.
+        record: with ``body_STATE`` and ``legs_STATE`` [m].
+        state: one of ``STATES``.
+        axes: indices of the horizontal and the vertical coordinate in ``xyz``.
+        colour: of the lines.
+    """
     body, legs = record[f"body_{state}"].values[:, list(axes)], record[f"legs_{state}"].values[..., list(axes)]
     ax.plot(*body.T, color=colour, linewidth=4.0, solid_capstyle="round", solid_joinstyle="round", zorder=3)
     for leg in legs:
