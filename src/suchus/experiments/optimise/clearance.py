@@ -60,7 +60,7 @@ def _parts(robot: Robot, angles: np.ndarray) -> dict[str, _Capsule]:
 
 @lru_cache(maxsize=64)
 def _pairs(robot: Robot) -> tuple[tuple[str, str], ...]:
-    """Return the names of the parts that are held against each other."""
+    """Return the names of the pairs of parts whose distance counts."""
     robot_layout, straight = layout(robot), _parts(robot, np.zeros(len(layout(robot).hinges)))
     limbs = [[f"{limb.name} {link.name}" for link in limb.girdle.limb.links] for limb in robot_layout.limbs]
     trunk, tail = (
@@ -83,10 +83,15 @@ def _pairs(robot: Robot) -> tuple[tuple[str, str], ...]:
 
 
 def _segment(robot: Robot, segment: Segment, body_frames: BodyFrames) -> list[_Capsule]:
-    """Return the shapes of a segment: rods as they are, shells along the body.
+    """Return the capsules of a segment: rods as they are, shells along the body.
 
     A shell that carries limbs is as thick as it is high, since limbs leave it at its sides, and reaches from the joint
     behind it to the girdle, or through its segment if it is the only shape. Any other shell is as thick as it is wide.
+
+    Args:
+        robot: the robot.
+        segment: of the axis.
+        body_frames: frames of all bodies.
     """
     bodies = layout(robot).bodies
     body = [tree_body.name for tree_body in bodies].index(segment.name)
@@ -136,6 +141,12 @@ def segments_apart(p: np.ndarray, p_end: np.ndarray, q: np.ndarray, q_end: np.nd
     """Return the distance of two segments, shape (...,) [m].
 
     The nearest points of the two lines are clamped to the first segment, then to the second, then the first follows.
+
+    Args:
+        p: start of the first segment, shape (..., 3) [m].
+        p_end: its end.
+        q: start of the second segment, shape (..., 3) [m].
+        q_end: its end.
 
     Source: C. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
     """

@@ -74,7 +74,14 @@ def optimise(
 
 
 def _arm(spec: Optimisation, folder: Path, progress: Progress, place: Place) -> SearchResult:
-    """Search one condition."""
+    """Search one condition, check its best candidates, and vary each field around the best.
+
+    Args:
+        spec: the search, of one condition.
+        folder: for its results and its store.
+        progress: called with the stage and the fraction that is done.
+        place: where candidates are evaluated.
+    """
     name = spec.arms[0].name
     with opened(spec, folder / name) as store:
         result = _searched(spec, store, folder, progress, place)
@@ -128,7 +135,15 @@ def tried(place: Place, spec: Optimisation, shares: np.ndarray, progress: Progre
 
 
 def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress, place: Place) -> SearchResult:
-    """Run what is not in the store yet; return all candidates."""
+    """Evaluate the generations that are not in the store, and return all candidates.
+
+    Args:
+        spec: the search, of one condition.
+        store: of the generations.
+        folder: for the best gait so far.
+        progress: called with the stage and the fraction that is done.
+        place: where candidates are evaluated.
+    """
     start = _generation(store, 0, np.array([spec.start]), lambda x: tried(place, spec, x))
     parts, driver = units(spec, start), search(spec)
     name, aim = spec.arms[0].name, spec.aims[0].name
@@ -166,7 +181,14 @@ def _with_generation(table: xr.Dataset, number: int) -> xr.Dataset:
 def _generation(
     store: Store, number: int, candidates: np.ndarray, make: Callable[[np.ndarray], xr.Dataset]
 ) -> xr.Dataset:
-    """Return one generation, from the store if it is there."""
+    """Return one generation, from the store if it is there.
+
+    Args:
+        store: of the generations.
+        number: of the generation.
+        candidates: fractions of the ranges, shape (candidate, field).
+        make: evaluates the candidates.
+    """
     table = _stored_part(store, number, lambda: make(candidates))
     if not np.array_equal(table.share.values, candidates):
         raise IncompatibleRecord(
@@ -230,7 +252,11 @@ rubber foot on floors from 0.5 to 1."""
 
 
 def checked(spec: Optimisation, runs: Sequence[Run]) -> xr.Dataset:
-    """Run the chosen, and where the search started, under every condition with the robot's own time step.
+    """Simulate the best candidates and the start under every condition, with the robot's own time step.
+
+    Args:
+        spec: the search, of one condition.
+        runs: best candidates.
 
     Returns:
         ``aim_...`` and ``limit_...`` along ``run`` (the chosen, then ``start``) and ``condition``; NaN where it

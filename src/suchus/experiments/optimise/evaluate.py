@@ -77,10 +77,16 @@ def columns(spec: Optimisation) -> dict[str, Kind]:
 def _walk_candidates(
     spec: Optimisation, runs: Mapping[int, Run], progress: Progress, timestep: float
 ) -> dict[int, dict[str, float] | None]:
-    """Return what each candidate reached, None for one that diverged; on every ground, the worst limit counts.
+    """Return the quantities of each candidate by column, None for one that diverged.
 
     A candidate that the simulation refuses, as for a foot point between those that were looked at, has no row; the
     batch is halved until it is found.
+
+    Args:
+        spec: the search, of one condition.
+        runs: by number of the candidate.
+        progress: called with the fraction that is done.
+        timestep: of the physics [s].
     """
     if not runs:
         return {}
@@ -117,7 +123,12 @@ def measure(spec: Optimisation, runs: Sequence[Run], record: xr.Dataset) -> dict
 
 
 def _joined(name: str, values: np.ndarray) -> float:
-    """Return what a candidate has over all grounds: the mean of an aim, the worst of a limit."""
+    """Return the value of a candidate over all grounds: the mean of an aim, the worst of a limit.
+
+    Args:
+        name: of the column.
+        values: on each ground.
+    """
     if name.startswith("aim_"):
         return float(values.mean())
     reduce = values.min if LIMITS[name.removeprefix("limit_")].good == "more" else values.max
@@ -135,13 +146,23 @@ ACTIVE = 0.03
 
 
 def excesses(spec: Optimisation, table: xr.Dataset) -> np.ndarray:
-    """Return by which part of itself each limit is exceeded, negative where it is kept, shape (candidate, limit)."""
+    """Return by which part of itself each limit is exceeded, negative where it is kept, shape (candidate, limit).
+
+    Args:
+        spec: the search.
+        table: of ``evaluate``.
+    """
     rows = [over(limit, table[f"limit_{limit.name}"].values) for limit in spec.limits]
     return np.array(rows).T if rows else np.zeros((table.sizes["candidate"], 0))
 
 
 def over(limit: Limit, values: np.ndarray) -> np.ndarray:
-    """Return by which part of itself a limit is exceeded."""
+    """Return by which fraction of itself a limit is exceeded; negative where it is kept [-].
+
+    Args:
+        limit: the limit.
+        values: of the limited quantity, in its unit.
+    """
     kind = LIMITS[limit.name]
     sign = 1.0 if kind.good == "less" else -1.0
     return np.asarray(sign * (values - limit.value) / max(abs(limit.value), 1e-9 if limit.value else kind.scale))
@@ -160,9 +181,14 @@ def units(spec: Optimisation, start: xr.Dataset) -> np.ndarray:
 
 
 def losses(spec: Optimisation, table: xr.Dataset, parts: np.ndarray) -> np.ndarray:
-    """Return each aim as something to make small, in parts of the start's, shape (candidate, aim).
+    """Return each aim as a loss in units of the start's value, shape (candidate, aim).
 
     Limits that are exceeded make all aims worse; what cannot walk comes after everything that does.
+
+    Args:
+        spec: the search.
+        table: of ``evaluate``.
+        parts: unit of each aim, of ``units``.
     """
     signs = np.array([-1.0 if AIMS[aim.name].good == "more" else 1.0 for aim in spec.aims])
     values = np.column_stack([table[f"aim_{aim.name}"].values for aim in spec.aims])

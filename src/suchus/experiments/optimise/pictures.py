@@ -167,7 +167,13 @@ def _lanes(runs: Sequence[Run], record: xr.Dataset, times: Sequence[float]) -> t
 
 
 def _draw_standing(runs: Sequence[Run], record: xr.Dataset, texts: Sequence[str]) -> Figure:
-    """Draw every run from its right side, half of the time that it is meant to stand."""
+    """Draw every run from its right side, in the middle of the time in which it should stand.
+
+    Args:
+        runs: with a control that stands up.
+        record: of the runs.
+        texts: written under each.
+    """
     with styled():
         figure, axes = panels(1, 1, width=3.0 + 2.6 * len(runs), height=5.6)
         ax = axes[0, 0]

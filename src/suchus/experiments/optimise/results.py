@@ -134,7 +134,12 @@ def _finite(value: Any) -> float | None:
 
 
 def sentence(search: SearchResult, index: int) -> str:
-    """Say what a chosen gait does otherwise than the start: the fields that moved farthest in their ranges."""
+    """Return which fields of a chosen gait differ most from the start, and which limits and ranges stop it.
+
+    Args:
+        search: of one condition.
+        index: of the chosen candidate.
+    """
     ranges = {
         v.field: (float(v.low), float(v.high)) for v in search.spec.vary if v.low is not None and v.high is not None
     }

@@ -125,7 +125,13 @@ def _in_order(kernel: int) -> int:
 
 
 def _options(spec: Optimisation, population: int, randoms: np.random.Generator) -> dict[str, Any]:
-    """Return settings of CMA-ES: within the cube, silent, and drawing from a generator of our own."""
+    """Return the settings of CMA-ES: bounds, population, tolerances, and our own generator of random numbers.
+
+    Args:
+        spec: the search.
+        population: candidates of a generation [-].
+        randoms: generator of random numbers.
+    """
     single_field = (
         {"maxstd": np.inf} if len(spec.vary) == 1 else {}
     )  # cma 4.5 cannot bound the spread of a single field
@@ -168,9 +174,9 @@ class SearchResult:
     history: xr.Dataset
     """All candidates in order, the start first, with ``generation`` and ``score``."""
     checks: xr.Dataset | None = None
-    """The best under other conditions; see ``checks.checked``."""
+    """Aims and limits of the best under other conditions; see ``conduct.checked``."""
     near: xr.Dataset | None = None
-    """Around the best; see ``checks.around``."""
+    """Candidates around the best; see ``conduct.around``."""
 
     @property
     def arm(self) -> str:

@@ -98,7 +98,13 @@ def first_order(parameters: np.ndarray, quantity: np.ndarray, *, seed: int = 0) 
 
 
 def _between_bins_fraction(column: np.ndarray, values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return the adjusted share of the variance between bins, for every row of weights."""
+    """Return the fraction of the variance between bins of a parameter, adjusted for chance, for every resample.
+
+    Args:
+        column: values of the parameter, shape (sample,).
+        values: ranks of the quantity, shape (sample,).
+        weights: of the samples, shape (resample, sample).
+    """
     count = len(values)
     bins = (stats.rankdata(column, method="ordinal") - 1).astype(int) * _BINS // count
     member = np.eye(_BINS)[bins]

@@ -49,7 +49,14 @@ def run_chunk(study: Study, number: int, progress: Progress = silent) -> xr.Data
 def _walk(
     study: Study, runs: Mapping[int, Run], rows: dict[int, dict[str, float]], errors: dict[int, str], progress: Progress
 ) -> None:
-    """Simulate runs together; if one of them spoils the batch, or it is too large, halve it until the one is found.
+    """Simulate runs in one batch, and halve the batch when it fails, until the failing run is alone.
+
+    Args:
+        study: the study.
+        runs: by sample.
+        rows: measured numbers by sample; filled in.
+        errors: why a sample has no numbers; filled in.
+        progress: called with the fraction that is done.
 
     Raises:
         MemoryError: there is no room even for a single run, which says nothing of the run.

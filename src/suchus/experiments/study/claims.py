@@ -76,7 +76,12 @@ class Claims:
             check.number("biased", 0.0, 1.0, "")
 
     def study(self, samples: int, timestep: float) -> Study:
-        """Return the study of so many samples; the first ones stay the same, however many."""
+        """Return the study of so many samples; a study of more samples begins with the same ones.
+
+        Args:
+            samples: number of designs [-].
+            timestep: of the physics [s].
+        """
         rows = [(f"robot.{choice.field}", choice) for choice in ROBOTS.beside("caiman", "chosen", ())]
         rows += [(f"gait.{choice.field}", choice) for choice in GAITS.beside("belly_crawl", "chosen", ())]
         return Study(
@@ -117,7 +122,12 @@ class Claims:
         return tuple(Arm(name=name, values=sets[name]) for name in RUNS)
 
     def record(self, study: Study, results: xr.Dataset) -> xr.Dataset:
-        """Return the results by sample and run, with what became of each claim."""
+        """Return the results by sample and run, with number and truth of each claim.
+
+        Args:
+            study: of ``Claims.study``.
+            results: of all runs, as ``run_chunk`` describes them.
+        """
         names = [v.field for v in study.vary]
         shape = results.sizes["sample"] // len(RUNS), len(RUNS)
         status = np.array([_status(row) for row in results.error.values.reshape(shape)])

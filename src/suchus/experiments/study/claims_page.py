@@ -82,7 +82,13 @@ def write_renewed(sweep_records: Mapping[str, xr.Dataset], folder: Path) -> Path
 def outcome(
     record: xr.Dataset, rows: Sequence[dict[str, Any]], sweep_records: Mapping[str, xr.Dataset]
 ) -> dict[str, Any]:
-    """Return everything as JSON holds it; what is not finite becomes null."""
+    """Return the numbers of the study as JSON holds them; what is not finite becomes null.
+
+    Args:
+        record: of ``claims.conduct_claims``.
+        rows: of ``claims_table.claim_row``.
+        sweep_records: of ``varied.conduct_varied``, by experiment.
+    """
     return {
         "study": "claims",
         "timestep": float(record.attrs["timestep"]),

@@ -36,23 +36,24 @@ from suchus.sim.land.afloat import floats
 from suchus.sim.metrics import displacement, heading_change
 
 _OSCILLATORS = Oscillators()
-_DRIVE_MARGIN = 0.01  # above the limbs' highest drive, where they have just fallen silent
+_DRIVE_MARGIN = 0.01  # above the highest drive of the limbs [-]; their oscillators are silent there
 STRAIGHT = ("drive_low", "straight", "drive_high")
-"""Walks by an even drive: the lowest that moves the limbs, the one for walking, the highest."""
+"""Walks by an equal drive on both sides: the lowest that moves the limbs, the one for walking, the highest."""
 _TURNS = {"turn_gained": ("straight", "asymmetry")}
-"""Measures that are of some walks alone, and of which."""
-_SAMPLE_INTERVAL = 4  # control periods between the samples kept of the oscillators
-_MIN_SHORE_TIME = START + 1.5  # of the runs from the water, beyond the time in which the felt load settles [s]
-_MEASURED_FRACTION = 0.25  # the last part of a sweep's time, over which frequencies are taken
+"""Measures that need some walks only, and the names of these walks."""
+_SAMPLE_INTERVAL = 4  # control periods between stored samples of the oscillators
+_MIN_SHORE_TIME = START + 1.5  # shortest run from the water; the sensed load settles before [s]
+_MEASURED_FRACTION = 0.25  # last fraction of a sweep, over which frequencies are measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatternGeneratorExperiment(Experiment):
     """Phase oscillators under a drive: alone, then on the body on land.
 
-    The sweep starts at the gait's phases and is measured when it has settled. Locked: from some time on until the end,
-    and for at least ``hold`` cycles, no active oscillator is farther than ``within`` from its place in the state that a
-    start at the gait's phases reaches, the common shift of all aside. Turning is that of the body's heading.
+    The sweep starts at the gait's phases and is measured after it has settled. A start counts as locked if the phase
+    error of every active oscillator stays below ``within`` for at least ``hold`` cycles until the end. The reference is
+    the state that a start at the gait's phases reaches; a phase shift that all oscillators share is no error. Turning
+    is the change of the body's heading.
     """
 
     title = "What do coupled oscillators make of a single drive: walking, swimming, turning, order from any start?"
@@ -158,7 +159,7 @@ class PatternGeneratorExperiment(Experiment):
         return Simulated(record=record, replays=self._replays(ramped))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; turns alone need no drive but the walks'."""
+        """Return at least the wanted measures; if only turns are wanted, only their walks are simulated."""
         if not set(wanted) <= _TURNS.keys():
             return super(PatternGeneratorExperiment, self).measured(wanted, progress)
         arms = dict.fromkeys(arm for name in wanted for arm in _TURNS[name])
@@ -181,7 +182,7 @@ class PatternGeneratorExperiment(Experiment):
         return measures | one_drive.measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say what the drive does, what steers, and how order comes about."""
+        """Return what drive and steering do, and how the oscillators lock, in words."""
         return self.told(measures, standing=STANDING)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -233,11 +234,17 @@ class PatternGeneratorExperiment(Experiment):
 
     @property
     def _pace(self) -> float:
-        """How many times faster than published the oscillators go, so that the gait's period belongs to drive 2."""
+        """Factor on the published frequencies [-]; with it drive 2 gives the period of the gait."""
         return 1.0 / (self.gait.period * float(_OSCILLATORS.limbs(np.array(_OSCILLATORS.reference))[0]))
 
     def _starts(self, name: str, drive: float, progress: Progress) -> xr.Dataset:
-        """Return over time how far the oscillators are from their places, for every random start."""
+        """Return the phase error of the farthest oscillator over time, for every random start [rad].
+
+        Args:
+            name: state of the record, ``walk`` or ``swim``.
+            drive: of the oscillators [-].
+            progress: called with the fraction that is done.
+        """
         walks = drive <= _OSCILLATORS.limb_drives[1]
         law = _OSCILLATORS.limbs if walks else _OSCILLATORS.axis
         frequency = self._pace * float(law(np.array(drive))[0])
@@ -293,7 +300,7 @@ class PatternGeneratorExperiment(Experiment):
 
     @property
     def _arms(self) -> dict[str, PatternGenerator]:
-        """Under what it walks on land."""
+        """Controls of the walks on land, by name."""
         min_drive, max_drive = _OSCILLATORS.limb_drives
         return {
             "drive_low": PatternGenerator(drive=min_drive),
@@ -305,7 +312,12 @@ class PatternGeneratorExperiment(Experiment):
         }
 
     def _walk_arms(self, arms: Mapping[str, PatternGenerator], progress: Progress) -> xr.Dataset:
-        """Return how far and in which direction it walks under each control."""
+        """Return displacement forward [m], change of heading [rad] and cycles walked [-] under each control.
+
+        Args:
+            arms: controls by name.
+            progress: called with the fraction that is done.
+        """
         runs = [Run(robot=self.robot, gait=self.gait, control=control, label=name) for name, control in arms.items()]
         duration = START + self.cycles * self.gait.period
         record = simulate(runs, duration=duration, every=_SAMPLE_INTERVAL, progress=progress)
@@ -323,7 +335,7 @@ class PatternGeneratorExperiment(Experiment):
         )
 
     def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return what it walks under each control, and the run under the ramp."""
+        """Return displacement and turns under each control, and the record of the run under the ramp."""
         walks = self._walk_arms(self._arms, staged(progress, "walks", 0.45, 0.65))
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
@@ -343,7 +355,7 @@ class PatternGeneratorExperiment(Experiment):
 
 
 def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Return how far the farthest oscillator is from its place, the common shift of all aside [rad].
+    """Return the greatest phase error of an oscillator, without the mean phase shift of all [rad].
 
     Args:
         phase: of the oscillators, shape (..., oscillator) [cycle].
@@ -355,7 +367,7 @@ def lock_error(phase: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 def _sweep_measures(record: xr.Dataset) -> Measures:
-    """Return what the sweep shows at the two drives, and on both sides of where the limbs fall silent."""
+    """Return frequencies, lags and amplitudes at the two drives, and around the highest drive of the limbs."""
     edge = record.attrs["silent_above"]
     states = {"walk": record.attrs["walk"], "swim": record.attrs["swim"], "below": edge, "above": edge + _DRIVE_MARGIN}
     measures = Measures()
@@ -377,7 +389,7 @@ def _sweep_measures(record: xr.Dataset) -> Measures:
 
 
 def _turn_measures(record: xr.Dataset) -> Measures:
-    """Return by how much each walk turns in a cycle, and what unequal drives add."""
+    """Return the turn of each walk in a cycle, and its change by unequal drives [rad/cycle]."""
     turns, unit = record.turned / record.walked, "rad/cycle"
     measures = Measures((f"turn_{arm}", Measure(float(turns.sel(arm=arm)), unit)) for arm in record.arm.values)
     gained = abs(measures["turn_asymmetry"].value - measures["turn_straight"].value)
@@ -392,7 +404,13 @@ def _lags(phase: np.ndarray) -> np.ndarray:
 
 
 def _locked(record: xr.Dataset, state: str, ending: str) -> Measures:
-    """Return the share of starts that lock, and after how many cycles those do; NaN if none does."""
+    """Return the fraction of starts that lock, and mean and greatest time until they do; NaN if none does.
+
+    Args:
+        record: with ``STATE_error`` over starts and cycles [rad].
+        state: ``walk`` or ``swim``.
+        ending: of the names of the measures.
+    """
     error, cycle = record[f"{state}_error"], record[f"{state}_cycle"]
     step = float(cycle[1] - cycle[0])
     since = (cycle.where(error > record.attrs["within"]).max(str(cycle.dims[0])) + step).fillna(0.0)

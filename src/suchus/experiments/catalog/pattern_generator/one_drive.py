@@ -1,4 +1,4 @@
-"""One drive from the water onto the land: a pattern generator whose drive never changes, and the load that it feels."""
+"""One drive from the water onto the land: a pattern generator with a constant drive and a load sensor."""
 
 from math import sin
 
@@ -13,19 +13,19 @@ from suchus.robot.motion import START, Gait
 from suchus.sim.land import Lake, Run
 
 ARMS = ("felt", "unfelt")
-"""With the load felt, and without."""
+"""With the sensed load, and without."""
 _SETTLING_TIME = 1.0
-"""Time after the begin of the walk from which is measured; the low pass of the load has settled [s]."""
+"""Time after the start of the walk at which measuring begins; the low pass of the load has settled [s]."""
 _SILENT = 0.02
 """Rate below which the limbs' clock stands still [cycle/s]; walking at the lowest drive it is six times as much."""
 
 
 def runs(robot: Robot, gait: Gait, drive: float, slope: float, water_line: float) -> list[Run]:
-    """Return a run towards a shore with the load felt, and one without.
+    """Return a run towards a shore with the sensed load, and one without.
 
     Args:
-        robot: who floats.
-        gait: whose bends and foot paths are followed.
+        robot: a floating robot.
+        gait: gives bends and foot paths.
         drive: of the oscillators, for the whole run [-].
         slope: of the shore [rad].
         water_line: distance of the water line ahead, along the ground [m].
@@ -44,7 +44,12 @@ def runs(robot: Robot, gait: Gait, drive: float, slope: float, water_line: float
 
 
 def reduced(record: xr.Dataset, water_line: float) -> xr.Dataset:
-    """Return what is kept of these runs: distance up the shore from the water line, and the limbs' clock."""
+    """Return the stored part of these runs: distance up the shore from the water line, limb phase, load on the feet.
+
+    Args:
+        record: of the runs, in the order of ``ARMS``.
+        water_line: distance of the water line from the start, along the ground [m].
+    """
     limbs = record.limb_phase.isel(leg=0, drop=True)
     distance = record.centre_of_mass.sel(xyz="x", drop=True) - water_line
     return xr.Dataset(
@@ -58,7 +63,7 @@ def reduced(record: xr.Dataset, water_line: float) -> xr.Dataset:
 
 
 def measures(record: xr.Dataset) -> Measures:
-    """Return how it swims and walks by one drive: speeds, changes, and how far it comes."""
+    """Return speeds afloat and ashore, number of changes between them, and the distance reached, by one drive."""
     steady_record = record.sel(shore_time=slice(START + _SETTLING_TIME - 1e-9, None))
     time, distance = steady_record.shore_time.values, steady_record.shore_ahead.sel(shore_arm="felt").values
     step = np.diff(time)

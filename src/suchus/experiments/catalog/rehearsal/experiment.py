@@ -26,30 +26,30 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 RULES = ("open", "closed", "steered", "pattern")
 LOSES = 0.02
-"""Share of its displacement from whose loss on a rule is flagged [-]; a real walk scatters by about as much."""
+"""Relative change of the displacement above which a rule is flagged [-]; real walks scatter by about as much."""
 TURNS = radians(5.0)
-"""Further change of heading from which on it is flagged [rad]."""
+"""Additional change of heading above which a rule is flagged [rad]."""
 ENOUGH = 2.0
-"""Cycles below which no wire is judged [-]: a rule needs about one to answer."""
-_DRIVE_LIMITS = DriveLimits(silent=10_000, patience=10.0)  # what is studied here is what losses do, not when to stop
+"""Fewest cycles with which a wire is judged [-]; a rule takes about one cycle to respond."""
+_DRIVE_LIMITS = DriveLimits(silent=10_000, patience=10.0)  # lost packets must not stop the walk here
 
 
 class Wire(NamedTuple):
     """One kind of imperfect wire."""
 
     name: str
-    """As tables name it."""
+    """Name in tables."""
     trouble: Trouble
-    """What is imperfect."""
+    """Its imperfections."""
 
 
 class Rehearsed(NamedTuple):
     """A walk over an emulated bus."""
 
     log: xr.Dataset
-    """What the robot said."""
+    """Log of the driver: commands and readings."""
     truth: xr.Dataset
-    """What truly happened."""
+    """Record of the emulated body."""
 
 
 def rehearse(
@@ -62,16 +62,16 @@ def rehearse(
     trouble: Trouble | None = None,
     built: Wiring | None = None,
 ) -> Rehearsed:
-    """Let a robot walk over an emulated bus whose time is told.
+    """Simulate a walk over an emulated bus whose clock is set by the driver.
 
     Args:
         robot: the robot.
-        gait: in which it walks.
-        control: what decides.
-        duration: the first second of standing included [s].
-        protocol: that its servos speak.
-        trouble: of the wire; none by default.
-        built: how the robot is built, where that is not as its wiring says.
+        gait: of the walk.
+        control: control rule of the walk.
+        duration: with the first second of standing [s].
+        protocol: of the servos.
+        trouble: imperfections of the wire; none by default.
+        built: actual wiring of the robot, where it differs from the configured one.
     """
     wiring = straight(robot, [BusPlace(port="memory", protocol=protocol)], USUAL[protocol], boards=True)  # type: ignore[arg-type]
     trouble = trouble or Trouble()
@@ -84,7 +84,7 @@ def rehearse(
 
 
 def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
-    """Let a robot be sent goals without a wire: what is left between this and a rehearsed walk is the wire's own.
+    """Simulate a robot that gets its goals without a wire; the difference to a rehearsed walk is due to the wire.
 
     Args:
         robot: the robot.
@@ -92,7 +92,7 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
         goals: of all servos at every tick, shape (time, servo) [rad].
 
     Returns:
-        What it did, a sample for each row of goals.
+        Record of the body, with a sample for each row of goals.
     """
     body = EmulatedBody(robot, gait)
     for row in goals:
@@ -102,15 +102,13 @@ def sent_directly(robot: Robot, gait: Gait, goals: np.ndarray) -> xr.Dataset:
 
 
 def flagged(displacement_change: float, heading_difference: float) -> bool:
-    """Return whether a wire costs a rule so much that people should know.
+    """Return whether a wire changes a walk by more than ``LOSES`` or ``TURNS``; NaN counts as more.
 
     Args:
         displacement_change: change of the displacement, as a share of that without the wire [-].
         heading_difference: further change of heading [rad].
     """
-    return not (
-        abs(displacement_change) <= LOSES and abs(heading_difference) <= TURNS
-    )  # what is not a number is flagged
+    return not (abs(displacement_change) <= LOSES and abs(heading_difference) <= TURNS)  # NaN is flagged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -217,7 +215,7 @@ class Rehearsal(Experiment):
                     walk = rehearse(self.robot, self.gait, control, length, trouble=wire.trouble)
                     distances[i, j], headings[i, j] = _displacement_and_turn(walk.truth)
                 except Diverged:
-                    pass  # not a number: flagged
+                    pass  # stays NaN, which is flagged
                 report_step(f"{rule}, {wire.name.replace('_', ' ')}")
         step = 2 * np.pi / 4096
         record = xr.Dataset(
@@ -242,7 +240,7 @@ class Rehearsal(Experiment):
         return Simulated(record=record)
 
     def control(self, rule: str) -> Control:
-        """Return what decides, by its name."""
+        """Return the control of a rule by its name."""
         closed = Coordinated().suited(self.robot, self.gait)
         controls: dict[str, Control] = {
             "open": OpenLoop(),
@@ -253,7 +251,7 @@ class Rehearsal(Experiment):
         return controls[rule]
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return how far the walks differ, and which wires cost which rule too much."""
+        """Return how far the walks differ, and which wires change the walk of which rule too much."""
         measures = Measures(
             {
                 "position_off": Measure(float(record.position_off.max()), "m"),

@@ -1,4 +1,4 @@
-"""The numbers of a run that stand beside what is published of walking salamanders."""
+"""Numbers of a run that are compared with published numbers of walking salamanders."""
 
 import csv
 import io
@@ -23,7 +23,12 @@ def window(record: xr.Dataset) -> Window:
 
 
 def waves(record: xr.Dataset, cycle_window: Window) -> Measures:
-    """Return how far the axis bends as a standing wave, as commanded and as achieved, and how well it follows."""
+    """Return the standing index of the axis, commanded and achieved [-], and the rms tracking error [rad].
+
+    Args:
+        record: of one run.
+        cycle_window: start of the first cycle [s], period [s], number of cycles.
+    """
     names = list(record.attrs["axis"])
     servos = [str(name) for name in record.servo.values if name in record.joint.values]
     cycle = {
@@ -39,7 +44,13 @@ def waves(record: xr.Dataset, cycle_window: Window) -> Measures:
 
 
 def steps(record: xr.Dataset, cycle_window: Window, stance_threshold: float) -> Measures:
-    """Return the forces on fore and hind feet, the mean of left and right, and how far the feet slip."""
+    """Return forces on fore and hind feet, each the mean of left and right, and the slip of the feet.
+
+    Args:
+        record: of one run.
+        cycle_window: start of the first cycle [s], period [s], number of cycles.
+        stance_threshold: vertical force from which a foot stands [body weight].
+    """
     force = stance_forces(record, cycle_window)
     measures = Measures()
     singles = each_cycle(record.foot_force, *cycle_window) / weight(record)
@@ -75,7 +86,7 @@ def _slip(record: xr.Dataset, cycle_window: Window, legs: list[str], stance_thre
 
 
 def beside(measures: Mapping[str, Measure]) -> str:
-    """Return a CSV table: each published number of the animal beside the robot's."""
+    """Return a CSV table with a row for each published number: robot, animal, standard deviation, unit, source."""
     file = io.StringIO()
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(["quantity", "robot", "animal", "standard_deviation", "unit", "animal_and_source"])

@@ -240,7 +240,15 @@ class Shore(Experiment):
         return swim_of(self.robot, frequency=self.frequency)
 
     def _run(self, gait: Gait, uphill: float, scale: float, air_fraction: float, seed: int) -> Run:
-        """Return a run: up a shore from the water, or down into it where the slope falls."""
+        """Return a run up a shore from the water, or down into the water where ``uphill`` is negative.
+
+        Args:
+            gait: on land.
+            uphill: slope ahead [rad].
+            scale: factor on the friction of the robot's surfaces [-].
+            air_fraction: fraction of the hull's air that is let out [-].
+            seed: of the errors of the robot as built [-].
+        """
         offshore = self.robot.length / 2 + self.clearance / tan(uphill) if uphill > 0 else self.inland
         course = self.approach if uphill > 0 else 0.0
         control = Amphibious(

@@ -204,7 +204,15 @@ def draw_decides(record: xr.Dataset) -> Figure:
 
 
 def _map(ax: Axes, time: np.ndarray, scale: np.ndarray, row: np.ndarray, max_time: float) -> Any:
-    """Draw a field for each pair of friction scale and row, with its mean time and how many of its runs came ashore."""
+    """Draw one cell for each friction scale and row, with mean time ashore and number of runs ashore.
+
+    Args:
+        ax: axes to draw on.
+        time: time ashore of each run, NaN for one that never was [s].
+        scale: friction scale of each run [-].
+        row: coordinate of each run on the vertical axis.
+        max_time: end of the colour scale [s].
+    """
     columns, rows = np.unique(scale), np.unique(np.round(row, 6))
     mean_times = np.full((len(rows), len(columns)), np.nan)
     for i, row_coordinate in enumerate(rows):

@@ -138,7 +138,13 @@ class SpeedRange(Experiment):
         return self._table(np.array(rows)), fastest
 
     def _measure_gait(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
-        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk."""
+        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk.
+
+        Args:
+            gait: the gait.
+            slower: factors on its cycle time [-].
+            progress: called with the fraction that is done.
+        """
         max_duration, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
         quantities, records = [], []
         for i, robot in enumerate((self.robot, _with_other(self.robot))):
@@ -288,7 +294,12 @@ def _falling(robot: Robot) -> tuple[int, int]:
 
 
 def _lying_fraction(robot: Robot, excerpt: xr.Dataset) -> float:
-    """Return the share of the tail's length that lies on the ground, on average; 0 of a body without a tail [-]."""
+    """Return the mean fraction of the tail's length that lies on the ground; 0 of a body without a tail [-].
+
+    Args:
+        robot: of the record.
+        excerpt: the measured cycles of one run.
+    """
     robot_layout = layout(robot)
     if not robot_layout.tail:
         return 0.0
@@ -312,7 +323,12 @@ def _lying_fraction(robot: Robot, excerpt: xr.Dataset) -> float:
 
 
 def _radii(segments: Sequence[Segment], positions: np.ndarray) -> np.ndarray:
-    """Return how thick a tail is at its joints and its tip, on straight lines through its segments' middles [m]."""
+    """Return the half height of a tail at its joints and its tip, interpolated between the segments' middles [m].
+
+    Args:
+        segments: of the tail, from the root.
+        positions: of joints and tip, along the tail from its root [m].
+    """
     segment_radii = np.array(
         [max(s.radius if isinstance(s, Rod) else s.half[2] for s in segment.shapes) for segment in segments]
     )
@@ -329,7 +345,13 @@ def _radii(segments: Sequence[Segment], positions: np.ndarray) -> np.ndarray:
 
 
 def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]], servos: tuple[str, str]) -> Figure:
-    """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly."""
+    """Draw speed, cost, duty factor and Froude number over cycle time, the other model of the servos thinly.
+
+    Args:
+        record: of the experiment ``speed_range``.
+        lines: style of each gait.
+        servos: names of the two servo models, the robot's own first.
+    """
     with styled():
         figure, axes = panels(2, 2, width=9.6, height=8.0, sharex=True)
         rows = (

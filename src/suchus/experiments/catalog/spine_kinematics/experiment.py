@@ -145,7 +145,12 @@ def _facts(back: SpineMeasures) -> dict[str, float]:
 
 
 def _inverted(back: SpineMeasures, angles: np.ndarray) -> xr.Dataset:
-    """Return how far the inverse misses the postures that it is asked for, on its worse branch."""
+    """Return position, azimuth and joint errors of the inverse in random postures, on the worse of its two branches.
+
+    Args:
+        back: measures of the spine.
+        angles: of the postures, shape (sample, 5) [rad].
+    """
     T = spine.forward(back, angles)
     target, azimuth = T[:, :3, 3], _azimuth(T)
     position, heading = np.zeros(len(angles)), np.zeros(len(angles))
@@ -177,7 +182,13 @@ def _density(x: np.ndarray, y: np.ndarray, cell: float) -> tuple[np.ndarray, np.
 
 
 def _workspace(back: SpineMeasures, angles: np.ndarray, grid: int) -> xr.Dataset:
-    """Map how often joint 5 is where, from above and from the side, and a few postures."""
+    """Return the density of joint 5 from above and from the side over random postures, and a few named postures.
+
+    Args:
+        back: measures of the spine.
+        angles: of the random postures, shape (sample, 5) [rad].
+        grid: cells along the longer side of the maps [-].
+    """
     x, y, z = spine.forward(back, angles)[:, :3, 3].T
     cell = float(np.ptp(y)) / grid  # [m]
     top, x1, y1 = _density(x, y, cell)
@@ -222,7 +233,13 @@ def _polyline(back: SpineMeasures, angles: np.ndarray, *, head: float = 0.0) -> 
 
 
 def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
-    """Return how far off (15) is in mildly bent postures, as printed and with its lost term."""
+    """Return the error of (15) in mildly bent random postures, as printed and with its missing term [m].
+
+    Args:
+        back: measures of the spine.
+        count: number of postures [-].
+        seed: of the postures [-].
+    """
     angles = np.random.default_rng(seed + 1).uniform(-MILD, MILD, (count, 5))
     end, printed_end = spine.forward(back, angles)[:, :3, 3], printed.spine_position(back, angles)
     c1, c2, c3, c4, _ = np.cos(angles).T

@@ -56,7 +56,7 @@ LIMBS = "limbs folded"
 AS_COMMANDED = "as commanded"
 """The same along the midline that is commanded."""
 COUPLED = ("coupling_residual", "energy_error", "power_error")
-"""How well robots and water came to terms; see ``coupling.swim_on_joints``."""
+"""Measures of the convergence of robot and water; see ``coupling.swim_on_joints``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,7 +207,12 @@ class Swim3d(Experiment):
         return Simulated(record=record, films={"swim_3d.gif": film}, replays=_replays(record), kept=stored_swims)
 
     def recorded(self, swims: Mapping[str, xr.Dataset], reference: xr.Dataset) -> xr.Dataset:
-        """Return the record of the experiment from the swims by name, and what slice and models say."""
+        """Return the record of the experiment.
+
+        Args:
+            swims: records of the swims in three dimensions, by name.
+            reference: speeds of slice and slender-body models, of ``with_midlines``.
+        """
         grids = [swims[f"{cells} cells"] for cells in self.cells]
         base_swim = swims.get("compared", swims.get(f"{self.compared_cells} cells"))
         assert base_swim is not None
@@ -272,7 +277,13 @@ class Swim3d(Experiment):
     def _runs(
         self, swim_gait: Gait, printed_gait: Gait, joint_midlines: Sequence[TakenMidline] = ()
     ) -> "Sequence[tuple[str, Item]]":
-        """Return name, motion, grid and time of every swim in space."""
+        """Return the name of every swim in three dimensions with its motion, grid and time.
+
+        Args:
+            swim_gait: wave that swims forward.
+            printed_gait: wave in the printed direction.
+            joint_midlines: midlines of the joints in six degrees of freedom.
+        """
 
         def setting(cells: int, cycles: int, **options: Any) -> SwimSetting:
             return SwimSetting(
@@ -342,18 +353,18 @@ class Swim3d(Experiment):
 
 
 class Item(NamedTuple):
-    """What differs between the swims."""
+    """Motion and setting of one swim."""
 
     motion: Motion
-    """What is commanded."""
+    """Commanded motion."""
     setting: SwimSetting
-    """Grid, water, time, and what moves the body."""
+    """Grid, water, time, and degrees of freedom of the body."""
     joints: bool = False
-    """Whether the robot's own joints do it."""
+    """Whether the robot's own joints move the body; otherwise it follows the commanded midline."""
 
 
 def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path | None = None) -> xr.Dataset:
-    """Return a swim of a robot, see ``water.resolved``; its bytes follow from robot and item alone."""
+    """Return a swim of a robot, see ``water.resolved``; the result depends on robot and item alone."""
     motion, setting, joints = item
     if joints:
         assert isinstance(motion, Gait)
@@ -362,17 +373,17 @@ def swum_in_space(robot: Robot, item: Item, progress: Progress, checkpoint: Path
 
 
 def _swum_here(robot: Robot, keep: str, item: Item, progress: Progress) -> xr.Dataset:
-    """Return the same, and keep in a folder how far it has come."""
+    """Return the same swim, with a checkpoint in the folder ``keep``."""
     return swum_in_space(robot, item, progress, kept_in(keep, _checkpoint_name(item)))
 
 
 def _checkpoint_name(item: Item) -> str:
-    """Return the name of what is kept of an unfinished swim."""
+    """Return the name of the checkpoint of an unfinished swim."""
     return fingerprint(item)[:16]
 
 
 def _joints(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    """Yield what the robot's joints did on the finest grid, and how well all robots came to terms with the water."""
+    """Yield servo power and tail spread on the finest grid, and the coupling errors of all swims."""
     if not record.attrs["joints"]:
         return
     yield "servo_power", Measure(float(record.servo_power[-1]), "W")
@@ -394,7 +405,7 @@ def _replays(record: xr.Dataset) -> dict[str, Replay]:
 
 
 def with_midlines(reference: xr.Dataset, joint_midlines: Sequence[TakenMidline]) -> xr.Dataset:
-    """Return what stands beside the swims, with how far the midlines that the joints took are off, if there are any."""
+    """Return the reference speeds with the misfit of the joints' midlines, where there are midlines."""
     if not joint_midlines:
         return reference
     misfit = (

@@ -14,7 +14,7 @@ _DOTS = ((0, (1, 1.5)), (0, (3, 1, 1, 1)))
 
 
 def how(record: xr.Dataset) -> str:
-    """Return what moves the body, for captions, where it is not the commanded midline."""
+    """Return a clause for captions if the robot's own joints move the body; otherwise nothing."""
     return ", moved by its own joints," if record.attrs["joints"] else ""
 
 

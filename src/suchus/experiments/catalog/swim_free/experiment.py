@@ -155,7 +155,7 @@ class SwimFree(Experiment):
     from there to the same bytes; empty keeps nothing."""
 
     def __post_init__(self) -> None:
-        """Refuse settings outside their ranges, unknown swims and coefficients, and contradictory settings of a flow."""
+        """Refuse settings outside their ranges, unknown swims and coefficients, and contradictory flow settings."""
         with Checks(self.name(), self) as check:
             check.number("frequency", 0.05, 10.0, "Hz")
             check.number("stiffness", 1e-9, 1e6, "N m/rad")
@@ -224,7 +224,7 @@ class SwimFree(Experiment):
         return Lake(level=self.level, correction=self._correction)
 
     def _doubt_correction(self) -> None:
-        """Say if the correction that is asked for was found at another Reynolds number."""
+        """Warn if the requested correction was fitted at another Reynolds number."""
         if self._correction is not None:
             doubt = self._correction.outside(self.frequency * self.robot.length**2 / Water().viscosity)
             if doubt:
@@ -309,7 +309,7 @@ class SwimFree(Experiment):
         return tuple(name for cable in self.robot.cables for name in cable.hinges)
 
     def _dive_records(self, motion: Gait, progress: Any) -> list[xr.Dataset]:
-        """Return what is kept of the swims below the surface; nothing of a robot that cannot hover."""
+        """Return the stored variables of the swims below the surface; nothing of a robot that cannot hover."""
         runs = submerged.deep_runs(self.robot, motion, self._lake, self.depth)
         duration = (self.dive + self.cycles) / self.frequency
         return [submerged.kept(simulate(runs, duration=duration, progress=progress), runs)] if runs else []
@@ -329,7 +329,12 @@ class SwimFree(Experiment):
         return {"": self.robot, "_stiff": with_spring(self.robot, self._cable, self.stiffness)}
 
     def _runs(self, motions: Mapping[str, Gait], factors: Mapping[str, tuple[float, float]]) -> list[Run]:
-        """Return every run; their labels say what they are."""
+        """Return every run by sections: motions, stiffer joints, steering, varied coefficients of the water.
+
+        Args:
+            motions: by name.
+            factors: least and greatest factor on each coefficient [-].
+        """
         lake, whole_wave = self._lake, motions["whole"]
         control = Swimming(ramp=1.0 / self.frequency)
         runs = [
@@ -451,13 +456,13 @@ def _motions(motion: Gait) -> dict[str, Gait]:
 
 
 def _steered(robot: Robot, motion: Gait, *, tail: float, trunk: float) -> Gait:
-    """Return a wave about mean bends, less by halves until the joints can follow it [rad]."""
+    """Return a wave about mean bends, which are halved until the joints can follow it."""
     candidate = motion.with_numbers(tail_offset=tail, trunk_offset=trunk)
     return candidate if suits(robot, candidate) else _steered(robot, motion, tail=tail / 2, trunk=trunk / 2)
 
 
 def _shares(excerpt: xr.Dataset, labels: Sequence[str]) -> Measures:
-    """Return how unevenly the joints of a cable share its bend; nothing of a robot without cables."""
+    """Return the largest amplitude of a cable joint over the mean; nothing of a robot without cables."""
     ends = {"": "whole", "_stiff": "whole_stiff"} if excerpt.attrs["cable"] else {}
     return Measures(
         {
@@ -476,7 +481,7 @@ def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tupl
 
 
 def _lake_with_factor(lake: Lake, name: str, factor: float) -> Lake:
-    """Return a lake in which one coefficient is another."""
+    """Return a lake in which one coefficient of the water is multiplied by a factor."""
     if name in ("added_mass", "shedding"):
         return replace(lake, **{name: factor})  # type: ignore[arg-type]
     return replace(lake, water=replace(Water(), **{name: factor * getattr(Water(), name)}))

@@ -1,4 +1,4 @@
-"""Swims in a flow that is solved with the robot: speeds, joints, what the links feel, and the balances."""
+"""Swims in a flow that is solved with the robot: speeds, joint angles, forces on the links, and energy balance."""
 
 from collections.abc import Mapping
 
@@ -15,7 +15,7 @@ _LINES = (COLOURS["coordinated"], COLOURS["tail_still"], COLOURS["ours"], COLOUR
 
 
 def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
-    """Draw what the swims of a record did in the flow.
+    """Draw speeds, forces, residuals and energy balance of the swims in the flow.
 
     Args:
         record: of the experiment ``swim_free`` with a flow; see ``in_flow``.
@@ -29,7 +29,7 @@ def draw_in_flow(record: xr.Dataset) -> Mapping[str, Figure]:
 
 
 def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
-    """Return the last cycle of the first swim in a slice as a film of its vorticity; nothing if it was not seen."""
+    """Return the last cycle of the first swim in a slice as a film of its vorticity; nothing without fields."""
     if "field_vorticity" not in record:
         return {}
     values, phase = record.field_vorticity.values, record.field_frame.values
@@ -54,7 +54,7 @@ def film_slice(record: xr.Dataset) -> Mapping[str, bytes]:
 
 
 _MAX_LARGE_NAMES = 16
-"""Names beside a picture that are written as large as usual [-]."""
+"""Most names beside a picture that are written in the usual size [-]."""
 
 
 def _label(name: object) -> str:
@@ -208,7 +208,7 @@ def _fins(record: xr.Dataset, fin_swims: xr.Dataset) -> Figure:
 
 
 def _balance(record: xr.Dataset) -> Figure:
-    """Draw the coupling residual before and after the correction, and the errors of energy and power, over the cycles."""
+    """Draw the coupling residual before and after the correction, and the errors of energy and power, over time."""
     time, period = record.flow_time.values, float(record.flow_period)
     with styled():
         figure, axes = panels(1, 2, width=9.5, height=4.0)

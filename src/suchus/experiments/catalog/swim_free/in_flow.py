@@ -25,22 +25,22 @@ _FLOW_VARIABLES = (
     "centre_of_mass", "position", "orientation", "joint_angle", "servo_power", "water_force", "water_power",
     "link_force", "link_torque", "joint_water_torque",
 )  # fmt: skip
-"""What is kept of each swim as ``flow_NAME``, over a time of its own."""
+"""Variables of each swim that are stored as ``flow_NAME``, over their own time."""
 _COUPLING = ("coupling_residual", "coupling_first", "coupling_iterations", "energy_error", "power_error")
 FRAMES = 24
 """Instants of the last cycle that are filmed [-]."""
 FIN = "_fin_"
-"""What stands between the motion and the stiffness in the label of a swim with another passive end."""
+"""Separator of motion and stiffness in the label of a swim with another passive end."""
 _RESIDUAL_NUMBERS = ("r2", "added", "added_low", "added_high", "drag", "drag_low", "drag_high", "r2_held_out")
-"""What is measured of every link and joint in the first swim in a flow."""
+"""Residual numbers that are measured for every link and joint of the first swim in a flow."""
 _GROWTH_CYCLES = 1.0
-"""Cycles from the start in which the motion grows, and what is left over is not judged [-]."""
+"""Cycles from the start in which the motion grows; the coupling residual is measured after them [-]."""
 
 
 def flow_runs(
     joints: Mapping[str, Robot], motions: Mapping[str, Gait], swim_names: Sequence[str], water: Any
 ) -> list[Run]:
-    """Return the runs in a flow that are asked for, of those that the robot has.
+    """Return the requested runs in a flow, of those that the robot has.
 
     Args:
         joints: the robot by the ending of its swims' names, as it is and with stiffer joints.
@@ -91,6 +91,9 @@ def fins(record: xr.Dataset) -> xr.Dataset:
 
     The cost is that of the servos, of the robot's weight in air and as far as it comes ahead. Swims that broke off have
     NaN; a record without such swims has none.
+
+    Args:
+        record: of the experiment with a flow.
     """
     names = [str(name) for name in record.flow_run.values if FIN in str(name)]
     last_cycle = record.flow_servo_power.sel(
@@ -107,37 +110,37 @@ def fins(record: xr.Dataset) -> xr.Dataset:
 
 
 def flow_kept(labels: Sequence[str]) -> list[str]:
-    """Return the names of what is kept of unfinished swims in a flow."""
+    """Return the checkpoint names of unfinished swims in a flow."""
     return [f"flow {label}" for label in labels]
 
 
 class InFlow(NamedTuple):
-    """What became of the swims in a flow."""
+    """Results of the swims in a flow."""
 
     kept: xr.Dataset
-    """What is kept of them."""
+    """Stored variables of all swims."""
     first: xr.Dataset
-    """Record of the first."""
+    """Record of the first swim."""
     judgement: str
-    """Whether they earn a correction of the section model, link by link, as Markdown."""
+    """Whether the swims justify a correction of the section model, link by link, as Markdown."""
     correction: SectionCorrection | None
-    """The correction that they have earned; None if they have none."""
+    """The justified correction of the section model; None if there is none."""
 
 
 def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InFlow:
-    """Swim in a flow.
+    """Simulate swims in a flow that is solved with the robot.
 
-    A later swim that diverges ends there, with NaN beyond.
+    A later swim that diverges has NaN from there on.
 
     Args:
         runs: of ``flow_runs``.
-        cycles: that are swum [-].
-        keep: folder in which swims are kept, from which they go on; empty keeps nothing.
-        progress: told the share that is done.
+        cycles: of each swim [-].
+        keep: folder of checkpoints, from which swims resume; empty keeps nothing.
+        progress: called with the fraction that is done.
 
     Raises:
-        Diverged: the first swim did.
-        UnreadableFile: what is kept is broken or belongs to other swims.
+        Diverged: the first swim diverged.
+        UnreadableFile: a checkpoint is broken or belongs to other swims.
     """
     swims = [Swim(run, cycles * run.gait.period) for run in runs]  # refused before any is computed
     records, film_data = [], xr.Dataset()
@@ -206,9 +209,15 @@ def swum(runs: Sequence[Run], cycles: int, keep: str, progress: Progress) -> InF
 def _section_tables(
     runs: Sequence[Run], records: Sequence[xr.Dataset], complete_records: Sequence[xr.Dataset], viscosity: float
 ) -> xr.Dataset:
-    """Return the residual table of the first swim, and of every one by ``flow_run``, as ``swim_NAME``, what it says.
+    """Return the residual table of the first swim, and those of all swims as ``swim_NAME`` over ``flow_run``.
 
     A later swim that broke off has NaN.
+
+    Args:
+        runs: in the flow.
+        records: of the runs.
+        complete_records: those of ``records`` that did not diverge.
+        viscosity: kinematic, of the flow's water [m2/s].
     """
     period = runs[0].gait.period
     tables = list[xr.Dataset]()
@@ -230,7 +239,13 @@ def _section_tables(
 
 
 def nearer(flow: Sequence[float], shipped: Sequence[float], corrected: Sequence[float]) -> bool:
-    """Return whether corrected speeds miss those in the flow by less in the mean than the model's as it is shipped."""
+    """Return whether corrected speeds have a smaller mean absolute error than those of the shipped model.
+
+    Args:
+        flow: speeds in the flow [m/s].
+        shipped: speeds by sections with the shipped coefficients [m/s].
+        corrected: speeds by sections with the correction [m/s].
+    """
     misses = [float(np.abs(np.subtract(speeds, flow)).mean()) for speeds in (shipped, corrected)]
     return misses[1] < misses[0]
 
@@ -240,17 +255,17 @@ def speeds_beside(
 ) -> tuple[str, bool]:
     """Swim by sections as in the flow, with a correction and without, at the flow's viscosity and below the surface.
 
-    Forces that come nearer need not make speeds do so: a speed is a small difference of thrust and drag.
+    Better forces do not guarantee a better speed, because speed depends on the small difference of thrust and drag.
 
     Args:
-        runs: in the flow, those that the fit did not see.
-        in_flow: their speeds there [m/s].
-        cycles: that are swum [-].
+        runs: in the flow, without those that the correction was fitted to.
+        in_flow: speeds of the runs in the flow [m/s].
+        cycles: of each swim [-].
         viscosity: kinematic, of the flow's water [m2/s].
-        correction: that forces have earned.
+        correction: fitted to the forces.
 
     Returns:
-        What is to be said of it, as Markdown, and whether the speeds are nearer too.
+        A table of the speeds as Markdown, and whether the correction reduces the error of the speeds.
     """
     water = Water(viscosity=viscosity)
     lakes = [Lake(level=2 * runs[0].robot.length, water=water, correction=factors) for factors in (None, correction)]
@@ -278,7 +293,7 @@ def _is_in(record: xr.Dataset, records: Sequence[xr.Dataset]) -> bool:
 
 
 class _Film:
-    """Looks at the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
+    """Samples the last cycle of a swim: vortices in space, vorticity in the plane, as ``field_NAME``."""
 
     def __init__(self, swim: Swim, cycles: int) -> None:
         """Prepare to sample the last of ``cycles`` cycles of a swim at ``FRAMES`` instants."""
@@ -301,7 +316,7 @@ class _Film:
             self._swim.samples.add("frames", swim.sim.time, **values)
 
     def dataset(self) -> xr.Dataset:
-        """Return what was seen; nothing of a swim that ended too soon."""
+        """Return the sampled fields; nothing of a swim that ended before the first sample."""
         if not self._swim.samples.count("frames"):
             return xr.Dataset()
         if self._window is None:
@@ -321,7 +336,7 @@ def flow_speed(record: xr.Dataset, name: str) -> float:
 
 
 def flow_measures(record: xr.Dataset) -> Measures:
-    """Return speeds in the flow, how well robot and flow came to terms, and how far the section model is from it."""
+    """Return speeds in the flow, coupling errors, and the residual of the section model."""
     if "flow_run" not in record:
         return Measures()
     rung = record.attrs["flow"]
@@ -424,7 +439,7 @@ def residual_text(record: xr.Dataset, judgement: str = "", *, is_earned: bool = 
 
 
 def _other_swims(record: xr.Dataset) -> str:
-    """Return how much sections explain of each further swim, and its own factors; empty for one swim."""
+    """Return R2 and fitted factors of the section model for each further swim, as Markdown; empty for one swim."""
     complete_swims = [
         swim for swim in record.flow_run.values[1:] if np.isfinite(record.swim_r2.sel(flow_run=swim)).all()
     ]

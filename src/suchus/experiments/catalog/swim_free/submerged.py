@@ -1,4 +1,4 @@
-"""The swims of ``swim_free`` below the surface: how level the robot is, by where its air is and by what holds it."""
+"""The swims of ``swim_free`` below the surface: pitch and depth, by place of the air and control of the pitch."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,11 +21,11 @@ DEEP = {
     "deep": "chambers as designed", "held": "the same, pitch held", "pitched": "the same, dives by pitch",
     "in_foam": "air in the foam",
 }  # fmt: skip
-"""Names of the swims, and what they are called."""
+"""Labels of the swims by name."""
 NEAR = 0.05
-"""Distance from the depth within which a dive has arrived [m]."""
+"""Greatest distance from the depth at which a dive counts as finished [m]."""
 _DIVE = 1.0
-"""How steeply the swim that dives by pitch pitches for each metre that it is too high [rad/m]."""
+"""Pitch of the swim that dives by pitch, over its height above the depth [rad/m]."""
 
 
 def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
@@ -53,7 +53,7 @@ def deep_runs(robot: Robot, gait: Gait, lake: Lake, depth: float) -> list[Run]:
 
 
 def kept(record: xr.Dataset, runs: Sequence[Run]) -> xr.Dataset:
-    """Return what is kept of the swims below the surface, by their names, over a time of their own.
+    """Return the stored variables of the swims below the surface, by name, over their own time.
 
     Beside it, from statics: the pitch at which each robot hovers, straight and at rest, and how much of its air is in
     front chambers.

@@ -145,7 +145,13 @@ class SwimSweep(Experiment):
         return fit(self.robot, wave, name=f"(20), {waves:.2g} waves per body").gait
 
     def _map(self, axis: str, values: tuple[float, ...], motion: Callable[[float, float], Gait]) -> xr.Dataset:
-        """Return the results of the slender-body models on a grid of amplitude and another quantity."""
+        """Return the results of the slender-body models on a grid of amplitude and another parameter.
+
+        Args:
+            axis: the other parameter, ``frequency`` or ``waves``.
+            values: of the other parameter, in Hz or waves per body length.
+            motion: gait of an amplitude factor and a value of the other parameter.
+        """
         motions = [motion(amplitude, value) for amplitude in self.amplitudes for value in values]
         flat = survey(self.robot, motions)
         shape = (len(self.amplitudes), len(values))
@@ -165,7 +171,12 @@ class SwimSweep(Experiment):
         return xr.Dataset(data, coords=coords)
 
     def _points(self, progress: Progress, client: Any) -> xr.Dataset:
-        """Return the points by CFD at 1 Hz, and their speeds by the slender-body models."""
+        """Return the points by CFD at 1 Hz, and their speeds by the slender-body models.
+
+        Args:
+            progress: called with the fraction that is done.
+            client: Dask client that computes the points; None computes them here.
+        """
         motions = [self._fit(waves).bent(amplitude) for amplitude, waves in self.points]
         setting = SwimSetting(cells=self.cells, viscosity=self.robot.length**2 / self.reynolds, cycles=self.cycles)
         work = partial(swum_point, self.robot, setting)
@@ -239,7 +250,12 @@ class SwimSweep(Experiment):
 
 
 def _power(quantity: xr.DataArray, speed: xr.DataArray) -> float:
-    """Return the power of a quantity with which the speed grows, from the first to the last possible motion [-]."""
+    """Return the exponent of a quantity in the speed, from the first to the last possible motion [-].
+
+    Args:
+        quantity: parameter of each motion.
+        speed: of each motion; NaN where the motion is impossible [m/s].
+    """
     good = np.flatnonzero(np.isfinite(speed.values) & (speed.values > 0.0))
     if good.size < 2:
         return float("nan")

@@ -214,7 +214,7 @@ class PlaneSwims(Experiment):
         return SwimSetting(cells=cells, viscosity=viscosity, cycles=cycles, free=TETHERED if is_held else FREE)
 
     def climb(self) -> Climb:
-        """Return what is asked of every rung.
+        """Return the setting of the ladder.
 
         Raises:
             Unwritable: unfinished swims cannot be kept where they are to be.
@@ -238,7 +238,13 @@ class PlaneSwims(Experiment):
         )
 
     def _conditions(self, printed_fit: Fit, slices: Swims, progress: Progress) -> xr.Dataset:
-        """Return the speed in every condition and cycle; the first three are the ladder's slices."""
+        """Return the speed in every condition and cycle; the first three are the ladder's slices.
+
+        Args:
+            printed_fit: gait in the printed direction.
+            slices: swims of the ladder's slice, by motion.
+            progress: called with the fraction that is done.
+        """
         exact = [
             ExactWave(name=name, wave=printed_wave(self.robot, self.reading, frequency=self.frequency, sign=sign))
             for name, sign in zip(ARMS[4:], (-1, 1), strict=True)

@@ -99,7 +99,12 @@ class Climb:
         return fingerprint([np.round(quantity, 9) for quantity in inputs])[:16]
 
     def setting(self, *, space: bool, is_held: bool) -> SwimSetting:
-        """Return grid, water and time of a rung that resolves the water."""
+        """Return grid, water and time of a rung that resolves the water.
+
+        Args:
+            space: whether it is in three dimensions; otherwise in a slice.
+            is_held: whether the snout is fixed; otherwise the body swims freely.
+        """
         return SwimSetting(
             axes=3 if space else 2, cells=self.space_cells if space else self.cells, viscosity=self.viscosity,
             cycles=self.cycles, free=TETHERED if is_held else FREE,
@@ -113,7 +118,7 @@ Swims = Mapping[str, xr.Dataset]
 def climbed(
     climb: Climb, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
 ) -> xr.Dataset:
-    """Return what every rung did; why one could not be run stands in ``unable``, as JSON by its name.
+    """Return the results of every rung; ``unable`` has the reason why a rung could not run, as JSON by its name.
 
     Args:
         climb: what is asked.
@@ -182,7 +187,12 @@ def _needed_swims(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> 
 
 
 def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
-    """Return what a rung did, or None, and then the reason is kept by its name.
+    """Return the result of a rung; None if the rung cannot run, and then ``unable`` has the reason.
+
+    Args:
+        name: of the rung.
+        unable: reasons by rung; a reason is added to it.
+        run: computes the result.
 
     Raises:
         Unwritable: it could not be kept, which says nothing of the rung.
@@ -223,7 +233,12 @@ def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any
 
 
 def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
-    """Return what a slender-body theory says: the same in every cycle, and of the centre of mass its one harmonic."""
+    """Return speed and sway of the centre of mass by a slender-body theory, the same in every cycle.
+
+    Args:
+        climb: setting of the ladder.
+        model: name in ``MODELS``.
+    """
     outline, water = Outline(climb.robot), Water()
     steady_swims = {
         name: cruise(outline, gait, MODELS[model], water) for name, gait in motions(climb.fitted.gait).items()
@@ -240,7 +255,12 @@ def _of_theory(climb: Climb, model: str) -> dict[str, Any]:
 
 
 def _of_swims(climb: Climb, swims: Swims) -> dict[str, Any]:
-    """Return what the swims of a rung that resolves the water did; NaN of those that were left out."""
+    """Return speeds, midline and forces of the swims of a rung that resolves the water; NaN of missing swims.
+
+    Args:
+        climb: setting of the ladder.
+        swims: by motion, and ``held``.
+    """
     missing = np.full(climb.cycles, np.nan)
     results: dict[str, Any] = {
         "ladder_speed": [swims[motion].speed.values if motion in swims else missing for motion in MOTIONS]
@@ -323,7 +343,12 @@ def swims(
 
 
 def _of_sections(climb: Climb, record: xr.Dataset) -> dict[str, Any]:
-    """Return speeds and course of the runs in six degrees of freedom, whose y points left, that of a course right."""
+    """Return speeds and midline of the runs in six degrees of freedom; y is turned from left to right.
+
+    Args:
+        climb: setting of the ladder.
+        record: of ``_in_sections``.
+    """
     period, time = 1.0 / climb.fitted.gait.frequency, record.time.values.astype(float)
     ends = period * np.arange(climb.cycles + 1)
     forward_positions = [
@@ -349,7 +374,7 @@ def _of_sections(climb: Climb, record: xr.Dataset) -> dict[str, Any]:
 
 
 def rules_digest() -> str:
-    """Return what the rules ask of three dimensions: a study of grids that was made for other rules is too old."""
+    """Return a hash of the rules that read the study of grids; a study with another hash is out of date."""
     clauses = [
         f"{rule.claim} {rule.measure} {clause.measure} {clause.relation} {clause.bound} {rule.settled}"
         for rule in RULES
@@ -509,7 +534,12 @@ def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
 
 
 def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return which share of the tip's swing is a sine, and which wave of the form (20) the midline follows."""
+    """Yield the sine fraction of the tip's swing, and the wave of the form (20) that fits the midline best.
+
+    Args:
+        course: lateral position of the midline, shape (tick, place) [body length].
+        cycles: of the swim [-].
+    """
     names = ("wave_share", "wave_waves_per_body", "wave_envelope_middle", "wave_envelope_tip")
     s = np.linspace(0.0, 1.0, course.shape[1])
 
@@ -542,9 +572,13 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
 
 
 def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return the difference between the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
+    """Yield the pressure difference of the tail's sides at T/4, and its fall to 3T/4, over its mean size [-].
 
     A swim that starts to the other side is the mirror image of this one: it does at T/4 what this one does at 3T/4.
+
+    Args:
+        difference: mean pressure difference, shape (cycle, quarter).
+        cycles: of the swim [-].
     """
     size = float(np.sort(np.abs(difference[1:]), axis=None).mean())
 
@@ -561,7 +595,12 @@ def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, Settle
 
 
 def _pushing(force: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return angle, asymmetry and forward part of the force, shape (cycle, quarter, 2), started to either side."""
+    """Yield angle, asymmetry and forward part of the force at the quarters, for a start to either side.
+
+    Args:
+        force: forward and lateral, shape (cycle, quarter, 2).
+        cycles: of the swim [-].
+    """
     size = float(np.sort(np.hypot(force[1:, :, 0], force[1:, :, 1]), axis=None).mean())
 
     def sides(a: int, b: int) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -31,8 +31,8 @@ SHAPES = (0.0, pi / 2, pi)
 class TailBending(Experiment):
     """Follow cords, servo and joints of the tail from straight to a half turn, exactly and as printed.
 
-    That all joints turn alike, from which the formulas start, is tried in two crawls: the article's, and one whose
-    trunk is straight while the tail swings.
+    The formulas assume that all joints turn by the same angle. Two crawls test this assumption: the article's, and one
+    with a straight trunk and a swinging tail.
     """
 
     title = "How good are the tail's formulas, from straight to bent by a half turn and in the crawl?"
@@ -173,7 +173,13 @@ class TailBending(Experiment):
 
 
 def _cords(plates: TailMeasures, bend: np.ndarray, linear: bool) -> xr.Dataset:
-    """Return cords, drive and errors of the formulas over the bend; the straight tail has no relative error of (17)."""
+    """Return cords, drive and errors of the formulas over the bend; the straight tail has no relative error of (17).
+
+    Args:
+        plates: measures of the tail.
+        bend: of the whole tail [rad].
+        linear: whether a linear actuator moves the cords.
+    """
     toward_change, away_change = tail.cable_changes(plates, bend)
     shortened_toward, shortened_away = (plates.joints * c for c in printed.cable_changes_shortened(plates, bend))
     last_joint_error = (tail.joint_positions(plates, bend) - printed.joint_positions(plates, bend))[:, -1]
@@ -225,7 +231,12 @@ def _cords(plates: TailMeasures, bend: np.ndarray, linear: bool) -> xr.Dataset:
 
 
 def _bend_of_cord(plates: TailMeasures, cord_change: np.ndarray) -> np.ndarray:
-    """Return the bend at which the cord towards it is shorter by ``pulled`` [rad]: (16), solved for theta."""
+    """Return the bend at which the cord towards it is shorter by ``cord_change`` [rad]: (16), solved for theta.
+
+    Args:
+        plates: measures of the tail.
+        cord_change: length by which the cord is shorter [m].
+    """
     diagonal = np.hypot(plates.cord_spacing, plates.gap)
     tilt = np.arctan2(plates.gap, plates.cord_spacing)
     half = tilt + np.arcsin((cord_change / plates.joints - plates.gap) / diagonal)
@@ -251,7 +262,12 @@ def _shapes(plates: TailMeasures, furthest: float) -> xr.Dataset:
 
 
 def _errors(plates: TailMeasures, furthest: float) -> xr.Dataset:
-    """Return cords and errors of (17) at a few bends, and the greater error at the greatest bend."""
+    """Return changes of the cords [m] and errors of (17) [-] at a few bends, and the errors at the greatest bend.
+
+    Args:
+        plates: measures of the tail.
+        furthest: greatest bend [rad].
+    """
     degrees = [d for d in (30, 90, 180) if np.radians(d) <= furthest + 1e-9]
     bend = np.append(np.radians(degrees), furthest)
     toward_change, away_change = tail.cable_changes(plates, bend)

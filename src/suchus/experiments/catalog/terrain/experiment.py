@@ -283,7 +283,12 @@ class Terrain(Experiment):
         return rows
 
     def _ground_record(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
-        """Return how all conditions, or those that are named, fare on every ground."""
+        """Return the quantities of ``_UNITS`` by ground, condition and seed.
+
+        Args:
+            progress: called with the fraction that is done.
+            names: conditions that walk; all if empty.
+        """
         grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
         runs = [
             self.tolerances.built(
@@ -384,7 +389,12 @@ _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1
 
 
 def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
-    """Return what ``_UNITS`` names, shape (run, 7)."""
+    """Return the quantities of ``_UNITS``, shape (run, quantity).
+
+    Args:
+        record: of the runs.
+        is_met: whether each robot reached the obstacle.
+    """
     excerpt, displacements = between(record), displacement(record)
     columns: Sequence[Any] = (
         displacements.sel(xyz="x"),
@@ -399,7 +409,12 @@ def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
 
 
 def _met(record: xr.Dataset, run: Run) -> bool:
-    """Return whether a robot met what stands in its path; on even ground there is nothing to be met."""
+    """Return whether a robot reached the obstacle in its path; True on even ground, which has none.
+
+    Args:
+        record: of one run.
+        run: the run.
+    """
     robot_layout = layout(run.robot)
     relief, feet = run.ground.relief, record.foot_position.isel(leg=[0, 1]).sel(xyz="x")
     head, foot = robot_layout.robot.axis[0], robot_layout.limbs[0].girdle.limb.foot.radius

@@ -22,7 +22,12 @@ _FELL: Mapping[str, Any] = {"marker": "x", "linestyle": "none", "color": COLOURS
 
 
 def draw_rough(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses."""
+    """Draw the distance on bumps, steps and stones over height, or as bars where they are few; falls as crosses.
+
+    Args:
+        record: of the experiment ``terrain``.
+        lines: style of each condition.
+    """
     kinds = [str(kind) for kind in dict.fromkeys(record.kind.values)]
     if record.sizes["ground"] <= 1 + len(kinds):
         return _rough_bars(record, lines)

@@ -122,7 +122,12 @@ class Turning(Experiment):
         )
 
     def _gait_curvatures(self, gait: Gait, progress: Any) -> tuple[xr.Dataset, tuple[xr.Dataset, xr.Dataset]]:
-        """Return the curvatures of one gait, and its tightest turn and first circle as records."""
+        """Return the curvatures of one gait, and its tightest turn and first circle as records.
+
+        Args:
+            gait: the gait.
+            progress: called with the fraction that is done.
+        """
         bend_margin = self._bend_margin(gait)
         bend_controls = [Walking(bend=min(bend, bend_margin)) for bend in self.bends]
         asymmetry_controls = [Walking(asymmetry=share) for share in self.asymmetries]
@@ -222,7 +227,13 @@ class Turning(Experiment):
 
 
 def _curve(max_mixture: tuple[float, float], mixtures: Sequence[float], curvatures: np.ndarray) -> TurningCurve | None:
-    """Return the part of a measured curve that rises; None where nothing does."""
+    """Return the rising part of a measured turning curve; None if it does not rise.
+
+    Args:
+        max_mixture: bend [rad] and asymmetry [-] at mixture 1.
+        mixtures: fractions of ``max_mixture`` [-].
+        curvatures: measured, of each mixture [1/m].
+    """
     level, rising = curvatures, 1
     while rising < len(level) and level[rising] > level[rising - 1] + _STRAIGHT:
         rising += 1
@@ -241,7 +252,12 @@ def _radius(curvature: xr.DataArray) -> float:
 
 
 def draw_turning(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]]) -> Figure:
-    """Draw curvature against bend and asymmetry, and asked against measured radius."""
+    """Draw curvature over bend and asymmetry, and the measured over the commanded radius.
+
+    Args:
+        record: of the experiment ``turning``.
+        lines: style of each gait.
+    """
     with styled():
         figure, axes = panels(1, 3, width=11.5, height=4.0)
         for ax, name, label, scale in (

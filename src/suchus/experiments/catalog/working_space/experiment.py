@@ -118,7 +118,7 @@ class WorkingSpace(Experiment):
 
 
 def _quotient(numerator: Extent, denominator: Extent) -> dict[str, float]:
-    """Return the ratio of two extents by end; NaN where there is nothing to compare with."""
+    """Return the ratio of two extents with its bounds; NaN where the denominator is 0."""
     pairs = {
         "": (numerator.value, denominator.value),
         "_low": (numerator.low, denominator.high),
@@ -128,7 +128,13 @@ def _quotient(numerator: Extent, denominator: Extent) -> dict[str, float]:
 
 
 def _highest_posture(robot: Robot, samples: Reached, state: str) -> xr.Dataset:
-    """Return the body's line and the left legs of the configuration that reaches highest [m]."""
+    """Return midline and left legs of the posture in which the snout is highest [m].
+
+    Args:
+        robot: the robot.
+        samples: possible postures.
+        state: one of ``STATES``.
+    """
     if not len(samples.snout):
         return xr.Dataset()
     best = int(np.argmax(samples.snout[:, 2]))
