@@ -40,8 +40,8 @@ _WALK, _STRAIGHT = "the animal's angles", "axis held straight"
 class Salamander(Experiment):
     """The mean walking cycle of Pleurodeles waltl, played on the robot built after it; nothing is fitted.
 
-    Beside it walks the same robot with its axis held straight, and on ground of other friction. Forces are those at
-    the instant of the greatest net force on a foot in the mean cycle, as in the animals' data.
+    For comparison the same robot walks with its axis held straight, and on ground of other friction. Forces are
+    measured at the instant of the greatest net force on a foot in the mean cycle, as in the animals' data.
     """
 
     title = "Does a salamander's own walk, played on its model, walk as the animal does?"
@@ -155,7 +155,7 @@ class Salamander(Experiment):
         )
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Set wave and forces beside the animal's, and say what the axis adds."""
+        """Return a comparison of wave and forces with the animal's, and the effect of the axis, in words."""
         return self.told(measures, animal=ANIMAL)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -172,7 +172,7 @@ class Salamander(Experiment):
 
 
 def _under_load(record: xr.Dataset, cycle_window: Window) -> Measures:
-    """Return what belly and tail carry of the weight in the mean, and how long the belly touches."""
+    """Return the mean load on belly and tail over the weight, and the fraction of time with belly contact [-]."""
     excerpt = record.sel(time=slice(cycle_window.start - 1e-9, cycle_window.end + 1e-9))
     belly = excerpt.belly_force.sel(xyz="z").sum("segment")
     return Measures(

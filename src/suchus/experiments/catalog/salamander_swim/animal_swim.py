@@ -1,4 +1,4 @@
-"""The salamander's own swim, joint by joint as it was filmed, and the numbers of a swim that stand beside it."""
+"""The salamander's swim as filmed, joint by joint, and the lateral envelope of a swim for comparison with it."""
 
 from typing import NamedTuple
 
@@ -13,11 +13,11 @@ from suchus.robot.kinematics.tree import frames, landmarks
 from suchus.robot.motion import Curve, Gait, servo_parts
 
 FOLDED = np.radians(-85.0)
-"""How far the limbs lie back along the body; the animal holds them so, and was not filmed closer [rad]."""
+"""Yaw of the limbs, which lie back along the body as in the film [rad]."""
 STRIDE = 0.225
-"""Of the swimming animal, the mean over 2.6 to 3.8 Hz [body length]. Source: that of ``ANIMAL_SWIM``."""
+"""Stride of the swimming animal, mean over 2.6 to 3.8 Hz [body length]. Source: that of ``ANIMAL_SWIM``."""
 FREQUENCIES = (2.6, 2.9, 3.4, 3.8)
-"""At which it was filmed [Hz]."""
+"""Frequencies at which the animal was filmed [Hz]."""
 
 
 def played(robot: Robot, frequency: float) -> Gait:
@@ -35,21 +35,21 @@ def played(robot: Robot, frequency: float) -> Gait:
 
 
 class Envelope(NamedTuple):
-    """How far a body swings to the side."""
+    """Lateral swing along a body."""
 
     place: Float[np.ndarray, " point"]
-    """Behind the snout along the straight body, from 0 to 1 [body length]."""
+    """Distance behind the snout along the straight body, from 0 to 1 [body length]."""
     swing: Float[np.ndarray, " point"]
-    """From end to end, across the course of each cycle, the mean over the cycles [body length]."""
+    """Peak-to-peak swing across the course of each cycle, mean over the cycles [body length]."""
 
 
 def envelope(robot: Robot, record: xr.Dataset, start: float, period: float) -> Envelope:
-    """Return how far snout, joints of the axis and tail tip swing in the whole cycles of one run from a time on.
+    """Return the lateral swing of snout, axis joints and tail tip over the whole cycles of one run after a time.
 
     Args:
-        robot: whose record it is.
+        robot: of the record.
         record: of one run.
-        start: [s].
+        start: time from which cycles are measured [s].
         period: of a cycle [s].
     """
     excerpt = record.sel(time=slice(start - 1e-9, None))

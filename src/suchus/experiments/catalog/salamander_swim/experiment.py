@@ -46,8 +46,8 @@ class SalamanderSwim(Experiment):
     frequency is repeated with factors on each of them. Beside the model, which is 0.1 m long and lighter than the
     animal, swim the animal and others at their own length, mass and volume, each with its own wave.
 
-    Of how far it comes, the two slender-body theories are asked too (``rules.LADDER``), a body in line with its mean
-    course. ``stride_sections`` is the mean of two halves of the measured cycles, ``_apart`` how far these are apart.
+    The two slender-body theories give a stride too (``rules.LADDER``), of a body that is aligned with its mean course.
+    ``stride_sections`` is the mean of two halves of the measured cycles, ``_apart`` how far these are apart.
     """
 
     title = "How does a salamander's own swim, played joint by joint on its model, swim?"
@@ -153,7 +153,7 @@ class SalamanderSwim(Experiment):
         )
 
     def _rungs(self, records: list[xr.Dataset]) -> np.ndarray:
-        """Return the strides by rung, swim and half of the measured cycles; NaN where a theory knows no such body."""
+        """Return the strides by rung, swim and half of the measured cycles [body length]; NaN where a theory cannot."""
         strides = np.full((len(LADDER), len(records), 2), np.nan)
         outline, length = Outline(self.robot), self.robot.length
         for i, (record, frequency) in enumerate(zip(records, self.frequencies, strict=True)):
@@ -170,7 +170,7 @@ class SalamanderSwim(Experiment):
         return strides
 
     def _stride(self, record: xr.Dataset, start: float, cycles: int) -> float:
-        """Return how far the centre of mass of one run comes in a cycle, less than 0 tail first [body length]."""
+        """Return the displacement of the centre of mass in a cycle; negative if it moves tail first [body length]."""
         excerpt = record.sel(time=slice(start - 1e-9, None))
         path_ends = excerpt.centre_of_mass.transpose("time", "xyz").values[[0, -1], :2]
         facing = rotation.rotate(excerpt.orientation.transpose("time", "wxyz").values, np.array([1.0, 0.0, 0.0]))
@@ -218,7 +218,7 @@ class SalamanderSwim(Experiment):
         }
 
     def _numbers(self, frequency: float, stride: float, swing: float) -> SwimNumbers:
-        """Return the numbers of a swim whose stride and way of the tail are in body lengths."""
+        """Return the similarity numbers of a swim whose stride and tail swing are in body lengths."""
         length = self.robot.length
         return swim_numbers(
             speed=stride * length * frequency, length=length, frequency=frequency, swing=swing * length,
@@ -237,7 +237,7 @@ class SalamanderSwim(Experiment):
 
 
 def _rung_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
-    """Return every rung's stride and how far it is off the animal's, with the two halves of the cycles."""
+    """Yield every rung's stride and its relative error, with bounds and spread over two halves of the cycles."""
     for rung in record.rung.values:
         halves = record.stride_rung.sel(rung=rung).mean("swim", skipna=False).values
         spread = float(np.ptp(halves)) / max(abs(float(halves.mean())), 1e-9)

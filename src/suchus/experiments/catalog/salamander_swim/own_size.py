@@ -28,7 +28,7 @@ from suchus.swimming.water import FilmedWave, fit, swim_of
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 ASTRAY = float(np.radians(90.0))
-"""Heel from which on a body has rolled over [rad]."""
+"""Heel above which a body counts as rolled over [rad]."""
 _WATER_DEPTH = 4.0  # [body length]
 
 
@@ -80,7 +80,7 @@ def _filmed_gait(animal: OwnSize, robot: Robot) -> Gait:
 
 
 def _wave(wavelength: float, head: float, tail: float) -> Callable[[OwnSize, Robot], Gait]:
-    """Return what makes the gait of a wave whose length and amplitudes were filmed [body length]."""
+    """Return a function that makes the gait of a wave with filmed wavelength and amplitudes [body length]."""
 
     def make_gait(animal: OwnSize, robot: Robot) -> Gait:
         wave = FilmedWave(
@@ -150,19 +150,19 @@ CALLED: Mapping[str, str] = {
     "alligator_0_3": "alligator of 0.3 m",
     "alligator_1": "alligator of 1 m",
 }
-"""What they are called in sentences and figures."""
+"""Labels of the animals in sentences and figures."""
 
 
 def swum(names: Sequence[str], *, settle: int, cycles: int, progress: Progress) -> xr.Dataset:
     """Return how animals at their own size float and swim, over ``animal``.
 
-    Each is let go upright at the surface, or on the ground where it sinks, and swims.
+    Each starts upright at the surface, or on the ground if it sinks, and swims.
 
     Args:
         names: in ``ANIMALS``.
         settle: cycles before anything is measured [-].
         cycles: that are measured [-].
-        progress: told the share that is done.
+        progress: called with the fraction that is done.
     """
     rows = [
         _swim_animal(ANIMALS[name], settle, cycles, portion(progress, i, len(names))) for i, name in enumerate(names)
@@ -222,13 +222,13 @@ def _swim_animal(animal: OwnSize, settle: int, cycles: int, progress: Progress) 
 
 
 def trim_submerged(robot: Robot) -> float:
-    """Return at which pitch a robot would hover that plays the animal's swim, nose down positive [rad]."""
+    """Return the equilibrium pitch of a submerged robot in the mean posture of the swim, nose down positive [rad]."""
     gait = played(robot, FREQUENCIES[0])
     return hydrostatics(robot, cycle_targets(robot, gait, np.arange(32) / 32).mean(axis=0), heels=3).trim_submerged
 
 
 def measures(record: xr.Dataset) -> Measures:
-    """Return of each animal what it is, how it floats and how it swims; nothing if none was asked."""
+    """Return size, stability and swim of each animal; nothing if the record has none."""
     animal_measures = Measures()
     for name in record.animal.values if "animal" in record.dims else ():
         row = {key: float(record[f"own_{key}"].sel(animal=name)) for key in _KEPT}

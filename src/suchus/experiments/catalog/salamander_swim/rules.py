@@ -11,7 +11,7 @@ LADDER: Mapping[str, str] = {
     "reactive": "reactive theory",
     "sections": "six degrees of freedom on sections",
 }
-"""The models that are asked, by name, in words."""
+"""Labels of the models by name."""
 _CARRY = ("resistive", "sections")
 _QUARTER = "a model that says where a stroke goes is within a quarter of the animal's stride, 0.225 body lengths"
 _GRID_REASON = (
@@ -54,7 +54,7 @@ VARIED = Varied(
 
 
 def _rung_measures(rungs: Mapping[str, float], *, spread: float = 0.01, unsettled: str = "") -> dict[str, float]:
-    """Return measures of rungs by how far they are off the animal's stride."""
+    """Return example measures of rungs from their relative error of the stride."""
     measures: dict[str, float] = {}
     for rung, relative_error in rungs.items():
         for name, value in (("stride", 0.225 * (1.0 + relative_error)), ("stride_off", relative_error)):

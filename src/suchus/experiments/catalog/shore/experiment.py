@@ -42,7 +42,7 @@ from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.swimming.water import swim_of
 
 _DRY_LEVEL, _DEEP_LEVEL = -10.0, 3.0
-"""Levels of the water far below dry land, and far above the ground [m]."""
+"""Levels of the water: far below dry land, and far above the ground [m]."""
 _WADE = replace(
     GaitInMetres.near(GAITS["semi_erect"], LIMBS), name="wade", period=1.6, duty_factor=0.5, stroke=0.05,
     hip_height=0.09, limb_phases=(0.0, 0.5, 0.5, 0.0), trunk_bend=0.0, tail_pitch=-0.1,
@@ -52,13 +52,13 @@ move back in stance, so that over a cycle the water pushes the robot back no mor
 the smaller the forces of the water are beside the friction of the ground. The tail is lifted, since pressed on the
 ground it lifts the hind feet. The trunk is straight."""
 _SAMPLE_INTERVAL, _PATH_INTERVAL = 4, 5
-"""Control periods between two samples of a run, and samples of a run between two samples of the kept paths [-]."""
+"""Control periods between two samples of a run, and samples of a run between two samples of a stored path [-]."""
 FALLEN = np.radians(60)
-"""Tilt of the body against gravity beyond which it has fallen [rad]."""
+"""Tilt of the body against gravity above which the robot has fallen [rad]."""
 AFLOAT = 0.01
-"""Share of the weight on the ground below which it floats free [-]."""
+"""Fraction of the weight on the ground below which the robot counts as afloat [-]."""
 LAST = 2.0
-"""Duration at the end over which it must float free to count as in the water [s]."""
+"""Duration at the end over which the robot must be afloat to count as in the water [s]."""
 _UNITS = {
     "ahead": ("m", "centre of mass beyond the water line, up the shore; less than 0 on the water's side"),
     "aside": ("m", "displacement of the centre of mass to the left"),
@@ -209,7 +209,7 @@ class Shore(Experiment):
         return Simulated(record=full_record, replays=self._replays(full_record))
 
     def _cases(self) -> list[tuple[str, float, Run]]:
-        """Return of each case its kind, the share of the air that is let out, and its run."""
+        """Return kind, fraction of the air that is let out, and run of each case."""
         air_fraction = self.air_released
         cases: list[tuple[str, float, Run]] = []
         for slope in self.slopes:
@@ -360,7 +360,7 @@ class Shore(Experiment):
 
 
 def paths(record: xr.Dataset, runs: list[Run], interval: int) -> xr.Dataset:
-    """Return the kept path of each run, and how often it changed between swimming and walking.
+    """Return the downsampled path of each run, and its number of changes between swimming and walking.
 
     Args:
         record: of the runs.
@@ -405,7 +405,7 @@ def water_line(run: Run) -> float:
 
 
 def walking(phase: Float[np.ndarray, "run time"]) -> Bool[np.ndarray, "run time"]:
-    """Return when a limb's phase advances; the first sample has the value of the second [-]."""
+    """Return at which samples a limb's phase advances; the first sample has the value of the second."""
     moves = np.diff(phase, axis=1) > 1e-9
     return np.concatenate([moves[:, :1], moves], axis=1)
 
@@ -416,12 +416,12 @@ def _ground_share(record: xr.Dataset, ups: np.ndarray) -> np.ndarray:
 
 
 def fallen(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases tilted too far, or diverged [-]."""
+    """Return which cases tilted by more than ``FALLEN``, or diverged."""
     return np.asarray(~(record.tilt < FALLEN).all("moment").values)
 
 
 def capsized(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases had tilted too far for the first time while they swam and the ground carried nothing [-]."""
+    """Return which cases first tilted by more than ``FALLEN`` while they swam and were afloat."""
     is_over_tilt = ~(record.tilt < FALLEN)
     free = (record.walks == 0.0) & (record.ground < AFLOAT)
     first_index = is_over_tilt.argmax("moment")
@@ -436,7 +436,7 @@ def times_ashore(record: xr.Dataset) -> Float[np.ndarray, " case"]:
 
 
 def ending(record: xr.Dataset) -> str:
-    """Return how the case that is drawn ended, in words."""
+    """Return the end of the case that is drawn, in words."""
     case = record.isel(case=[record.attrs["shown"]])
     is_walking, phrases = case.walks.values[0] > 0, []
     if capsized(case)[0]:
@@ -457,7 +457,7 @@ def ending(record: xr.Dataset) -> str:
 
 
 def in_water(record: xr.Dataset) -> Bool[np.ndarray, " case"]:
-    """Return which cases swim at the end on the water's side of the line and float free for the last seconds [-]."""
+    """Return which cases are afloat and swim on the water's side of the line for the last ``LAST`` seconds."""
     end = record.sel(moment=slice(float(record.moment[-1]) - LAST, None))
     free = (end.ground.mean("moment") < AFLOAT) & (end.walks.max("moment") == 0.0)
     return np.asarray((free & (end.ahead < 0).all("moment")).values) & ~fallen(record)
@@ -524,9 +524,9 @@ def _metre_costs(record: xr.Dataset) -> Measures:
 
 
 def _costs(record: xr.Dataset) -> Measures:
-    """Return speed [m/s] and work of the servos over distance [J/m] while it swims, wades and walks ashore.
+    """Return speed [m/s] and servo work over distance [J/m] while the robot swims, wades and walks ashore.
 
-    Both along its heading, which need not be straight up the shore.
+    Both are measured along the heading of the approach.
     """
     step, course = float(record.moment[1] - record.moment[0]), record.attrs["approach"]
     course_distance = np.cos(course) * record.ahead.values + np.sin(course) * record.aside.values

@@ -14,11 +14,11 @@ from suchus.sim.record import ground_of
 from suchus.visual.figures.posture import draw_posture
 from suchus.visual.figures.style import COLOURS, SEQUENTIAL, captioned, panels, styled
 
-_POSTURES, _MIN_SPACING = 4, 0.5  # of the robot, at most, and the least distance between them over its length [-]
+_POSTURES, _MIN_SPACING = 4, 0.5  # most postures drawn, and their least distance over the robot's length [-]
 _POINTS = ("position", "centre_of_mass", "snout", "tail_tip", "foot_position", "foot_force")
-_REAR_MARGIN, _FRONT_MARGIN = 0.8, 0.7  # what is shown beyond the ends of the path, over the robot's length [-]
-_VIEW_ASPECT, _AIR_FRACTION = 0.24, 0.58  # height of the view over its width, and the part of it above the water [-]
-_AVERAGED_FRACTION = 0.03  # of the run, over which the load on the feet is averaged [-]
+_REAR_MARGIN, _FRONT_MARGIN = 0.8, 0.7  # margins of the view behind and ahead of the path, over the robot's length [-]
+_VIEW_ASPECT, _AIR_FRACTION = 0.24, 0.58  # height of the view over its width, and its fraction above the water [-]
+_AVERAGED_FRACTION = 0.03  # fraction of the run over which the load on the feet is averaged [-]
 
 
 def levelled(record: xr.Dataset) -> xr.Dataset:
@@ -113,7 +113,7 @@ def draw_ashore(robot: Robot, record: xr.Dataset) -> Figure:
 
 
 def _obliquely(course: float) -> str:
-    """Return what a view from the side shows of an oblique approach, in words."""
+    """Return a note for the caption that an oblique approach looks shorter from the side."""
     return (
         f" (it approaches obliquely, at {abs(np.degrees(course)):.0f} degrees, and so looks shorter)" if course else ""
     )
@@ -122,8 +122,8 @@ def _obliquely(course: float) -> str:
 def posture_times(level: xr.Dataset, path: xr.Dataset, length: float, shore_distance: float) -> list[float]:
     """Return times at which the robot is drawn, at about equal steps of the distance, its head ahead of its feet [s].
 
-    A limb that reaches forward, or a bend of the trunk towards the viewer, hides the head; so of the times near each
-    step the one is taken at which the snout is farthest ahead of every foot.
+    A limb that reaches forward, or a bend of the trunk towards the viewer, hides the head. Of the times near each step
+    the one with the snout farthest ahead of every foot is chosen.
 
     Args:
         level: of ``levelled``.

@@ -38,8 +38,8 @@ from suchus.sim.metrics import between, cost_of_transport, displacement, duty_fa
 from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
-_TOUCH_HEIGHT = 0.00495  # [body length]; a tail this close to the ground lies on it
-_TOUCH_LOAD = 0.0029  # of the weight; a tail that presses more on the ground touches it
+_TOUCH_HEIGHT = 0.00495  # height below which the tail lies on the ground [body length]
+_TOUCH_LOAD = 0.0029  # load above which the tail touches the ground [body weight]
 _OWN_LINE_WIDTH, _OTHER_LINE_WIDTH = 2.0, 0.9
 _FULL, _LINE = "servos of equal torque at any speed", "servos whose torque falls with speed"
 _WALKING = ANIMAL["high_walk_speed"]
@@ -120,11 +120,11 @@ class SpeedRange(Experiment):
         )
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
-        """Return what was measured, and the fastest walk of each gait as a record."""
+        """Return the measured quantities, and the record of the fastest walk of each gait."""
         rows, fastest, count = [], [], len(self.gaits)
         factor_groups = [
             [s for s in self.slower if (s > 1.0) == is_slow] for is_slow in (False, True)
-        ]  # the long walks by themselves
+        ]  # slow walks last longer: a batch of their own
         for i, gait in enumerate(self.gaits):
             results = [
                 self._measure_gait(
@@ -227,7 +227,7 @@ class SpeedRange(Experiment):
         return measures
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; of single gaits no other gait is walked."""
+        """Return at least the wanted measures; only gaits whose measures are wanted are simulated."""
         named_gaits = tuple(gait for gait in self.gaits if any(f"_{gait.name}" in name for name in wanted))
         needs_all_gaits = not named_gaits or not all(
             any(f"_{gait.name}" in name for gait in named_gaits) for name in wanted
@@ -279,7 +279,7 @@ def _with_other(robot: Robot) -> Robot:
 
 
 def _models(robot: Robot) -> tuple[str, str]:
-    """Return in words what servos the legs have, and what servos in the other model."""
+    """Return labels of the legs' servos: the robot's own, and those of the other model."""
     falling, count = _falling(robot)
     if not falling:
         return _FULL, _LINE
@@ -287,7 +287,7 @@ def _models(robot: Robot) -> tuple[str, str]:
 
 
 def _falling(robot: Robot) -> tuple[int, int]:
-    """Return of how many servos of its limbs the torque falls with speed, and how many they have [-]."""
+    """Return the number of limb servos whose torque falls with speed, and the number of limb servos [-]."""
     robot_layout, servos = layout(robot), servos_of(robot)
     limbs = [servos[name] for limb in robot_layout.limbs for name in robot_layout.servos[limb.servos]]
     return sum(servo.winding is not None for servo in limbs), len(limbs)

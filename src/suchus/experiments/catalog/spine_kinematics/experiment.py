@@ -23,8 +23,8 @@ _SHOWN = (0.2, -0.15, 0.25, -0.15, 0.2)
 
 _METRE = {"units": "m"}
 MILD = pi / 6
-"""Joint angles up to this one show what the misprint does in a crawl [rad]."""
-_SEARCH_COUNT = 2000  # postures whose least bending is sought: a search, not a formula
+"""Greatest joint angle of the postures in which the misprint is measured; a crawl bends as much [rad]."""
+_SEARCH_COUNT = 2000  # postures whose least bending is searched numerically, which is slow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +78,7 @@ class SpineKinematics(Experiment):
         return Simulated(record=record.assign_attrs(_facts(back)))
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return lengths and errors of (15), as printed and mended, and how well the inverse finds its way back."""
+        """Return lengths and errors of (15), as printed and corrected, and the round-trip errors of the inverse."""
         length, error = record.attrs["straight_length"], record.error_printed
         return Measures(
             {
@@ -102,7 +102,7 @@ class SpineKinematics(Experiment):
         )
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say how far (15) is from Table II, whether the lost term explains it, and what the inverse leaves open."""
+        """Return the difference of (15) to Table II, its cause, and the freedom of the inverse, in words."""
         return self.told(measures, exact=EXACT)
 
     def draw(self, outcome: Outcome) -> dict[str, Any]:
@@ -264,7 +264,7 @@ def _errors(back: SpineMeasures, count: int, seed: int) -> xr.Dataset:
 
 
 def _turns(back: SpineMeasures) -> xr.Dataset:
-    """Follow joint 5 while all yaw joints bend alike, ours and as printed."""
+    """Return the position of joint 5 while all yaw joints bend by the same angle, by Table II and as printed."""
     bend = np.linspace(-pi / 2, pi / 2, 121)
     angles = np.zeros((len(bend), 5))
     angles[:, ::2] = bend[:, None] / 3

@@ -1,4 +1,4 @@
-"""Pictures of the spine: where it reaches, and what the printed formulas do instead."""
+"""Figures of the spine: its workspace, and the error of the printed formulas."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ _LIMB: dict[str, Any] = {"linewidth": 2.6, "markersize": 4.5, "path_effects": [_
 
 
 def spine_workspace(record: xr.Dataset) -> Figure:
-    """Return how often joint 5 of a random posture is where, from above and from the side."""
+    """Draw the density of joint 5 over random postures, from above and from the side."""
     with styled(axes__grid=False):
         figure, axes = panels(1, 2, height=4.3, sharey=True, sharex=True)
         views = (
@@ -91,7 +91,7 @@ def spine_misprint(record: xr.Dataset) -> Figure:
 
 
 def spine_least_bending(record: xr.Dataset) -> Figure:
-    """Return the postures that do the same, and how the least bent one is chosen."""
+    """Draw the postures with the same end and azimuth, and the choice of the least bent one."""
     with styled():
         figure, axes = panels(1, 2, height=3.7, width_ratios=[1, 1.1])
         left_ax, right_ax = axes[0]
@@ -143,7 +143,7 @@ def spine_least_bending(record: xr.Dataset) -> Figure:
 
 
 def _fit_to_finite(ax: Axes, x: np.ndarray, y: np.ndarray) -> None:
-    """Fit the axes to what has a value, with room for a label below and a legend above."""
+    """Fit the axes to the finite values, with margins for a label below and a legend above."""
     finite_x = x[np.isfinite(y).any(axis=0)]
     ax.set_xlim(finite_x.min() - 4, finite_x.max() + 4)
     y_min, y_max = np.nanmin(y), np.nanmax(y)

@@ -34,17 +34,17 @@ _PEERS = (
 
 _HERTZ = 1.0  # [Hz]; frequency of the points
 _SWIM_UNITS = {"speed": "m/s", "cost_of_transport": "1", "gain": "1", "strouhal": "1", "slip": "1"}
-"""What is kept of a swim by CFD, with units; see ``water.Swum``."""
+"""Stored numbers of a swim by CFD, with units; see ``water.Swum``."""
 
 
 def swum_point(robot: Robot, setting: SwimSetting, motion: Gait, progress: Progress) -> xr.Dataset:
     """Return the numbers of one swim from rest by CFD.
 
     Args:
-        robot: who swims.
-        setting: how finely and how long.
-        motion: how, at 1 Hz.
-        progress: called with the share that is done.
+        robot: the robot that swims.
+        setting: grid, water and duration.
+        motion: gait at 1 Hz.
+        progress: called with the fraction that is done.
     """
     numbers = Swum.of(resolved_swim(robot, motion, setting, progress=progress), motion.frequency)._asdict()
     return xr.Dataset({name: ((), numbers[name], {"units": unit}) for name, unit in _SWIM_UNITS.items()})
@@ -273,7 +273,7 @@ def _order(record: xr.Dataset, model: str) -> float:
 
 
 def _amplitudes(robot: Robot, gait: Gait) -> list[str]:
-    """Return how far the joints of trunk and tail bend to either side, from the root on, in words."""
+    """Return the amplitudes of the joints of trunk and tail, from the root, in words."""
     yaw, words = movement(robot, gait).yaw, []
     for body_part in ("trunk", "tail"):
         bends = [f"{bend:.2f}" for bend in yaw.amplitude()[0][yaw.hinges.within(body_part)]]

@@ -25,7 +25,7 @@ _ROWS: tuple[tuple[str, str], ...] = (
 )
 """Rows of the maps: quantity and label."""
 _DARK_TEXT_LEVEL = 0.55
-"""Share of the scale from which dark digits are read better than light ones [-]."""
+"""Fraction of the scale above which digits are dark [-]."""
 _HATCHED: Mapping[str, Any] = {"facecolor": "#EDEDED", "edgecolor": "#555555", "hatch": "///", "linewidth": 0.0}
 
 
@@ -61,7 +61,7 @@ def draw_maps(record: xr.Dataset, model: str) -> Figure:
 
 
 def _max_value(record: xr.Dataset, name: str) -> float:
-    """Return the greatest value in both maps of a quantity that the robot can do; 1 where it can do none."""
+    """Return the greatest value of a quantity in both maps over possible motions; 1 if none is possible."""
     maps = [record[f"{name}_by_{axis}"].where(record[f"possible_by_{axis}"]).values.ravel() for axis in _AXES]
     values = np.concatenate(maps)
     values = values[np.isfinite(values)]

@@ -50,7 +50,7 @@ from suchus.swimming.water.samples import all_kept, check_kept, kept_in
 ARMS = ("trunk and tail", "trunk only", "tail only", "as printed", "exact wave", "exact wave as printed")
 """Conditions: the motions whose slices are compared while swimming freely, the first three of them the ladder's."""
 _OF_RUNGS = tuple(f"_{rung}{end}" for rung in LADDER for end in ("", "_low", "_high", "_apart"))
-"""How the names of the ladder's measures end."""
+"""Endings of the names of the ladder's measures."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -180,10 +180,10 @@ class PlaneSwims(Experiment):
         return Simulated(record=record, tables=tables, films=films, kept=all_kept(self.keep, names))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of the ladder nothing else swims.
+        """Return at least the wanted measures; if they are the ladder's, only the ladder swims.
 
-        Nor does what no word needs: where rungs disagree on a claim, those that take longer are not asked for it any
-        more, and what they would have measured is NaN.
+        Swims that no verdict needs are left out too: once two rungs disagree on a claim, slower rungs do not swim for it,
+        and their measures are NaN.
         """
         if not all(name.endswith(_OF_RUNGS) for name in wanted):
             return super(PlaneSwims, self).measured(wanted, progress)
@@ -191,7 +191,7 @@ class PlaneSwims(Experiment):
         return Measures(measures(climbed(self.climb(), progress, claims=claims), self.robot.length))
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
-        """Return why rungs of the ladder could not be run, in a sentence, by name."""
+        """Return the reasons why rungs of the ladder could not run, by name."""
         reasons: Mapping[str, str] = json.loads(record.attrs["unable"])
         return reasons
 
@@ -307,7 +307,7 @@ class PlaneSwims(Experiment):
         }
 
     def _claim_voices(self, record: xr.Dataset) -> list[tuple[Rule, tuple[Voice, ...]]]:
-        """Return what each rung says of each claim."""
+        """Return the result of each rung for each claim."""
         numbers = {name: float(measure.value) for name, measure in measures(record, self.robot.length)}
         return [(rule, voices(rule, numbers, self.unable(record))) for rule in RULES]
 
@@ -392,7 +392,7 @@ def _free_swim(
 
 
 def _envelope(free_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]:
-    """Return how the swing of the free body grows from its least place to the tip."""
+    """Yield the growth of the free body's swing from its narrowest place to the tip."""
     swings, s = free_swim.swing.values, np.linspace(0.0, 1.0, free_swim.swing.size)
     narrowest_index = int(swings.argmin())
     running = np.maximum.accumulate(np.maximum(swings[narrowest_index:], np.finfo(float).tiny))
@@ -420,7 +420,7 @@ def _loads(held_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measure]]
 
 
 def _ranged(name: str, values: list[float], unit: str) -> Iterator[tuple[str, Measure]]:
-    """Return the value of the last cycle, with the least and the greatest of all cycles."""
+    """Yield the value of the last cycle, with the least and the greatest of all cycles."""
     yield name, Measure(float(values[-1]), unit)
     yield f"{name}_low", Measure(float(min(values)), unit)
     yield f"{name}_high", Measure(float(max(values)), unit)

@@ -37,7 +37,7 @@ _MAX_SERVOS = 6
 
 
 def draw_ladder(claim_voices: Sequence[tuple[Rule, tuple[Voice, ...]]]) -> Figure:
-    """Draw what each model says of each claim: green where the statement holds, red where not, grey without a word.
+    """Draw the result of each model for each claim: green where the statement holds, red where not, grey for none.
 
     Args:
         claim_voices: rules with what their rungs say.
@@ -82,7 +82,7 @@ def draw_quarters(record: xr.Dataset) -> Figure:
     Args:
         record: of the experiment ``swimming``.
     """
-    # the jump at the tail's edge is far above what surrounds it: the scales end where the two sides still differ
+    # the jump at the tail's edge exceeds all other values: end the scales where the two sides still differ
     limits = {
         "pressure": span(record.held_pressure.values, 0.985),
         "vorticity": span(record.held_vorticity.values, 0.97),
@@ -198,7 +198,7 @@ def draw_forces(record: xr.Dataset) -> Figure:
 
 
 def _servo_note(record: xr.Dataset) -> str:
-    """Return which servos are drawn, where not all are."""
+    """Return a note for the caption if only some servos are drawn."""
     return f"; shown are the {_MAX_SERVOS} with the most load" if record.sizes["held_servo"] > _MAX_SERVOS else ""
 
 

@@ -1,4 +1,4 @@
-"""The rungs of the ladder: one motion and its parts in six models of the water, each until it is settled."""
+"""The rungs of the ladder: one motion and its parts in six models of the water, each until its numbers converge."""
 
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -42,39 +42,39 @@ from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved
 from suchus.swimming.water.samples import kept_in
 
 MOTIONS = ("trunk and tail", "tail only", "trunk only")
-"""What swims on every rung."""
+"""Motions that swim on every rung."""
 SWIMS = (*MOTIONS, "held")
 """The swims of a rung that resolves the water: each motion free, and the first held at its snout."""
 _READ_OF: Mapping[str, tuple[str, ...]] = {
     "gain_tail": (MOTIONS[0], MOTIONS[2]), "gain_spine": MOTIONS[:2], "track": MOTIONS[:1], "wave": MOTIONS[:1],
     "tail_sine": MOTIONS[:1], "pressure": ("held",), "force": ("held",), "thrust": ("held",),
 }  # fmt: skip
-"""Of which swims measures are read, by how their names begin."""
+"""Swims that a measure is read from, by the beginning of its name."""
 FEWEST = 6
-"""Cycles without which a rung is not settled [-]; two halves of three."""
+"""Fewest cycles over which a number can be settled [-]: two halves of three."""
 _QUARTERS = ("difference", "thrust", "aside")
 GRIDS = "grids.json"
 """File beside this module: numbers on several grids in three dimensions, see ``tools/ladder_grids.py``."""
-_AVERAGED_CYCLES = 3  # last cycles of the swim on sections over which the joints' midline is averaged
+_AVERAGED_CYCLES = 3  # last cycles of the swim on sections over which the joints' midline is averaged [-]
 
 
 def motions(gait: Gait) -> dict[str, Gait]:
-    """Return what swims on every rung, by ``MOTIONS``."""
+    """Return the gaits of ``MOTIONS``, by name."""
     return dict(zip(MOTIONS, (gait, gait.straightened("trunk"), gait.straightened("tail")), strict=True))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Climb:
-    """What is asked of every rung."""
+    """Robot, motion, water and grids of the ladder."""
 
     robot: Robot
-    """Who swims."""
+    """The robot that swims."""
     fitted: Fit
-    """Its motion, and how the head of a body turns that is held at its snout."""
+    """Motion of the robot, and the turn of its head while the snout is held."""
     viscosity: float
-    """Of the water on the rungs that resolve it [m2/s]; theories and sections take that of real water."""
+    """Kinematic viscosity on the rungs that resolve the water [m2/s]; theories and sections take real water."""
     cycles: int
-    """Cycles that are swum from rest [-]."""
+    """Cycles of every swim, from rest [-]."""
     cells: int
     """Cells per body length of the slices [-]."""
     space_cells: int
@@ -84,7 +84,7 @@ class Climb:
 
     @property
     def digest(self) -> str:
-        """What a study of grids must have been made for: the body, its motion and its water, whatever the grids."""
+        """Hash of body, motion and water; a study of grids is valid for the setting with the same hash."""
         outline, length = Outline(self.robot), self.robot.length
         bend_phasors = undulation(outline, self.fitted.gait).middles
         inputs = (
@@ -164,7 +164,7 @@ def climbed(
 
 
 def _ladder(climb: Climb, results: Mapping[str, Any], unable: Mapping[str, str]) -> xr.Dataset:
-    """Return what the rungs told so far, as a record; NaN of the others."""
+    """Return the results of the rungs so far as a record; NaN of rungs without results."""
     data = xr.Dataset(
         {key: _stacked(key, [results.get(name) or {} for name in LADDER], climb.cycles) for key in _SHAPES},
         coords={"rung": list(LADDER), "ladder_motion": list(MOTIONS)},
@@ -173,7 +173,7 @@ def _ladder(climb: Climb, results: Mapping[str, Any], unable: Mapping[str, str])
 
 
 def _needed_swims(record: xr.Dataset, climb: Climb, claims: Collection[str]) -> set[str]:
-    """Return the swims that some claims need of the next rung: those claims on which the rungs do not disagree yet."""
+    """Return the swims that the next rung needs for some claims, without claims on which rungs disagree already."""
     numbers = {name: float(measure.value) for name, measure in _of_rungs(record, climb.robot.length)}
     rules = [rule for rule in RULES if rule.claim in claims and not ladder.disagree(ladder.voices(rule, numbers))]
     measure_names = {name for rule in rules for name in (rule.measure, *(clause.measure for clause in rule.holds))}
@@ -195,8 +195,8 @@ def _attempt(name: str, unable: dict[str, str], run: Callable[[], Any]) -> Any:
         run: computes the result.
 
     Raises:
-        Unwritable: it could not be kept, which says nothing of the rung.
-        UnreadableFile: what was kept of it is damaged, or is of another swim.
+        Unwritable: a checkpoint could not be written.
+        UnreadableFile: a checkpoint is damaged, or belongs to another swim.
     """
     try:
         return run()
@@ -213,8 +213,7 @@ _SHAPES: Mapping[str, tuple[tuple[str, ...], str]] = {
     "ladder_course": (("ladder_tick", "ladder_place"), "m"),
     **{f"ladder_{name}": (("ladder_cycle", "ladder_quarter"), "1") for name in _QUARTERS},
 }
-"""Dimensions of what a rung may tell, after its own, and unit; quarters are in the rung's own unit of pressure or
-force."""
+"""Dimensions after ``rung``, and unit, of the results of a rung. Quarters are in the rung's own unit of pressure or force."""
 
 
 def _stacked(key: str, results: Iterable[Mapping[str, Any]], cycles: int) -> Any:
@@ -281,7 +280,7 @@ def _in_sections(climb: Climb, progress: Progress) -> xr.Dataset:
 
 
 def _joint_midlines(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
-    """Return the midlines that the joints take there, by motion."""
+    """Return the midlines of the joints in six degrees of freedom, by motion."""
     outline, frequency = Outline(bare(climb.robot), climb.cells + 1), climb.fitted.gait.frequency
     averaged_cycles = min(_AVERAGED_CYCLES, climb.cycles)
     return {
@@ -291,7 +290,7 @@ def _joint_midlines(climb: Climb, record: xr.Dataset) -> dict[str, Motion]:
 
 
 def _midline_misfits(climb: Climb, joint_midlines: Mapping[str, Motion] | None) -> list[float]:
-    """Return how far the midlines that the joints take are off those commanded, the rms angle over that [-]."""
+    """Return the rms difference of the joints' midlines to the commanded ones, over the commanded angles [-]."""
     if joint_midlines is None:
         return [nan] * len(MOTIONS)
     outline = Outline(bare(climb.robot), climb.cells + 1)
@@ -384,9 +383,9 @@ def rules_digest() -> str:
 
 
 def kept_grids(climb: Climb) -> dict[str, Any]:
-    """Return the kept study of grids in three dimensions: its cells, and the least and greatest of each measure.
+    """Return the stored study of grids in three dimensions: its cells, and the range of each measure.
 
-    Nothing where it is of another body, motion or water.
+    It is empty for another body, motion or water.
 
     Raises:
         IncompatibleRecord: it is older than the rules.
@@ -404,7 +403,7 @@ def kept_grids(climb: Climb) -> dict[str, Any]:
 
 
 class Settled(NamedTuple):
-    """A number of a rung over the cycles in which it is settled."""
+    """A number of a rung over its settled cycles, with bounds and spread."""
 
     value: float
     """Mean over halves and starting sides."""
@@ -413,11 +412,11 @@ class Settled(NamedTuple):
     high: float
     """Greatest of them."""
     apart: float
-    """Greatest less least, over the size of what is measured [-]; NaN where too few cycles were swum."""
+    """Greatest minus least, over the scale of the number [-]; NaN with too few cycles."""
 
     @classmethod
     def of(cls, values: Iterable[float], scale: float) -> "Settled":
-        """Return it from the values of halves and sides."""
+        """Return a settled number from the values of both halves and both starting sides."""
         sorted_values = np.sort(np.asarray([*values], float))  # sorted, so that a mirrored swim gives the same bytes
         return cls(
             float(sorted_values.mean()),
@@ -428,12 +427,12 @@ class Settled(NamedTuple):
 
 
 def settle(half: Callable[[int, int], list[float]], cycles: int, scale: float = 1.0) -> Settled:
-    """Return a number over the most cycles, the first left out, two halves of which agree within ``SETTLED``.
+    """Return a number over the most cycles whose two halves agree within ``SETTLED``; the first cycle is left out.
 
     Args:
-        half: the number from one cycle on and up to another, once for each side to which the swim may start.
-        cycles: that were swum [-].
-        scale: size of what is measured, in its unit.
+        half: returns the number between two cycles, once for each side to which the swim may start.
+        cycles: of the swim [-].
+        scale: of the number, in its unit.
     """
     number = None
     for count in range((cycles - 1) // 2 * 2, FEWEST - 1, -2):
@@ -523,7 +522,7 @@ def _numbers(rung: xr.Dataset, length: float) -> Iterator[tuple[str, Settled]]:
 
 
 def _swaying(centre: np.ndarray, cycles: int) -> Iterator[tuple[str, Settled]]:
-    """Return how far the centre of mass sways, and what of its track is no sine of one cycle [body length]."""
+    """Yield the sway amplitude of the centre of mass, and the part of its track that is no sine [body length]."""
 
     def sway(a: int, b: int) -> Sway:
         return Sway.of(centre[a * TICKS : b * TICKS + 1], b - a)

@@ -14,11 +14,11 @@ LADDER: Mapping[str, str] = {
     "sections": "six degrees of freedom on sections",
     "space": "three dimensions",
 }
-"""The rungs by name, in words."""
+"""Labels of the rungs by name."""
 SETTLED = 0.1
-"""Greatest spread of halves and starting sides with which a rung has a word, over the size of what is measured [-]."""
+"""Greatest relative spread of halves and starting sides with which a rung counts for a verdict [-]."""
 SEEN = 0.01
-"""Sway of the centre of mass below which a track is a straight line in a picture [body length]."""
+"""Least sway of the centre of mass that is visible in a picture [body length]."""
 _DIAGONAL = 0.1
 
 _RESOLVED = {

@@ -15,7 +15,7 @@ _COMPUTED_COLOUR, _PRINTED_COLOUR, _ALARM_COLOUR = COLOURS["ours"], COLOURS["pri
 
 
 def tail_positions(record: xr.Dataset) -> Figure:
-    """Return the tail at several bends, ours with its plates and as printed in (19)."""
+    """Draw the tail at several bends, exact with its plates and as printed in (19)."""
     with styled():
         figure, axes = panels(1, 2, height=3.9, sharex=True, sharey=True)
         left_ax, right_ax = axes[0]

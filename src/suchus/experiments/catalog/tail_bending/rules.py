@@ -6,9 +6,9 @@ from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, Rule, Varied
 
 SMALL = 0.05
-"""A neglected term below this share of what is kept counts as small [-]."""
+"""Greatest ratio of a neglected term to the retained one that counts as small [-]."""
 ALIKE = radians(10)
-"""Joints that differ by no more than this count as turned alike [rad].
+"""Greatest difference of joint angles that counts as equal [rad].
 
 It is what the stiffness of the robot's tail joints was chosen to keep to, and two thirds of what each of six joints
 turns when the tail bends by 90 degrees.

@@ -36,18 +36,20 @@ from suchus.sim.land import Ground, Run, Tolerances, simulate
 from suchus.sim.metrics import between, cost_of_transport, displacement, heading_change, tilt
 from suchus.visual.figures.gait_diagram import GAIT_LINES
 
-_TOUCH = 0.5 / (ROBOTS["caiman"].mass * GRAVITY)  # of the weight on the belly, half a newton of that robot
-_CONTACT_DISTANCE = 0.00495  # [body length]; so near to an obstacle a foot is stopped by it
+_TOUCH = 0.5 / (
+    ROBOTS["caiman"].mass * GRAVITY
+)  # belly load that counts as contact [body weight]; half a newton of the caiman
+_CONTACT_DISTANCE = 0.00495  # distance at which a foot counts as stopped by an obstacle [body length]
 _LADDER = {"crawl": 0.85, "semi_erect": 1.0, "high_walk": 1.12}
-"""Heights of the three postures of a body of its own, over that of its gait [-]."""
-_STEPS = 1.75  # by which a body of its own walks more cycles: they are shorter
+"""Heights of the three postures of another body, over the height of its gait [-]."""
+_STEPS = 1.75  # factor on the cycles of another body, whose steps are shorter [-]
 Surface = Literal["even", "bumps"]
 FALLEN = np.radians(60)
-"""Roll or pitch beyond which nothing on the robot brings it back [rad]."""
+"""Roll or pitch above which the robot has fallen [rad]."""
 ROUGH = 0.03
 """Least height of what counts as rough ground for the article's robot [m]: a third of the legs' hip height in the
 sprawled crawl is less. For others it is in proportion to their length."""
-_HEIGHT_TOLERANCE = 1e-9  # [m]; heights that differ by less are equal
+_HEIGHT_TOLERANCE = 1e-9  # heights that differ by less are equal [m]
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED_ARMS = ("low_crawl", "high_walk_level")
@@ -57,7 +59,7 @@ _ROUGH_MEASURES = (
     "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
     *(f"falls_rough_{name}" for name in _STRUCTURE_ARMS),
 )  # fmt: skip
-"""Measures of these alone, on rough grounds."""
+"""Measures of the two structures on rough grounds."""
 _STRUCTURE_MEASURES = ("flat_cost_ratio", *_ROUGH_MEASURES)
 
 
@@ -161,7 +163,7 @@ class Terrain(Experiment):
         return Simulated(record=record, replays=self._replays(record))
 
     def measured(self, wanted: Collection[str], progress: Progress = silent) -> Measures:
-        """Return measures, those that are wanted at least; for those of crawl and high walk nobody else walks."""
+        """Return at least the wanted measures; for those of crawl and high walk only these conditions are simulated."""
         names = {name.removesuffix("_low").removesuffix("_high") for name in wanted}
         if not all(name in _STRUCTURE_MEASURES or name.startswith("transition") for name in names):
             return super(Terrain, self).measured(wanted, progress)
@@ -235,7 +237,7 @@ class Terrain(Experiment):
 
     @property
     def _size(self) -> float:
-        """How long the robot is beside the article's [-]."""
+        """Length of the robot over that of the article's robot [-]."""
         return round(self.robot.length / ROBOTS["caiman"].length, 9)
 
     def _bumps(self, height: float, correlation: float, seed: int) -> Bumps:
@@ -316,7 +318,7 @@ class Terrain(Experiment):
 
     @property
     def _pace(self) -> float:
-        """How slow the robot is beside the article's, by the time that gravity needs [-]; a second of it [s]."""
+        """Time scale of the robot over that of the article's robot, by Froude scaling [-]."""
         return self._size**0.5
 
     def _sample_time(self, seconds: float) -> float:
@@ -325,7 +327,7 @@ class Terrain(Experiment):
         return START + float(np.ceil(round(seconds * self._pace / sample, 6)) * sample)
 
     def _changes(self, progress: Any) -> xr.Dataset:
-        """Return how far the body tilts while every posture turns into every other."""
+        """Return the tilt of the body during each transition between postures, and the distance walked afterwards."""
         pairs = list(permutations((self.crawl, self.semi_erect, self.high_walk), 2))[: self.transitions]
         bumps = self._bumps(0.03 * self._size, self.correlations[-1], 1)
         runs = [
@@ -443,7 +445,7 @@ def _flat(record: xr.Dataset) -> Measures:
 
 
 def _rough_measures(rough_record: xr.Dataset) -> Measures:
-    """Return on which share of the rough grounds erect legs get farther; no number where anybody met too little.
+    """Return the fraction of rough grounds on which erect legs get farther; NaN if a robot did not reach its obstacle.
 
     Each seed of each kind and height is a ground of its own, and a robot of its own.
     """
@@ -475,20 +477,20 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
 
 
 def _rough_grounds(record: xr.Dataset) -> xr.Dataset:
-    """Return what happened on rough grounds."""
+    """Return the part of a record on grounds of at least ``ROUGH`` height."""
     return record.isel(
         ground=np.flatnonzero(record.height.values >= ROUGH * float(record.size_of_robot) - _HEIGHT_TOLERANCE)
     )
 
 
 def _falls(rough_record: xr.Dataset) -> Measures:
-    """Return how often each condition fell on rough grounds."""
+    """Return the number of falls of each condition on rough grounds."""
     fell = rough_record.fell.sum(("ground", "seed"))
     return Measures((f"falls_rough_{arm}", Measure(float(fell.sel(arm=arm)), "-")) for arm in rough_record.arm.values)
 
 
 def _transitions(record: xr.Dataset) -> Measures:
-    """Return how many transitions stay upright, and how far the robot walks after them at least."""
+    """Return the fraction of upright transitions, their greatest tilt, and the least distance walked after them."""
     return Measures(
         {
             "transitions": Measure(float(record.change_tilt.size), "-"),

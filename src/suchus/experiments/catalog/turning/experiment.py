@@ -172,7 +172,7 @@ class Turning(Experiment):
         return data, (record.isel(run=b + int(curvatures[b:].argmax())), circle_record.isel(run=0))
 
     def _bend_margin(self, gait: Gait) -> float:
-        """Return how far the trunk can bend besides what the gait asks of it [rad]."""
+        """Return the bend of the trunk that its joints allow beyond the amplitude of the gait [rad]."""
         yaw = list(layout(self.robot).trunk_yaw)
         gait.needs_steering(self.name())
         gait_bend = trunk_amplitude(self.robot, gait)
@@ -212,7 +212,7 @@ class Turning(Experiment):
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
-        """Say by what each gait turns tightest, and how far commanded circles are off."""
+        """Return by which means each gait turns tightest, and the errors of commanded circles, in words."""
         names = [gait.name for gait in self.gaits]
         return self.told(
             measures,
